@@ -24,7 +24,7 @@
 
 /* Allocations of a request that fail, unless RUGO_FAULTS=all; each alone, and with all behind it.
  */
-enum { FAILURES = 12, BYTES = 128, LEASE_MS = 60000, WELL_MS = 20000, PATIENCE_S = 30 };
+enum { FAILURES = 12, BYTES = 128, LEASE_MS = 60000, WELL_MS = 60000, PATIENCE_S = 60 };
 
 static struct service service;
 static struct http *http;

@@ -18,7 +18,7 @@ enum {
     ANEW_AFTER = 2000, /* requests: what they queue is gone with the store */
     HEALTH_EACH = 64,  /* requests */
     LEASE_MS = 60000,
-    PATIENCE_MS = 10000,
+    PATIENCE_MS = 60000,
 };
 static const char PRISTINE[] = "pristine.db", SERVED[] = "requests.db";
 

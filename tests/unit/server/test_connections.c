@@ -98,7 +98,7 @@ static void of_those_known_the_idlest_goes(void **state) {
     nanosleep(&pause, NULL);
     set(&world, peers[0], CONNECTION_IDLE); /* it was heard of last */
     set(&world, peers[1], CONNECTION_SENDS);
-    connection_leases(world.connections, peers[2]->connection, clock_ms() + 1000);
+    connection_leases(world.connections, peers[2]->connection, clock_ms() + 100000);
     assert_false(connection_is_reserved(add(&world)->connection));
     assert_true(is_shut(peers[3]));
     assert_false(is_shut(peers[0]) || is_shut(peers[1]) || is_shut(peers[2]));

@@ -5,17 +5,12 @@
 #include "jobs/kind.h"
 #include "schema/store/store.h"
 #include "schema/study/fault.h"
-
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <setjmp.h>
-
-#include <cmocka.h>
+#include "tests/support/check.h"
+#include "tests/support/sql.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 /* Two cases (H 0.2 and 0.8) of profiles of 64 points. */
@@ -23,6 +18,8 @@ static const char SMALL_STUDY[] =
     "{\"name\":\"small\",\"kind\":\"statistics\",\"seed\":7,\"realisations\":24,\"surface\":{"
     "\"dimension\":1,\"hurst\":[0.2,0.8],\"wavelength_ratio\":4,\"length_ratio\":4,"
     "\"points_per_wavelength\":4}}";
+
+#define RUNNING_JOBS "FROM job WHERE state = 'running'"
 
 struct fixture {
     char database[32];
@@ -78,6 +75,19 @@ static inline struct study_status fixture_status(struct fixture *fixture) {
         fail_msg("%s", err.text);
     }
     return status;
+}
+
+/* Waits until heartbeats have renewed the lease of every job that runs; the moment at which the
+ * last of them would have run out else. */
+static inline int64_t fixture_await_renewals(const struct fixture *fixture) {
+    int64_t first = sql_integer(fixture->database, "SELECT max(lease_until) " RUNNING_JOBS);
+    for (int tries = 0;
+         sql_integer(fixture->database, "SELECT min(lease_until) " RUNNING_JOBS) <= first;
+         tries++) {
+        assert_true(tries < 6000);
+        nanosleep(&(struct timespec){.tv_nsec = 10000000}, NULL);
+    }
+    return first;
 }
 
 static inline void fixture_close(struct fixture *fixture) {

@@ -18,7 +18,8 @@
 
 #include <cmocka.h>
 
-/* Answers every request with the same bytes, in one of these manners. */
+/* Answers every request with the same bytes, in one of these manners. DRIP goes on, byte by byte,
+ * until the client leaves. */
 enum manner { ANSWER, ANSWER_AND_CLOSE, SILENT, DRIP, ENDLESS };
 struct stub {
     enum manner manner;
@@ -77,7 +78,8 @@ static inline bool stub_answer(const struct stub *stub, int peer) {
     case SILENT:
         return read(peer, &byte, 1) > 0; /* until the client has had enough */
     case DRIP:
-        for (const char *next = stub->answer; *next && stub_write(peer, next, 1); next++) {
+        for (const char *next = stub->answer; stub_write(peer, *next ? next : "a", 1);) {
+            next += *next != '\0';
             nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
         }
         return false;
@@ -100,16 +102,22 @@ static inline void *stub_main(void *context) {
     return NULL;
 }
 
-/* A free port of the loopback, listened to. */
-static inline int listen_any(char *url, size_t size) {
+/* A free port of the loopback, which refuses whoever connects. */
+static inline int bind_any(char *url, size_t size) {
     struct sockaddr_in address = {.sin_family = AF_INET, .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
     socklen_t length = sizeof address;
     int listener = socket(AF_INET, SOCK_STREAM, 0);
     assert_true(listener >= 0);
     assert_int_equal(bind(listener, (struct sockaddr *)&address, length), 0);
     assert_int_equal(getsockname(listener, (struct sockaddr *)&address, &length), 0);
-    assert_int_equal(listen(listener, 8), 0);
     snprintf(url, size, "http://127.0.0.1:%d", ntohs(address.sin_port));
+    return listener;
+}
+
+/* The same, listened to. */
+static inline int listen_any(char *url, size_t size) {
+    int listener = bind_any(url, size);
+    assert_int_equal(listen(listener, 8), 0);
     return listener;
 }
 

@@ -10,15 +10,18 @@ static struct client *client_of(const char *url, const char *token) {
     return client;
 }
 
+/* With the patience that a busy machine may need. */
 static const struct request CLAIM = {
-    .method = "POST", .path = "/v1/jobs/claim", .body = "{\"count\":1}", .timeout_ms = 400};
+    .method = "POST", .path = "/v1/jobs/claim", .body = "{\"count\":1}", .timeout_ms = 60000};
 
 /* One exchange with a stub; gives client_json's status and error. */
-static int ask(struct stub *stub, struct error *err) {
+static int ask_within(struct stub *stub, long timeout_ms, struct error *err) {
+    struct request claim = CLAIM;
+    claim.timeout_ms = timeout_ms;
     stub_start(stub);
     struct client *client = client_of(stub->url, "secret-token");
     cJSON *answer = NULL;
-    int status = client_json(client, &CLAIM, &answer, err);
+    int status = client_json(client, &claim, &answer, err);
     client_destroy(&client);
     stub_stop(stub);
     cJSON_Delete(answer);
@@ -26,10 +29,14 @@ static int ask(struct stub *stub, struct error *err) {
     return status;
 }
 
+static int ask(struct stub *stub, struct error *err) {
+    return ask_within(stub, CLAIM.timeout_ms, err);
+}
+
 static void refused_connection_is_no_answer(void **state) {
     (void)state;
     char url[64];
-    close(listen_any(url, sizeof url)); /* the port was free a moment ago */
+    int refusing = bind_any(url, sizeof url); /* a port that nobody listens to */
     struct client *client = client_of(url, "secret-token");
     cJSON *answer = NULL;
     struct error err = {0};
@@ -38,6 +45,7 @@ static void refused_connection_is_no_answer(void **state) {
     assert_null(strstr(err.text, "secret-token"));
     assert_null(answer);
     client_destroy(&client);
+    close(refusing);
 }
 
 /* Protects the request's form, and one connection for many requests. */
@@ -78,15 +86,13 @@ static void slow_servers_are_left(void **state) {
     const enum manner manners[] = {SILENT, DRIP};
     for (size_t n = 0; n < 2; n++) {
         struct stub stub = {.manner = manners[n],
-                            .answer =
-                                "HTTP/1.1 200 OK\r\nContent-Length: 2\r\n"
-                                "X-Padding: aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa\r\n\r\n{}"};
+                            .answer = "HTTP/1.1 200 OK\r\nContent-Length: 2\r\nX-Padding: "};
         struct error err = {0};
         struct timespec begin, end;
         clock_gettime(CLOCK_MONOTONIC, &begin);
-        assert_int_equal(ask(&stub, &err), ERROR_SYSTEM);
+        assert_int_equal(ask_within(&stub, 400, &err), ERROR_SYSTEM);
         clock_gettime(CLOCK_MONOTONIC, &end);
-        assert_true(end.tv_sec - begin.tv_sec < 10); /* 0.4 s and the load of the machine */
+        assert_true(end.tv_sec - begin.tv_sec < 30); /* 0.4 s and the load of the machine */
     }
 }
 

@@ -7,6 +7,8 @@
 #include "jobs/runner.h"
 #include <time.h>
 
+enum { LEASE_MS = 4000 }; /* renewed after a third of it */
+
 struct scene {
     struct fixture fixture;
     struct source_options source;
@@ -20,7 +22,7 @@ static void scene_open(struct scene *scene, unsigned threads, bool drain) {
     fixture_open(&scene->fixture);
     fixture_submit(&scene->fixture, SMALL_STUDY, 1, NULL, 0);
     scene->source = (struct source_options){
-        .database = scene->fixture.database, .worker = "test", .lease_ms = 600};
+        .database = scene->fixture.database, .worker = "test", .lease_ms = LEASE_MS};
     struct dispatcher_options options = {
         .source = &scene->source, .threads = threads, .drain = drain};
     if (dispatcher_create(&scene->dispatcher, &options, &err) != 0)
@@ -80,22 +82,32 @@ static void the_stock_is_given_back(void **state) {
     scene_close(&scene);
 }
 
-/* Jobs in stock and at work keep leases that are far shorter than the wait. */
+static int64_t constant(void *context) {
+    return *(const int64_t *)context;
+}
+
+/* Jobs in stock and at work keep their leases: a rival whose clock is behind the end of the first
+ * ones gets none of them. */
 static void all_leases_are_kept(void **state) {
     (void)state;
     struct scene scene;
     scene_open(&scene, 1, false);
     struct lease *lease = take(&scene);
-    nanosleep(&(struct timespec){.tv_sec = 1, .tv_nsec = 500000000}, NULL);
+    int64_t later_ms = fixture_await_renewals(&scene.fixture) + 1;
+    const struct store_options later = {.now_ms = constant, .context = &later_ms};
+    struct store *rival = NULL;
     struct claim claim = {.worker = "rival", .count = 100};
     struct claimed_job jobs[100];
     struct error err = {0};
     size_t count = 0;
-    assert_int_equal(store_claim(scene.fixture.store, &claim, jobs, &count, &err), 0);
+    assert_int_equal(store_open(&rival, scene.fixture.database, &later, &err), 0);
+    assert_int_equal(store_claim(rival, &claim, jobs, &count, &err), 0);
     for (size_t n = 0; n < count; n++) { /* of what waited, none of what was lost */
         assert_int_equal(jobs[n].attempt, 1);
         claimed_job_clear(&jobs[n]);
     }
+    store_close(&rival);
+    assert_int_equal(sql_integer(scene.fixture.database, "SELECT sum(losses) FROM job"), 0);
     assert_false(lease_is_lost(lease));
     run(&scene, lease);
     scene_close(&scene);

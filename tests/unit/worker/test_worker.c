@@ -176,12 +176,18 @@ static int64_t in_hours(void *context) {
     return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000 + *hours * 3600000;
 }
 
+static bool has_begun(const struct worker_scene *scene) {
+    return sql_integer(scene->fixture->database, "SELECT count(*) " RUNNING_JOBS) > 0;
+}
+
 /* First takes the running job away, as a worker does whose predecessor's lease ran out; then gives
  * up the whole study. */
 static int tick_steal(void *context) {
     struct worker_scene *scene = context;
     struct error err = {0};
     struct claim claim = {.worker = "thief", .count = 1};
+    if (scene->ticks == 0 && !has_begun(scene)) /* there is nothing to be stolen yet */
+        return 0;
     if (scene->ticks < 2) { /* at first the job waits for a while, as it was lost */
         assert_int_equal(scene->taken, 0);
         assert_int_equal(store_claim(scene->thief, &claim, &scene->stolen, &scene->taken, &err), 0);
@@ -202,7 +208,7 @@ static void lost_lease_is_not_reported(void **state) {
     struct store_options later = {.now_ms = in_hours, .context = &scene.hours};
     assert_int_equal(store_open(&scene.thief, fixture.database, &later, &err), 0);
     struct worker_options options = drain(&fixture, 1);
-    options.source.lease_ms = 300;
+    options.source.lease_ms = 3000;
     options.tick = tick_steal;
     options.context = &scene;
     work(&options, ERROR_STOPPED);
@@ -218,17 +224,28 @@ static void lost_lease_is_not_reported(void **state) {
     fixture_close(&fixture);
 }
 
+static int64_t constant(void *context) {
+    return *(const int64_t *)context;
+}
+
+/* A rival whose clock is just behind the end of the job's first lease. */
 static int tick_compete(void *context) {
     struct worker_scene *scene = context;
     struct error err = {0};
+    struct store *rival = NULL;
     struct claim claim = {.worker = "rival", .count = 1};
-    size_t count = 0;
-    assert_int_equal(store_claim(scene->fixture->store, &claim, &scene->stolen, &count, &err), 0);
-    scene->taken += count;
-    return ++scene->ticks == 4;
+    if (!has_begun(scene))
+        return 0;
+    int64_t later_ms = fixture_await_renewals(scene->fixture) + 1;
+    const struct store_options later = {.now_ms = constant, .context = &later_ms};
+    assert_int_equal(store_open(&rival, scene->fixture->database, &later, &err), 0);
+    assert_int_equal(store_claim(rival, &claim, &scene->stolen, &scene->taken, &err), 0);
+    store_close(&rival);
+    scene->ticks++;
+    return 1;
 }
 
-/* A job that takes many times its lease keeps it: two seconds of work, a lease of 0.3 s. */
+/* A job that takes longer than its lease keeps it. */
 static void long_job_keeps_its_lease(void **state) {
     (void)state;
     struct fixture fixture;
@@ -236,11 +253,13 @@ static void long_job_keeps_its_lease(void **state) {
     fixture_submit(&fixture, LONG_STUDY, 20000, NULL, 0);
     struct worker_scene scene = {.fixture = &fixture};
     struct worker_options options = drain(&fixture, 1);
-    options.source.lease_ms = 300;
+    options.source.lease_ms = 4000;
     options.tick = tick_compete;
     options.context = &scene;
     work(&options, ERROR_STOPPED);
+    assert_int_equal(scene.ticks, 1);
     assert_int_equal(scene.taken, 0);
+    assert_int_equal(sql_integer(fixture.database, "SELECT sum(losses) FROM job"), 0);
     fixture_close(&fixture);
 }
 
