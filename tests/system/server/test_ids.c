@@ -124,14 +124,14 @@ static void waiting_ends_as_the_study_does(void **state) {
                   (const char *[]){"status", "--watch", "--db", "rugo.db", id, NULL});
     wait_for_text("watching.out", "queued");
     work();
-    assert_int_equal(process_wait(&waiting, 30), 0);
+    assert_int_equal(process_wait(&waiting, 120), 0);
     assert_true(contains("waiting.out", "done"));
-    assert_int_equal(process_wait(&watching, 30), 0);
+    assert_int_equal(process_wait(&watching, 120), 0);
     assert_true(contains("watching.out", "realisations 5 of 5"));
     submit("one.json", id);
     process_start(&waiting, "waiting", (const char *[]){"wait", "--db", "rugo.db", id, NULL});
     assert_int_equal(run_rugo("cancel", (const char *[]){"cancel", "--server", url, id, NULL}), 0);
-    assert_int_equal(process_wait(&waiting, 30), 1);
+    assert_int_equal(process_wait(&waiting, 120), 1);
     assert_true(contains("waiting.err", "is cancelled"));
 }
 
