@@ -21,6 +21,8 @@ enum area_estimator { AREA_NODES, AREA_EDGES, AREA_PERIMETER, AREA_ESTIMATORS };
 enum companion_choice { COMPANION_PROBED, COMPANION_NONE };
 
 enum stiffness_choice { STIFFNESS_MEASURED, STIFFNESS_OMITTED };
+/* Whether differences of densities of pressure are summed by realisation (contact_densities.h). */
+enum pairs_choice { PAIRS_OMITTED, PAIRS_COUNTED };
 
 extern const struct choice KINEMATICS_CHOICES[]; /* of enum kinematics */
 extern const struct parameter_table CONTACT_PARAMETERS;
@@ -50,6 +52,7 @@ struct contact_case {
     double tolerance;
     size_t pdf_count;
     size_t *pdf_loads;    /* owned: loads whose pressures are counted, rising */
+    bool pdf_pairs;       /* on all levels, with their differences (contact_densities.h) */
     struct bins pressure; /* of p/(E* h') */
 };
 void contact_case_clear(struct contact_case *one_case);

@@ -1,6 +1,7 @@
 #include "jobs/contact/contact_case_read.h"
 #include "core/full/mesh.h"
 #include "jobs/contact/companion/companion.h"
+#include "jobs/contact/contact_densities.h"
 #include "jobs/contact/contact_loads.h"
 #include "jobs/like/like_parameters.h"
 #include "jobs/surface/surface_parameters.h"
@@ -13,6 +14,7 @@ const struct parameter_table *const CONTACT_TABLES[] = {&CONTACT_PARAMETERS, &SU
 
 static const double ROUNDING = 1e-9; /* relative: of numbers that should be equal */
 enum { BINS_MOST = 10000, PRESSURE_CELLS_MOST = 1000000 };
+static const double PAIR_SUMS_MOST = 2e6; /* of contact_densities.h */
 
 /* What a study asks of the contact, read without its surface. Levels and block without faults
  * become those of the case when the surface has none either. */
@@ -140,6 +142,7 @@ static int read_pdf(struct contact_case *out, struct values *values, struct erro
     if (status != 0)
         return status;
     bool given = at != NULL;
+    out->pdf_pairs = values_choice(values, "/contact/pressure_pdf/pairs") == PAIRS_COUNTED;
     out->pdf_count = given ? out->pdf_count : 1;
     out->pdf_loads = array_create(out->pdf_count, sizeof *out->pdf_loads);
     if (out->pdf_loads == NULL) {
@@ -341,11 +344,22 @@ static bool faces_fit(const struct contact_case *one_case, struct values *values
     return true;
 }
 
+/* Checks the sums by pairs of densities, which partial results hold. */
+static void check_pairs(const struct contact_case *one_case, struct values *values) {
+    if (contact_densities_size(one_case) > PAIR_SUMS_MOST)
+        values_fault(values, "/contact/pressure_pdf/bins",
+                     "differences of densities between %zu models on %zu levels, at %zu loads of "
+                     "%zu bins, take %.2g sums: at most %.2g",
+                     one_case->model_count, one_case->level_count, one_case->pdf_count,
+                     one_case->pressure.count, contact_densities_size(one_case), PAIR_SUMS_MOST);
+}
+
 /* Sets levels and blocks on the surface of the case, which has no fault. */
 static int set_on_surface(struct contact_case *out, const struct asked *asked,
                           struct values *values, struct error *err) {
     out->band = surface_case_sampled_band(&out->surface);
     set_levels(out, asked, values);
+    check_pairs(out, values);
     size_t before = values_fault_count(values);
     if (!asked->block || !faces_fit(out, values) || !scale_fits(out, asked, values))
         return 0;

@@ -320,12 +320,13 @@ static int append_pressures(struct contact_curve_maker *maker, size_t model, siz
     size_t cell = contact_case_cell(one_case, model, finest, one_case->pdf_loads[at]);
     const uint64_t *count = maker->tally->pressures.count +
                             contact_tally_pressure_cell(maker->tally, model, finest, at);
-    double *x = result_numbers(maker->result, 8 * n);
+    double *x = result_numbers(maker->result, 11 * n);
     struct estimate *shares = result_room(maker->result, 2 * n, sizeof *shares);
     if (x == NULL || shares == NULL)
         return no_room(err);
     double *y = x + n, *standard_error = y + n, *valueless = standard_error + n;
     double *pdf = valueless + n, *none = pdf + n, *bound = none + n, *chance = bound + n;
+    double *of_model = chance + n;
     contact_tally_pressure_shares(maker->tally, model, finest, at, shares);
     for (size_t b = 0; b < n; b++) {
         x[b] = bins_centre(bins, b);
@@ -343,6 +344,13 @@ static int append_pressures(struct contact_curve_maker *maker, size_t model, siz
         curve.errors[ERROR_DISCRETISATION] = (struct curve_error){
             .applies = true, .value = none, .bound = bound, .standard_error = chance, .order = NAN};
     }
+    if (contact_errors_density_model(maker->tally, model, at, shares, shares + n, of_model,
+                                     of_model + n, of_model + 2 * n))
+        curve.errors[ERROR_MODEL] = (struct curve_error){.applies = true,
+                                                         .value = of_model,
+                                                         .bound = of_model + n,
+                                                         .standard_error = of_model + 2 * n,
+                                                         .order = NAN};
     curve_set_points(&curve, n, x, y, standard_error);
     if (theory_pressures(one_case, maker->modes, load, pdf))
         curve.theories[curve.theory_count++] = (struct theory){"persson", pdf};

@@ -89,8 +89,8 @@ static void limit_errors(const struct contact_tally *tally, enum contact_measure
     spread_bounds(tally, measure, model, out);
 }
 
-static double mesh_floor(const struct contact_case *one_case, enum contact_measure measure,
-                         size_t model) {
+double contact_errors_mesh_floor(const struct contact_case *one_case, enum contact_measure measure,
+                                 size_t model) {
     const struct contact_model *of = one_case->models[model];
     return of->mesh_floor != NULL
                ? of->mesh_floor(one_case->surface.dimension, MEASURES[measure].field,
@@ -103,9 +103,9 @@ static double mesh_floor(const struct contact_case *one_case, enum contact_measu
 static void add_floors(const struct contact_tally *tally, enum contact_measure measure,
                        size_t model, bool difference, struct contact_error *out) {
     const struct contact_case *one_case = tally->one_case;
-    double share = mesh_floor(one_case, measure, model);
+    double share = contact_errors_mesh_floor(one_case, measure, model);
     if (difference)
-        share += mesh_floor(one_case, measure, contact_case_complete(one_case));
+        share += contact_errors_mesh_floor(one_case, measure, contact_case_complete(one_case));
     for (size_t k = 0; k < one_case->load_count; k++)
         out[k].bound += share * fabs(finest_mean(tally, measure, model, k).value);
 }
@@ -165,10 +165,14 @@ bool contact_errors_model_change(const struct contact_tally *tally, enum contact
 
 /* --- solver, missing realisations --- */
 
+double contact_errors_solver(const struct contact_case *one_case, enum contact_measure measure) {
+    return one_case->tolerance * TOLERANCES[MEASURES[measure].solver];
+}
+
 static bool solver_errors(const struct contact_tally *tally, enum contact_measure measure,
                           size_t model, struct contact_error *out) {
     const struct contact_case *one_case = tally->one_case;
-    double share = one_case->tolerance * TOLERANCES[MEASURES[measure].solver];
+    double share = contact_errors_solver(one_case, measure);
     for (size_t k = 0; k < one_case->load_count; k++) {
         double y = finest_mean(tally, measure, model, k).value;
         out[k] = (struct contact_error){.value = 0 * y, .bound = share * fabs(y), .order = NAN};
@@ -256,6 +260,19 @@ bool contact_error_applies(const struct contact_tally *tally, enum contact_measu
  * bound is that of any bin so near. */
 enum { BINS_NEAR = 2 };
 
+void contact_errors_near_bins(size_t n, double *bound) {
+    double before[BINS_NEAR] = {0};
+    for (size_t b = 0; b < n; b++) {
+        double own = bound[b];
+        for (size_t a = 0; a < BINS_NEAR && !isnan(own); a++) {
+            double next = b + a + 1 < n ? bound[b + a + 1] : 0;
+            bound[b] = fmax(bound[b], fmax(before[a], next));
+        }
+        before[1] = before[0];
+        before[0] = own;
+    }
+}
+
 /* Returns the standard error of a share of the area that consists of whole nodes, each in it at
  * random (Poisson). */
 static double error_of_nodes(const struct contact_tally *tally, size_t model, size_t at,
@@ -275,8 +292,8 @@ bool contact_errors_pressures(const struct contact_tally *tally, size_t model, s
     size_t finest = finest_of(one_case), n = one_case->pressure.count;
     if (finest == 0)
         return false;
-    double width = bins_width(&one_case->pressure), before[BINS_NEAR] = {0};
-    double floor_share = mesh_floor(one_case, MEASURE_NODES, model);
+    double width = bins_width(&one_case->pressure);
+    double floor_share = contact_errors_mesh_floor(one_case, MEASURE_NODES, model);
     contact_tally_pressure_shares(tally, model, finest - 1, at, coarse);
     for (size_t b = 0; b < n; b++) {
         struct mesh_changes changes = {.coarse = NAN,
@@ -285,24 +302,69 @@ bool contact_errors_pressures(const struct contact_tally *tally, size_t model, s
         bound[b] = mesh_error(&changes, 1).bound + floor_share * shares[b].value / width;
         standard_error[b] = error_of_nodes(tally, model, at, shares[b].value) / width;
     }
+    contact_errors_near_bins(n, bound);
+    return true;
+}
+
+void contact_errors_bins(const struct contact_case *one_case, const struct estimate *change,
+                         double *bound, double *standard_error) {
+    size_t n = one_case->pressure.count;
+    struct mesh_changes changes = {.coarse = NAN,
+                                   .fine_ratio = refinement(one_case, finest_of(one_case) - 1)};
     for (size_t b = 0; b < n; b++) {
-        double own = bound[b];
-        for (size_t a = 0; a < BINS_NEAR && !isnan(own); a++) {
-            double next = b + a + 1 < n ? bound[b + a + 1] : 0;
-            bound[b] = fmax(bound[b], fmax(before[a], next));
-        }
-        before[1] = before[0];
-        before[0] = own;
+        changes.fine = change[b].value;
+        struct mesh_error error = mesh_error(&changes, 1);
+        bound[b] = error.bound;
+        standard_error[b] = error.weight * change[b].standard_error;
+    }
+    contact_errors_near_bins(n, bound);
+}
+
+/* Estimates a model less the most complete one on a level, less that on the next coarser one if it
+ * is a step. */
+static void difference_of_models(const struct contact_tally *tally, size_t model, size_t at,
+                                 bool step, const double *expected, struct estimate *out) {
+    const struct contact_case *one_case = tally->one_case;
+    const size_t complete = contact_case_complete(one_case), finest = finest_of(one_case);
+    int weights[DENSITY_STATES_MOST] = {0};
+    weights[density_state(one_case, model, finest)] = 1;
+    weights[density_state(one_case, complete, finest)] = -1;
+    if (step) {
+        weights[density_state(one_case, model, finest - 1)] = -1;
+        weights[density_state(one_case, complete, finest - 1)] = 1;
+    }
+    contact_densities_difference(&tally->densities, at, weights, expected, out);
+}
+
+bool contact_errors_density_model(const struct contact_tally *tally, size_t model, size_t at,
+                                  const struct estimate *shares, struct estimate *room,
+                                  double *value, double *bound, double *standard_error) {
+    const struct contact_case *one_case = tally->one_case;
+    const size_t n = one_case->pressure.count;
+    if (tally->densities.states == 0 || !has_difference(tally, model))
+        return false;
+    const double width = bins_width(&one_case->pressure);
+    const double left =
+        contact_errors_mesh_floor(one_case, MEASURE_NODES, model) +
+        contact_errors_mesh_floor(one_case, MEASURE_NODES, contact_case_complete(one_case));
+    double *expected = value; /* until the values are known */
+    for (size_t b = 0; b < n; b++)
+        expected[b] = shares[b].value + shares[b].standard_error;
+    difference_of_models(tally, model, at, true, expected, room);
+    contact_errors_bins(one_case, room, bound, standard_error);
+    difference_of_models(tally, model, at, false, expected, room);
+    for (size_t b = 0; b < n; b++) {
+        value[b] = room[b].value / width;
+        bound[b] = (bound[b] + left * shares[b].value) / width;
+        standard_error[b] = hypot(room[b].standard_error, standard_error[b]) / width;
     }
     return true;
 }
 
-/* Returns the relative change of the density at bin b over the relative stretch of pressures: from
- * q(x) to c^2 q(c x), which keeps the load. */
-static double sensitivity(size_t n, const double *x, const double *y, size_t b) {
+double contact_errors_sensitivity(size_t n, const double *x, const double *y, size_t b) {
     size_t left = b > 0 ? b - 1 : b, right = b + 1 < n ? b + 1 : b;
     double slope = right > left ? (y[right] - y[left]) / (x[right] - x[left]) : 0;
-    return 2 * y[b] + fabs(x[b] * slope);
+    return 2 * fabs(y[b]) + fabs(x[b] * slope);
 }
 
 bool contact_errors_generation(const struct contact_tally *tally, size_t model, size_t at,
@@ -315,7 +377,7 @@ bool contact_errors_generation(const struct contact_tally *tally, size_t model, 
         return false;
     double area = contact_mean(tally, MEASURE_EDGES, model, one_case->level_count - 1, load).value;
     for (size_t b = 0; b < n; b++) {
-        double by = sensitivity(n, x, y, b) / area;
+        double by = contact_errors_sensitivity(n, x, y, b) / area;
         bound[b] = by * room[load].bound;
         standard_error[b] = by * room[load].standard_error;
     }

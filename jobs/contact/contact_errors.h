@@ -29,10 +29,31 @@ bool contact_errors_model_change(const struct contact_tally *tally, enum contact
 bool contact_errors_pressures(const struct contact_tally *tally, size_t model, size_t at,
                               const struct estimate *shares, struct estimate *coarse, double *bound,
                               double *standard_error);
+/* Bounds the error of the finest level of a density, or of a difference of densities, by its change
+ * from the next coarser level, by bin; with the standard errors of the bounds. */
+void contact_errors_bins(const struct contact_case *one_case, const struct estimate *change,
+                         double *bound, double *standard_error);
+/* Raises each bound of n bins to those of the two bins on either side; NaN stays. */
+void contact_errors_near_bins(size_t n, double *bound);
+/* Returns the relative error of a measure by the tolerance of the solver. */
+double contact_errors_solver(const struct contact_case *one_case, enum contact_measure measure);
+/* Returns the relative error of a measure that finer levels of a model do not reduce. */
+double contact_errors_mesh_floor(const struct contact_case *one_case, enum contact_measure measure,
+                                 size_t model);
+/* Returns the change of a density y at x in bin b of n over the relative change of the area. At one
+ * load the mean pressure is inverse to the area: q(x) becomes c^2 q(c x). */
+double contact_errors_sensitivity(size_t n, const double *x, const double *y, size_t b);
+/* Estimates the error of the model of the density of pressures at position `at` of pdf_loads, by
+ * bin: the difference on the finest level, within what finer ones may change. shares: as above;
+ * room: scratch. All have room for all bins; false where the case counts no pairs, or there is no
+ * difference or one level. */
+bool contact_errors_density_model(const struct contact_tally *tally, size_t model, size_t at,
+                                  const struct estimate *shares, struct estimate *room,
+                                  double *value, double *bound, double *standard_error);
 /* Estimates the error of generation of the density of pressures at position `at` of pdf_loads, n
- * bins of density y at x. At one load the mean pressure is inverse to the area, so that a change of
- * the area stretches the density. False, and nothing in bound and standard_error (n each), where it
- * is not known. room: an entry for each load. */
+ * bins of density y at x: that by the change of the area (contact_errors_sensitivity). False, and
+ * nothing in bound and standard_error (n each), where it is not known. room: an entry for each
+ * load. */
 bool contact_errors_generation(const struct contact_tally *tally, size_t model, size_t at,
                                const double *x, const double *y, struct contact_error *room,
                                double *bound, double *standard_error);

@@ -9,6 +9,7 @@ static const struct choice HEIGHT_UNITS[] = {
 static const struct choice WEIGHTINGS[] = {{"standard", GAP_STANDARD}, {"dual", GAP_DUAL}, {0}};
 static const struct choice COMPANION_CHOICES[] = {
     {"probed", COMPANION_PROBED}, {"none", COMPANION_NONE}, {0}};
+static const struct choice PAIRS[] = {{"counted", PAIRS_COUNTED}, {"omitted", PAIRS_OMITTED}, {0}};
 static const struct choice ESTIMATORS[] = {
     {"nodes", AREA_NODES}, {"edges", AREA_EDGES}, {"perimeter", AREA_PERIMETER}, {0}};
 
@@ -176,7 +177,6 @@ static const struct parameter ROWS[] = {
      .above_minimum = true,
      .items_low = 1,
      .items_high = CONTACT_LOADS_MOST,
-     .target_refusal = "a target does not answer densities of pressure",
      .unit = "E* h'",
      .example_json = "[0.1, 0.3]",
      .help = "rising loads, out of the study's, whose pressures are counted; the last one unless "
@@ -188,9 +188,19 @@ static const struct parameter ROWS[] = {
      .items_low = 3,
      .items_high = 3,
      .default_json = "[0, 4, 80]",
-     .target_refusal = "a target does not answer densities of pressure",
      .unit = "E* h'",
      .example_json = "[0, 2, 40]",
-     .help = "[low, high, count] of the histograms of pressures"},
+     .help = "[low, high, count] of the histograms of pressures; a target answers densities of "
+             "pressure where /contact/pressure_pdf/at or this is given"},
+    {.path = "/contact/pressure_pdf/pairs",
+     .type = PARAMETER_CHOICE,
+     .choices = PAIRS,
+     .target_refusal = "a target counts the pairs that its sum needs",
+     .target_choice = "counted",
+     .later = true,
+     .example_json = "\"counted\"",
+     .help = "differences of the densities of pressure between models and levels, realisation by "
+             "realisation: counted, and the densities have the error of the model; or omitted "
+             "(unless given)"},
 };
 const struct parameter_table CONTACT_PARAMETERS = {"contact", ROWS, sizeof ROWS / sizeof *ROWS};

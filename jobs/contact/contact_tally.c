@@ -7,7 +7,7 @@
 
 /* Returns the number of levels on which pressures are counted. */
 static size_t offsets_counted_levels(const struct contact_case *one_case) {
-    return one_case->level_count > 1 ? 2 : 1;
+    return one_case->pdf_pairs || one_case->level_count < 2 ? one_case->level_count : 2;
 }
 
 static size_t offsets_pressures(const struct contact_case *one_case) {
@@ -77,6 +77,8 @@ int contact_tally_create(struct contact_tally *out, const struct contact_case *o
     if (status == 0)
         status = tally_create(&out->pressures, offsets_pressures(one_case),
                               contact_case_bins(one_case), err);
+    if (status == 0)
+        status = contact_densities_create(&out->densities, one_case, err);
     out->rows.width = contact_rows_width(one_case);
     if (status == 0)
         values_begin(out);
@@ -91,6 +93,7 @@ void contact_tally_clear(struct contact_tally *tally) {
     for (size_t c = 0; c < COMPANION_COUNT; c++)
         companion_tally_clear(&tally->companions[c]);
     tally_clear(&tally->pressures);
+    contact_densities_clear(&tally->densities);
     contact_rows_clear(&tally->rows);
     free(tally->values);
     *tally = (struct contact_tally){0};
@@ -101,7 +104,7 @@ double contact_tally_bytes(const struct contact_case *one_case) {
     double bytes = MEASURE_COUNT * (contact_sums_bytes(contact_case_cells(one_case)) +
                                     sizeof(double) * (double)contact_case_cells(one_case)) +
                    MEASURE_PAIRED * contact_sums_bytes(pairs) +
-                   tally_bytes(offsets_pressures(one_case));
+                   tally_bytes(offsets_pressures(one_case)) + contact_densities_bytes(one_case);
     for (size_t c = 0; c < COMPANION_COUNT; c++)
         bytes += companion_tally_bytes(one_case, &one_case->companions[c]);
     return bytes;
@@ -121,6 +124,7 @@ void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t l
             tally_add(&tally->pressures, first + b, end - before, parts);
         before = end;
     }
+    contact_densities_set(&tally->densities, density_state(one_case, model, level), at, shares);
 }
 
 static void add_level_pairs(struct contact_tally *tally, enum contact_measure measure) {
@@ -190,6 +194,7 @@ int contact_tally_add(struct contact_tally *tally, struct error *err) {
     for (size_t c = 0; c < COMPANION_COUNT; c++)
         companion_tally_add(&tally->companions[c], one_case, &one_case->companions[c],
                             tally->values);
+    contact_densities_add(&tally->densities);
     tally_total_add(&tally->points, grid_points(&contact_case_finest(one_case)->grid));
     tally->realisations++;
     values_begin(tally);
@@ -204,6 +209,7 @@ void contact_tally_put(struct bytes *bytes, const struct contact_tally *tally) {
         companion_tally_put(bytes, &tally->companions[c]);
     tally_total_put(bytes, &tally->points);
     tally_put(bytes, &tally->pressures);
+    contact_densities_put(bytes, &tally->densities);
     notes_put(bytes, &tally->notes);
     contact_rows_put(bytes, &tally->rows);
 }
@@ -216,6 +222,7 @@ void contact_tally_get(struct byte_reader *reader, struct contact_tally *tally) 
         companion_tally_get(reader, &tally->companions[c]);
     tally_total_get(reader, &tally->points);
     tally_get_weighed(reader, &tally->pressures);
+    contact_densities_get(reader, &tally->densities);
     notes_get(reader, &tally->notes);
     contact_rows_get(reader, &tally->rows);
 }
@@ -233,6 +240,7 @@ int contact_tally_merge(struct contact_tally *into, const struct contact_tally *
         companion_tally_merge(&into->companions[c], &from->companions[c]);
     tally_total_merge(&into->points, &from->points);
     tally_merge(&into->pressures, &from->pressures);
+    contact_densities_merge(&into->densities, &from->densities);
     notes_merge(&into->notes, &from->notes);
     return 0;
 }
@@ -433,6 +441,32 @@ static bool pressures_fit(const struct contact_tally *tally, size_t model, size_
     return fabs(sum - area) <= 1e-6 * area + (double)tally->realisations;
 }
 
+/* Returns whether the densities of pairs are of the realisations that all models and levels have,
+ * and are those of the pressures where these are all realisations. */
+static bool densities_fit(const struct contact_tally *tally, size_t model, size_t level,
+                          size_t at) {
+    const struct contact_case *one_case = tally->one_case;
+    const struct contact_densities *densities = &tally->densities;
+    size_t cell = contact_case_cell(one_case, model, level, one_case->pdf_loads[at]);
+    uint64_t solved = tally->sums[MEASURE_NODES].counts.count[cell];
+    double parts = (double)CONTACT_AREA_PARTS * (double)grid_points(&one_case->levels[level].grid);
+    const uint64_t *count =
+        tally->pressures.count + contact_tally_pressure_cell(tally, model, level, at) + 1;
+    static const double ROUNDING = 1e-6; /* of shares and realisations */
+    if (densities->states == 0)
+        return true;
+    bool fit = densities->realisations[at] <= solved;
+    for (size_t b = 0; b < one_case->pressure.count && fit; b++) {
+        double all = (double)count[b] / parts,
+               own =
+                   contact_densities_total(densities, density_state(one_case, model, level), at, b),
+               rounding = ROUNDING * (double)solved;
+        fit = densities->realisations[at] == solved ? fabs(own - all) <= rounding
+                                                    : own <= all + rounding;
+    }
+    return fit;
+}
+
 /* Returns whether the values of a column of the rows, multiplied by `scale`, add up to the sum of a
  * cell. */
 static bool column_fits(const struct contact_rows *rows, size_t column, double scale,
@@ -507,7 +541,7 @@ bool contact_tally_adds_up(const struct contact_tally *tally) {
     for (size_t m = 0; m < one_case->model_count; m++)
         for (size_t l = 0; l < one_case->level_count; l++)
             for (size_t a = 0; a < one_case->pdf_count && contact_tally_counts(one_case, l); a++)
-                if (!pressures_fit(tally, m, l, a))
+                if (!pressures_fit(tally, m, l, a) || !densities_fit(tally, m, l, a))
                     return false;
     return tally->points.realisations == tally->realisations && rows_fit(tally) &&
            tally->notes.count == unsolved(tally);

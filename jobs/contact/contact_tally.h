@@ -10,6 +10,7 @@
 #define RUGO_JOBS_CONTACT_CONTACT_TALLY_H
 
 #include "jobs/contact/companion/companion_tally.h"
+#include "jobs/contact/contact_densities.h"
 #include "jobs/contact/contact_rows.h"
 #include "jobs/notes.h"
 #include <math.h>
@@ -28,14 +29,15 @@ struct contact_tally {
     uint64_t realisations;
     struct contact_sums sums[CONTACT_SUMS];
     struct tally_total points; /* of the finest level */
-    struct tally pressures;    /* by model, level (the finest, then the next coarser one), load of
-                                  pdf_loads, bin with under- and overflow; in parts of a node's
+    struct tally pressures;    /* by model, counted level (the finest first), load of pdf_loads,
+                                  bin with under- and overflow; in parts of a node's
                                   undeformed area, CONTACT_AREA_PARTS of them; adding up to the area
                                   by edges */
-    struct notes notes;        /* why a model has no values, one for each realisation and level */
-    struct contact_rows rows;  /* values of each realisation */
-    uint64_t realisation;      /* number of the present realisation */
-    double *values;            /* owned: of the present realisation, by measure and cell */
+    struct contact_densities densities; /* of the same areas, for differences */
+    struct notes notes;       /* why a model has no values, one for each realisation and level */
+    struct contact_rows rows; /* values of each realisation */
+    uint64_t realisation;     /* number of the present realisation */
+    double *values;           /* owned: of the present realisation, by measure and cell */
     double facts[CONTACT_MODELS_MOST][MODEL_FACTS_MOST]; /* the same, on the finest level */
     struct companion_tally companions[COMPANION_COUNT];
 };
@@ -63,7 +65,7 @@ static inline double *contact_tally_series(struct contact_tally *tally,
  * contact_tally_counts returns true. at: position in pdf_loads. */
 void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t level, size_t at,
                              const double *shares);
-/* Returns whether pressures are counted on a level: the two finest. */
+/* Returns whether pressures are counted on a level: the two finest, or all for pairs. */
 bool contact_tally_counts(const struct contact_case *one_case, size_t level);
 /* Ends the present realisation: adds its values, and the next one begins. On failure nothing is
  * added. */
