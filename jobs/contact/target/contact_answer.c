@@ -2,7 +2,7 @@
  * that each component still needs. */
 #include "jobs/contact/contact_measure.h"
 #include "jobs/contact/contact_scalars.h"
-#include "jobs/contact/target/contact_sum.h"
+#include "jobs/contact/target/contact_density.h"
 #include "jobs/contact/target/contact_target.h"
 #include "jobs/surface/surface_paths.h"
 #include <gsl/gsl_cdf.h>
@@ -306,7 +306,7 @@ static void put_bounds(const struct contact_answer *answer, const struct contact
                        struct curve_error errors[ERROR_SOURCES]) {
     for (enum error_source s = 0; s < ERROR_SOURCES; s++) {
         double *bound = bounds_of(answer, sum, s);
-        double *none = bound != NULL ? result_numbers(answer->result, answer->loads) : NULL;
+        double *none = bound != NULL ? result_numbers(answer->result, sum->points) : NULL;
         errors[s].applies = applies(answer, s) || bound != NULL;
         if (none != NULL) /* else the error is not known */
             errors[s] = (struct curve_error){.applies = true,
@@ -317,26 +317,57 @@ static void put_bounds(const struct contact_answer *answer, const struct contact
     }
 }
 
+/* Makes a curve of the model that is asked for. */
+static struct curve curve_of(const struct contact_answer *answer, const char *quantity,
+                             const char *x_label, const char *y_label) {
+    const struct contact_model *model = answer->model;
+    struct curve curve = curve_named(quantity, x_label, y_label);
+    curve.model = contact_model_name(model);
+    curve.kinematics = model->kinematics != NULL ? model->kinematics(answer->one_case) : NULL;
+    if (answer->named_mesh)
+        curve.level = contact_case_finest(answer->one_case)->points;
+    return curve;
+}
+
 /* Adds the curve of a measure of the model that is asked for. */
 static int put_curve(const struct contact_answer *answer, const struct contact_sum *sum,
                      const struct measure *measure, struct error *err) {
     const struct contact_case *one_case = answer->one_case;
-    const struct contact_model *model = answer->model;
     const char *label =
         measure_label(measure, UNIT_WAVE, one_case->surface.dimension, answer->result);
     double *loads = result_numbers(answer->result, answer->loads);
     if (loads == NULL || label == NULL)
         return error_memory(err, answer->loads * sizeof *loads, "loads");
-    struct curve curve = curve_named(measure->quantity, "p/(E* h'_rms)", label);
+    struct curve curve = curve_of(answer, measure->quantity, "p/(E* h'_rms)", label);
     memcpy(loads, one_case->loads, answer->loads * sizeof *loads);
     curve.series = measure->cell == CELL_SAME ? measure->series : "wave";
-    curve.model = contact_model_name(model);
-    curve.kinematics = model->kinematics != NULL ? model->kinematics(one_case) : NULL;
-    if (answer->named_mesh)
-        curve.level = contact_case_finest(one_case)->points;
     curve_set_points(&curve, answer->loads, loads, sum->value, sum->standard_error);
     put_bounds(answer, sum, curve.errors);
     return result_add_curve(answer->result, &curve, err);
+}
+
+/* Adds the densities of pressure at the loads that the study chooses. area: the sum by edges. */
+static int put_densities(const struct contact_answer *answer, const struct contact_sum *area,
+                         struct error *err) {
+    const struct contact_case *one_case = answer->one_case;
+    int status = 0;
+    for (size_t at = 0; at < one_case->pdf_count && status == 0; at++) {
+        struct contact_density density;
+        status = contact_density_create(answer, area, at, &density, err);
+        if (status != 0)
+            return status;
+        struct curve curve =
+            curve_of(answer, "contact_pressure_pdf", "local p/(E* h'_rms)", "probability density");
+        curve.pressure = one_case->loads[one_case->pdf_loads[at]];
+        curve.counted = true;
+        curve.underflow = density.below;
+        curve.overflow = density.above;
+        curve_set_points(&curve, density.sum.points, density.x, density.sum.value,
+                         density.sum.standard_error);
+        put_bounds(answer, &density.sum, curve.errors);
+        status = result_add_curve(answer->result, &curve, err);
+    }
+    return status;
 }
 
 /* --- scalars: the error reached, and the checks of the sum --- */
@@ -529,6 +560,7 @@ static int read_target(struct contact_answer *out, const cJSON *parameters, stru
                              TARGET_MEAN_GAP, NULL, err);
     /* a chosen mesh was taken out of the parameters, unless the surface depends on the grid */
     out->named_mesh = json_at(parameters, "/contact/levels") != NULL;
+    out->densities = json_at(parameters, "/contact/pressure_pdf/at") != NULL;
     const cJSON *name = json_at(parameters, "/contact/model");
     if (cJSON_IsArray(name))
         name = name->child;
@@ -591,6 +623,8 @@ static int answer_sums(const struct contact_answer *answer, double work, uint64_
         if (status == 0)
             status = put_curve(answer, &sums[measure], &MEASURES[measure], err);
     }
+    if (status == 0 && answer->densities)
+        status = put_densities(answer, &sums[MEASURE_EDGES], err);
     if (status == 0)
         status = plan_realisations(answer, &sums[asked], wanted, err);
     if (status == 0)

@@ -63,14 +63,12 @@ static void add_base(const struct contact_answer *answer, enum contact_measure m
     }
 }
 
-/* Adds to the bound of the cell the error of a value that was added at a load from a shorter
- * cell. */
-static void bound_added(const struct contact_answer *answer, enum role role, double share,
-                        double added, size_t load, struct contact_sum *sum) {
+void contact_sum_bound_added(const struct contact_answer *answer, enum role role, double share,
+                             double added, size_t point, struct contact_sum *sum) {
     const struct surface_case *own = &component_case(answer->of[role])->surface;
     if (own->length_ratio < component_case(answer->of[ROLE_BASE])->surface.length_ratio)
-        sum->cell[load] =
-            hypot(sum->cell[load],
+        sum->cell[point] =
+            hypot(sum->cell[point],
                   fmin(1, share / pow(surface_case_shorter(own), own->dimension)) * added);
 }
 
@@ -101,7 +99,7 @@ static void add_levels(const struct contact_answer *answer, enum contact_measure
         }
         sum->value[k] += scale * added;
         sum->variance[role][k] = component_variance(mesh, scale * standard_error);
-        bound_added(answer, role, LEVELS_CELL, scale * added, k, sum);
+        contact_sum_bound_added(answer, role, LEVELS_CELL, scale * added, k, sum);
     }
 }
 
@@ -122,7 +120,7 @@ static void take_off(const struct contact_answer *answer, enum role role, double
     sum->value[load] -= scale * cheap->value;
     sum->model[load] += fabs(scale) * cheap->bound;
     sum->model_standard_error[load] += fabs(scale) * cheap->bound_standard_error;
-    bound_added(answer, role, cell_share, scale * cheap->value, load, sum);
+    contact_sum_bound_added(answer, role, cell_share, scale * cheap->value, load, sum);
     sum->variance[role][load] = component_variance(answer->of[role], scale * cheap->standard_error);
 }
 
@@ -203,9 +201,9 @@ static int add_all(const struct contact_answer *answer, enum contact_measure mea
 
 /* --- the sum --- */
 
-static int sum_create(const struct contact_answer *answer, struct contact_sum *out,
-                      struct error *err) {
-    size_t n = answer->loads;
+int contact_sum_room(const struct contact_answer *answer, size_t points, struct contact_sum *out,
+                     struct error *err) {
+    size_t n = points;
     double **const arrays[] = {&out->base,
                                &out->value,
                                &out->standard_error,
@@ -227,6 +225,7 @@ static int sum_create(const struct contact_answer *answer, struct contact_sum *o
         *arrays[a] = room + a * n;
     for (size_t a = 0; a < ROLES; a++)
         out->variance[a] = room + (own + a) * n;
+    out->points = n;
     return 0;
 }
 
@@ -263,10 +262,10 @@ double contact_sum_bounds(const struct contact_answer *answer, const struct cont
 
 /* The interval includes the statistical error of the bound of the cell; the standard error is that
  * of the value alone. */
-static void finish_sum(const struct contact_answer *answer, struct contact_sum *sum) {
+void contact_sum_finish(const struct contact_answer *answer, struct contact_sum *sum) {
     struct target_part parts[ROLES];
     size_t count = contact_sum_parts(answer, sum, parts);
-    for (size_t k = 0; k < answer->loads; k++) {
+    for (size_t k = 0; k < sum->points; k++) {
         double all, variance;
         double quantile = target_quantile(&answer->target, count, parts, k, &all);
         sum->width[k] = quantile * all;
@@ -279,18 +278,18 @@ static void finish_sum(const struct contact_answer *answer, struct contact_sum *
 
 int contact_sum_create(const struct contact_answer *answer, enum contact_measure measure,
                        struct contact_sum *out, struct error *err) {
-    int status = sum_create(answer, out, err);
+    int status = contact_sum_room(answer, answer->loads, out, err);
     if (status == 0)
         status = add_all(answer, measure, out, err);
     if (status == 0)
-        finish_sum(answer, out);
+        contact_sum_finish(answer, out);
     return status;
 }
 
 int contact_sum_quotient(const struct contact_answer *answer, const struct contact_sum *dividend,
                          const struct contact_sum *divisor, struct contact_sum *out,
                          struct error *err) {
-    int status = sum_create(answer, out, err);
+    int status = contact_sum_room(answer, answer->loads, out, err);
     if (status != 0)
         return status;
     const double *const of[][2] = {{dividend->standard_error, divisor->standard_error},

@@ -16,9 +16,11 @@ enum role { ROLE_BASE, ROLE_CELL, ROLE_MESH, ROLE_FINE, ROLE_MODEL, ROLE_MODEL_M
 
 enum { CONTACT_LENGTHS_MOST = 4 };
 
-/* A measure of the answer, by load; the result owns all arrays. Measures that depend on the cell
- * are per longest wave (measure_factor). */
+/* A measure of the answer, by load, or its density of pressures, by bin (contact_density.h): these
+ * are its points. The result owns all arrays. Measures that depend on the cell are per longest wave
+ * (measure_factor). */
 struct contact_sum {
+    size_t points;
     double *value, *standard_error, *width; /* width: half of the interval at the confidence */
     double *base;                           /* of the base alone */
     double *mesh, *cell, *model, *solver;   /* bounds; 0 for a source without a component */
@@ -39,6 +41,7 @@ struct contact_answer {
     const struct contact_model *model;     /* the model that is asked for */
     bool named_mesh;                       /* the answer is for the finest level, not for the
                                             * limit */
+    bool densities;                        /* of pressure are asked for */
     size_t loads;
     struct case_result *result;
 };
@@ -97,6 +100,15 @@ double contact_heights_cell(const struct heights *heights);
 #define LEVELS_CELL 1.6
 #define MODELS_CELL 0.8
 
+/* Makes the arrays of a sum, all of zeros. */
+int contact_sum_room(const struct contact_answer *answer, size_t points, struct contact_sum *out,
+                     struct error *err);
+/* Sets the standard errors and widths of a sum from the variances of its components. */
+void contact_sum_finish(const struct contact_answer *answer, struct contact_sum *sum);
+/* Adds to the bound of the cell the error of a value that was added at a point from a shorter cell.
+ * share: LEVELS_CELL or MODELS_CELL. */
+void contact_sum_bound_added(const struct contact_answer *answer, enum role role, double share,
+                             double added, size_t point, struct contact_sum *sum);
 /* Sums a measure over the components, all of which have realisations. The arena of the result owns
  * the arrays. */
 int contact_sum_create(const struct contact_answer *answer, enum contact_measure measure,

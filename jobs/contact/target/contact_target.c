@@ -36,6 +36,7 @@ struct choices {
     const char *model; /* borrowed from the parameters */
     bool mesh, length, height, weighting, tolerance, transition;
     bool stiffness; /* is asked for */
+    bool densities; /* of pressure are asked for */
     bool profile;
     bool own_grid; /* the surface depends on the grid that it is generated on, which is kept */
     double ladder[LADDER_MOST];
@@ -122,6 +123,40 @@ static int put_estimators(cJSON *parameters) {
     return ERROR_MEMORY;
 }
 
+/* Returns the object of the densities, made where there is none; NULL: no memory. */
+static cJSON *densities_of(cJSON *parameters) {
+    static const char name[] = "pressure_pdf";
+    cJSON *contact = cJSON_GetObjectItemCaseSensitive(parameters, "contact");
+    cJSON *densities = cJSON_GetObjectItemCaseSensitive(contact, name);
+    return densities != NULL ? densities : cJSON_AddObjectToObject(contact, name);
+}
+
+/* Has a component count the differences of densities, where it has any. */
+static int put_pairs(cJSON *parameters, bool counted) {
+    cJSON *densities = densities_of(parameters);
+    cJSON_DeleteItemFromObjectCaseSensitive(densities, "pairs");
+    if (densities == NULL)
+        return ERROR_MEMORY;
+    return !counted || cJSON_AddStringToObject(densities, "pairs", "counted") != NULL
+               ? 0
+               : ERROR_MEMORY;
+}
+
+/* Writes out the load of the densities of a study that leaves it out: the highest. A case with
+ * loads of densities is one that answers them. */
+static int put_density_loads(cJSON *parameters) {
+    const cJSON *loads = json_at(parameters, "/contact/pressures/values");
+    const cJSON *last = cJSON_GetArrayItem(loads, cJSON_GetArraySize(loads) - 1);
+    cJSON *densities = densities_of(parameters);
+    if (json_at(densities, "/at") != NULL || last == NULL)
+        return 0;
+    cJSON *at = cJSON_CreateDoubleArray(&last->valuedouble, 1);
+    if (densities != NULL && at != NULL && cJSON_AddItemToObject(densities, "at", at))
+        return 0;
+    cJSON_Delete(at);
+    return ERROR_MEMORY;
+}
+
 /* A solution is within about a hundred times this of the exact one (contact_errors.c). That is a
  * tenth of the error asked for, a hundredth in squares. */
 static double tolerance_of(const struct choices *choices) {
@@ -179,6 +214,8 @@ static cJSON *variant_parameters(const struct study_case *one, const struct choi
         status = put(all, "contact", "generation_error", cJSON_CreateString("none"));
     if (status == 0)
         status = put_height(all, choices, variant);
+    if (status == 0 && choices->densities)
+        status = put_pairs(all, variant->both || variant->count > 1);
     if (status == 0)
         return all;
     cJSON_Delete(all);
@@ -324,6 +361,7 @@ static int read_choices(struct choices *out, const cJSON *document, const cJSON 
     out->tolerance = json_at(document, "/contact/tolerance") == NULL;
     const char *stiffness = cJSON_GetStringValue(json_at(document, "/contact/stiffness"));
     out->stiffness = stiffness != NULL && strcmp(stiffness, "measured") == 0;
+    out->densities = json_at(document, "/contact/pressure_pdf") != NULL;
     out->model = read_model(parameters, faults);
     out->profile = json_number_at(parameters, "/surface/dimension", 2) == 1;
     out->weighting = out->profile && json_at(document, "/contact/gap_weighting") == NULL;
@@ -431,8 +469,8 @@ int contact_target_expand(const cJSON *document, struct study_case *one, struct 
     if (status != 0 || faults->count > before)
         return status == ERROR_INPUT && faults->count > before ? 0 : status;
     one->components = array_create(COMPONENTS_MOST, sizeof *one->components);
-    if (one->components == NULL || add_all(one, &choices) != 0 ||
-        keep_named(one->parameters, &choices) != 0)
+    if (one->components == NULL || (choices.densities && put_density_loads(one->parameters) != 0) ||
+        add_all(one, &choices) != 0 || keep_named(one->parameters, &choices) != 0)
         return error_memory(err, COMPONENTS_MOST * sizeof *one->components, "components");
     return 0;
 }

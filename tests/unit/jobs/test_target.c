@@ -350,8 +350,9 @@ static void refuses_what_it_does_not_answer(void **state) {
     static const char *const REFUSED[][3] = {
         {",\"estimators\":[\"perimeter\"]", "/contact/estimators", "is for surfaces"},
         {",\"stiffness\":\"some\"", "/contact/stiffness", "measured"},
-        {",\"pressure_pdf\":{\"at\":[0.3]}", "/contact/pressure_pdf/at", "densities of pressure"},
-        {",\"pressure_pdf\":{\"bins\":[0,2,10]}", "/contact/pressure_pdf/bins", "leave it out"},
+        {",\"pressure_pdf\":{\"pairs\":\"omitted\"}", "/contact/pressure_pdf/pairs",
+         "leave it out, or take \"counted\""},
+        {",\"pressure_pdf\":{\"at\":[0.123]}", "/contact/pressure_pdf/at", "none of the study's"},
         {",\"cell_error\":\"none\"", "/contact/cell_error", "whose length is left out"},
         {",\"levels\":[4,8]", "/contact/levels", "give one level"}};
     for (size_t a = 0; a < sizeof REFUSED / sizeof *REFUSED; a++) {
@@ -384,6 +385,41 @@ static void measures_what_is_asked_for(void **state) {
             assert_string_equal(cJSON_GetStringValue(json_at(parameters, "/contact/stiffness")),
                                 ASKED[a][2]);
             cJSON_free(estimators);
+        }
+        study_destroy(&study);
+    }
+}
+
+static const char *text_at(const struct study_case *one, const char *path) {
+    return cJSON_GetStringValue(json_at(one->parameters, path));
+}
+
+/* Densities are answered where the study gives their loads or bins, and then at its highest load.
+ * Components with several models or levels count the differences. */
+static void counts_the_densities_that_are_asked_for(void **state) {
+    (void)state;
+    static const struct {
+        const char *contact, *at;
+    } ASKED[] = {{"", NULL},
+                 {",\"pressure_pdf\":{\"bins\":[0,2,10]}", "[0.3]"},
+                 {",\"pressure_pdf\":{\"at\":[0.1,0.2]}", "[0.1,0.2]"},
+                 {",\"pressure_pdf\":{\"at\":[0.2],\"pairs\":\"counted\"}", "[0.2]"}};
+    for (size_t a = 0; a < sizeof ASKED / sizeof *ASKED; a++) {
+        struct fault_list faults = {0};
+        struct study *study = read_study("", "", "\"full\"", ASKED[a].contact, &faults);
+        assert_non_null(study);
+        for (size_t c = 0; c < study->cases[0].component_count; c++) {
+            const struct study_case *one = &study->cases[0].components[c];
+            const cJSON *loads = json_at(one->parameters, "/contact/pressure_pdf/at");
+            bool counted = text_at(one, "/contact/pressure_pdf/pairs") != NULL;
+            bool several = cJSON_GetArraySize(json_at(one->parameters, "/contact/model")) > 1 ||
+                           cJSON_GetArraySize(json_at(one->parameters, "/contact/levels")) > 1;
+            char *text = loads != NULL ? cJSON_PrintUnformatted(loads) : NULL;
+            assert_int_equal(counted, several && ASKED[a].at != NULL);
+            assert_int_equal(text != NULL, ASKED[a].at != NULL);
+            if (text != NULL)
+                assert_string_equal(text, ASKED[a].at);
+            cJSON_free(text);
         }
         study_destroy(&study);
     }
@@ -422,6 +458,7 @@ int main(void) {
         cmocka_unit_test(keeps_the_shape_of_a_rectangle),
         cmocka_unit_test(refuses_what_it_does_not_answer),
         cmocka_unit_test(measures_what_is_asked_for),
+        cmocka_unit_test(counts_the_densities_that_are_asked_for),
         cmocka_unit_test(tells_faults),
         cmocka_unit_test(solves_the_nayak_parameter_once),
     };
