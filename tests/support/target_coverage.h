@@ -16,7 +16,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { COVERAGE_LOADS = 4 };
+enum { COVERAGE_LOADS = 4, COVERAGE_POINTS = 20 };
 
 /* What is pressed, and how far. */
 struct coverage_scene {
@@ -41,11 +41,11 @@ struct coverage_effort {
     const char *coarsest, *levels, *pair_levels; /* lists in JSON */
 };
 
-/* A curve, by load. */
+/* A curve, by load, or a density at one load, by bin. */
 struct coverage_points {
     int count;
-    double y[COVERAGE_LOADS], standard_error[COVERAGE_LOADS];
-    double bound[COVERAGE_LOADS];             /* root of the sum of squares of all bounds */
+    double x[COVERAGE_POINTS], y[COVERAGE_POINTS], standard_error[COVERAGE_POINTS];
+    double bound[COVERAGE_POINTS];            /* root of the sum of squares of all bounds */
     double reached, work, plain_work, length; /* of a study that asks; else NaN */
     double cpu_seconds;
 };
@@ -98,13 +98,14 @@ static inline bool coverage_read_curve(sqlite3 *db, const struct coverage_choice
         db,
         "y - coalesce((SELECT value" COVERAGE_ERRORS
         " AND e.source = 'discretisation'), 0), standard_error, (SELECT sum(bound * "
-        "bound)" COVERAGE_ERRORS " AND (source <> 'model' OR value = 0))",
+        "bound)" COVERAGE_ERRORS " AND (source <> 'model' OR value = 0)), x",
         choice);
-    for (out->count = 0; out->count < COVERAGE_LOADS && sqlite3_step(rows) == SQLITE_ROW;
+    for (out->count = 0; out->count < COVERAGE_POINTS && sqlite3_step(rows) == SQLITE_ROW;
          out->count++) {
         out->y[out->count] = sqlite3_column_double(rows, 0);
         out->standard_error[out->count] = sqlite3_column_double(rows, 1);
         out->bound[out->count] = sqrt(sqlite3_column_double(rows, 2));
+        out->x[out->count] = sqlite3_column_double(rows, 3);
     }
     sqlite3_finalize(rows);
     return out->count > 0;
@@ -123,7 +124,7 @@ static inline bool coverage_read_refinement(sqlite3 *db, const struct coverage_c
         "p.quantity AND c.model = p.model AND c.series = p.series AND c.x = p.x ORDER BY c.level "
         "LIMIT 1)",
         choice);
-    for (out->count = 0; out->count < COVERAGE_LOADS && sqlite3_step(rows) == SQLITE_ROW;
+    for (out->count = 0; out->count < COVERAGE_POINTS && sqlite3_step(rows) == SQLITE_ROW;
          out->count++) {
         double coarsest = sqlite3_column_double(rows, 3);
         out->y[out->count] = sqlite3_column_double(rows, 0) / coarsest;
@@ -144,7 +145,7 @@ static inline bool coverage_read_difference(sqlite3 *db, const struct coverage_c
         " AND e.source = 'model'), (SELECT e.bound" COVERAGE_ERRORS " AND e.source = 'model')",
         choice);
     bool known = true;
-    for (out->count = 0; out->count < COVERAGE_LOADS && sqlite3_step(rows) == SQLITE_ROW;
+    for (out->count = 0; out->count < COVERAGE_POINTS && sqlite3_step(rows) == SQLITE_ROW;
          out->count++) {
         double y = sqlite3_column_double(rows, 0);
         known = known && sqlite3_column_type(rows, 1) != SQLITE_NULL;

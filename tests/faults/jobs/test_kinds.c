@@ -28,7 +28,7 @@ static const char LINEAR[] =
     "2}},"
     " \"contact\": {\"model\": [\"layered\", \"halfspace\"],"
     " \"levels\": [2, 4], \"block_height\": {\"lengths\": 1}, \"pressures\": {\"values\": [0.1]},"
-    " \"pressure_pdf\": {\"at\": [0.1], \"bins\": [0.2, 1, 4]}}}";
+    " \"pressure_pdf\": {\"at\": [0.1], \"bins\": [0.2, 1, 4], \"pairs\": \"counted\"}}}";
 static const char FULL[] =
     "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 2, \"length_ratio\": 1,"
     " \"points_per_wavelength\": 4, \"rms_slope\": 0.3}, \"contact\": {\"model\": [\"full\"],"

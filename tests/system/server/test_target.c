@@ -1,6 +1,8 @@
 /* Protects: a study that asks for an error gives the same curves, to the bit, with any number of
  * workers, near or over HTTP, also where the program is killed between rounds and started again;
- * it reaches what it asks for, and says so where it cannot. */
+ * it reaches what it asks for, and says so where it cannot. Densities of pressure are among its
+ * curves; with what is above their bins they are the area. */
+#include "schema/json/json.h"
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include "tests/support/seed.h"
@@ -16,7 +18,8 @@ static uint64_t seed;
 static const char STUDY[] =
     "{\"name\":\"target\",\"kind\":\"contact\",\"seed\":5,\"target\":{\"error\":0.01},\"surface\":{"
     "\"dimension\":1,\"hurst\":[0.5,0.8],\"wavelength_ratio\":2,\"rms_slope\":0.1},\"contact\":{"
-    "\"model\":\"layered\",\"pressures\":{\"to\":0.2,\"steps\":2}}}";
+    "\"model\":\"layered\",\"pressures\":{\"to\":0.2,\"steps\":2},\"pressure_pdf\":{\"at\":[0.1],"
+    "\"bins\":[0,2,10]}}}";
 
 /* The first column of the first row. Whoever opens a database after a crash keeps others out for a
  * moment: the reader waits. */
@@ -238,6 +241,50 @@ static void cancelled_and_retried(void **state) {
     check_same("back.db");
 }
 
+/* Returns the curve of a quantity of the first case. */
+static const cJSON *curve_named_so(const cJSON *document, const char *quantity) {
+    const cJSON *curve;
+    cJSON_ArrayForEach(curve, json_at(document, "/cases/0/curves")) {
+        if (strcmp(cJSON_GetStringValue(json_at(curve, "/quantity")), quantity) == 0)
+            return curve;
+    }
+    fail_msg("no curve %s", quantity);
+    return NULL;
+}
+
+/* Bins up to a pressure that half of the area is above of: the rest is in the overflow. The area is
+ * corrected for the error of the mesh, within its bound; the density is not. */
+static void densities_end_with_their_bins(void **state) {
+    (void)state;
+    spit("cut.json",
+         "{\"name\":\"cut\",\"kind\":\"contact\",\"target\":{\"error\":0.05},\"surface\":{"
+         "\"dimension\":1,"
+         "\"hurst\":0.8,\"wavelength_ratio\":2,\"rms_slope\":0.1},\"contact\":{\"model\":"
+         "\"layered\","
+         "\"block_height\":{\"lengths\":1},\"pressures\":{\"values\":[0.1,0.2]},\"pressure_pdf\":{"
+         "\"bins\":[0.1,0.5,4]}}}");
+    assert_int_equal(run_rugo("cut", (const char *[]){"run", "--db", "cut.db", "cut.json", NULL}),
+                     0);
+    assert_int_equal(run_rugo("curves", (const char *[]){"curves", "--db", "cut.db", "cut", NULL}),
+                     0);
+    char *text = slurp("curves.out");
+    cJSON *document = cJSON_Parse(text);
+    const cJSON *density = curve_named_so(document, "contact_pressure_pdf");
+    const cJSON *area = curve_named_so(document, "contact_area"), *y;
+    double below = json_number_at(density, "/underflow", NAN);
+    double above = json_number_at(density, "/overflow", NAN), sum = below + above;
+    double all = json_number_at(area, "/y/1", NAN);
+    cJSON_ArrayForEach(y, json_at(density, "/y")) sum += 0.1 * y->valuedouble;
+    assert_int_equal(cJSON_GetArraySize(json_at(density, "/y")), 4);
+    check_close(json_number_at(density, "/pressure", NAN), 0.2, 0);
+    assert_true(above > 0.3 * all && below > 0.02 * all);
+    check_close(sum, all,
+                json_number_at(area, "/discretisation_bound/1", NAN) +
+                    json_number_at(area, "/model_bound/1", NAN) + 1e-6);
+    cJSON_Delete(document);
+    free(text);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(reaches_the_error),
@@ -246,6 +293,7 @@ int main(void) {
         cmocka_unit_test(killed_and_started_again),
         cmocka_unit_test(over_http),
         cmocka_unit_test(says_what_is_left),
+        cmocka_unit_test(densities_end_with_their_bins),
         cmocka_unit_test(generation_counts),
         cmocka_unit_test(cancelled_and_retried),
         cmocka_unit_test(statistics_reach_the_error),

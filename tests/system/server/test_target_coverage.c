@@ -1,6 +1,6 @@
 /* Protects: the answer of a study that asks for an error agrees within the reported error with
  * plain sampling on long cells and fine meshes: profiles and surfaces, Gaussian and other heights,
- * linear models and full. */
+ * linear models and full. So do its densities of pressure in every bin. */
 #include "tests/support/check.h"
 #include "tests/support/target_coverage.h"
 #include <math.h>
@@ -99,10 +99,111 @@ static void other_measures_are_within_what_is_told(void **state) {
     }
 }
 
+/* --- densities of pressure --- */
+
+#define DENSITY(at) ",\"pressure_pdf\":{\"at\":[" at "],\"bins\":[0,2,20]}"
+
+struct density_question {
+    const struct coverage_scene *scene;
+    const char *contact; /* of the study that asks */
+    const char *model, *density;
+    double load; /* of the density, which is the last of the scene */
+    int realisations, length;
+    const char *levels; /* these three: of the reference */
+};
+
+/* Reads the area by edges at the last load, and the density there, into out[2]. */
+static bool read_density(sqlite3 *db, const struct coverage_choice *choice,
+                         struct coverage_points *out) {
+    const struct coverage_choice area = {"contact_area", choice->model, "edges"};
+    return coverage_read_curve(db, &area, &out[0]) && coverage_read_curve(db, choice, &out[1]);
+}
+
+static void ask_density(const struct density_question *question, int seed,
+                        struct coverage_points out[2]) {
+    const struct coverage_choice choice = {"contact_pressure_pdf", question->model, ""};
+    char text[COVERAGE_TEXT], contact[COVERAGE_TEXT / 4];
+    snprintf(contact, sizeof contact, "%s%s", question->contact, question->density);
+    coverage_write_study(question->scene, seed, "\"target\":{\"error\":0.05}", "", contact, text);
+    assert_true(coverage_run_and_read(text, &choice, read_density, out));
+}
+
+/* By the half-space, which layers on infinitely high blocks equal. */
+static void refer_density(const struct density_question *question, struct coverage_points out[2]) {
+    static const struct coverage_choice CHOICE = {"contact_pressure_pdf", "halfspace", ""};
+    char text[COVERAGE_TEXT], how[64], surface[64], contact[COVERAGE_TEXT / 4];
+    snprintf(how, sizeof how, "\"realisations\":%d", question->realisations);
+    snprintf(surface, sizeof surface, ",\"length_ratio\":%d", question->length);
+    snprintf(contact, sizeof contact,
+             "\"model\":\"halfspace\",\"levels\":%s,\"tolerance\":1e-6,\"stiffness\":\"omitted\","
+             "\"cell_error\":\"none\"%s",
+             question->levels, question->density);
+    coverage_write_study(question->scene, COVERAGE_SEED, how, surface, contact, text);
+    assert_true(coverage_run_and_read(text, &CHOICE, read_density, out));
+}
+
+/* The integral is the area by edges at the last load, as no pressure is above the bins. The first
+ * moment is the load, but for centres of bins in place of the pressures within them: up to 0.6 % in
+ * studies of such bins. */
+static void check_moments(const struct density_question *question,
+                          const struct coverage_points out[2]) {
+    const struct coverage_points *area = &out[0], *density = &out[1];
+    double integral = 0, moment = 0, width = density->x[1] - density->x[0];
+    for (int b = 0; b < density->count; b++) {
+        integral += density->y[b] * width;
+        moment += density->x[b] * density->y[b] * width;
+    }
+    int last = area->count - 1;
+    check_close(integral, area->y[last], area->bound[last] + 1e-3 * area->y[last]);
+    check_relative(moment, question->load, 0.01);
+}
+
+/* At 95 % four of 80 bins miss what is reported; more than 10 of 80 independent ones do so twice in
+ * 1000 times. Bins are not independent, as their sum and first moment are known. */
+static void densities_are_within_what_is_told(void **state) {
+    (void)state;
+    static const struct coverage_scene SMOOTH = {GAUSSIAN, 1, 0.8, 4, "[0.1,0.2]"},
+                                       SHORT = {GAUSSIAN, 1, 0.8, 2, "[0.05,0.1]"},
+                                       LOW = {WEIBULL("2"), 1, 0.8, 4, "[0.1,0.2]"},
+                                       SURFACE = {GAUSSIAN, 2, 0.8, 2, "[0.1,0.2]"};
+    static const char HALFSPACE[] = "\"model\":\"halfspace\"", LAYERED[] = "\"model\":\"layered\"";
+    static const struct density_question QUESTIONS[] = {
+        {&SMOOTH, HALFSPACE, "halfspace", DENSITY("0.2"), 0.2, 100, 64, "[8,16]"},
+        {&SHORT, LAYERED, "layered", DENSITY("0.1"), 0.1, 100, 64, "[8,16]"},
+        {&LOW, HALFSPACE, "halfspace", DENSITY("0.2"), 0.2, 60, 128, "[8,16]"},
+        {&SURFACE, HALFSPACE, "halfspace", DENSITY("0.2"), 0.2, 12, 8, "[8,16]"}};
+    int bins = 0, covered = 0;
+    double told_most = 0;
+    for (int q = 0; q < 4; q++) {
+        struct coverage_points answer[2] = {{0}}, reference[2] = {{0}};
+        ask_density(&QUESTIONS[q], q + 1, answer);
+        refer_density(&QUESTIONS[q], reference);
+        check_moments(&QUESTIONS[q], answer);
+        assert_int_equal(answer[1].count, COVERAGE_POINTS);
+        assert_int_equal(reference[1].count, COVERAGE_POINTS);
+        double highest = 0;
+        for (int b = 0; b < COVERAGE_POINTS; b++)
+            highest = fmax(highest, answer[1].y[b]);
+        for (int b = 0; b < COVERAGE_POINTS; b++) {
+            double told = hypot(coverage_told(&answer[1], b), coverage_told(&reference[1], b));
+            bins++;
+            if (answer[1].y[b] > 0.9 * highest)
+                told_most = fmax(told_most, coverage_told(&answer[1], b) / answer[1].y[b]);
+            covered += fabs(answer[1].y[b] - reference[1].y[b]) <= told;
+        }
+    }
+    /* of the highest bins; errors that say nothing would cover all */
+    assert_true(told_most < 0.25);
+    print_message("highest bins within %.2g; %d of %d bins are within the reported errors\n",
+                  told_most, covered, bins);
+    assert_true(covered >= bins - 10);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(profiles_are_within_the_error),
                                        cmocka_unit_test(profiles_of_full_are_within_the_error),
                                        cmocka_unit_test(surfaces_are_within_the_error),
-                                       cmocka_unit_test(other_measures_are_within_what_is_told)};
+                                       cmocka_unit_test(other_measures_are_within_what_is_told),
+                                       cmocka_unit_test(densities_are_within_what_is_told)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
