@@ -171,6 +171,18 @@ static const char *linear_model(const struct choices *choices) {
     return limit ? "layered" : "halfspace";
 }
 
+/* Sets what a component estimates of errors, and the pairs that its differences need. */
+static int put_errors(cJSON *parameters, const struct choices *choices,
+                      const struct variant *variant) {
+    /* the components together estimate the error of the cell */
+    int status = put(parameters, "contact", "cell_error", cJSON_CreateString("none"));
+    if (status == 0 && !variant->generation)
+        status = put(parameters, "contact", "generation_error", cJSON_CreateString("none"));
+    if (status == 0 && choices->densities)
+        status = put_pairs(parameters, variant->both || variant->count > 1);
+    return status;
+}
+
 static cJSON *variant_parameters(const struct study_case *one, const struct choices *choices,
                                  const struct variant *variant) {
     const char *const models[] = {variant->both ? linear_model(choices) : "halfspace",
@@ -208,14 +220,10 @@ static cJSON *variant_parameters(const struct study_case *one, const struct choi
                      cJSON_CreateNumber(ladder[variant->count - 1]));
     if (status == 0 && choices->tolerance)
         status = put(all, "contact", "tolerance", cJSON_CreateNumber(tolerance_of(choices)));
-    if (status == 0) /* is estimated by the components together */
-        status = put(all, "contact", "cell_error", cJSON_CreateString("none"));
-    if (status == 0 && !variant->generation)
-        status = put(all, "contact", "generation_error", cJSON_CreateString("none"));
+    if (status == 0)
+        status = put_errors(all, choices, variant);
     if (status == 0)
         status = put_height(all, choices, variant);
-    if (status == 0 && choices->densities)
-        status = put_pairs(all, variant->both || variant->count > 1);
     if (status == 0)
         return all;
     cJSON_Delete(all);
