@@ -23,5 +23,10 @@ static inline double stretch_fraction(double fraction, double open) {
 static inline double stretch_first_order(double fraction, double open) {
     return open <= STRETCH_MOST ? stretch_fraction(fraction, open) : (double)NAN;
 }
+/* Returns the same of a map in free space, over its undeformed area: the part in contact shrinks,
+ * and no side holds what is around it. */
+static inline double stretch_free(double fraction, double open) {
+    return open <= STRETCH_MOST ? fraction - (open - 1) : (double)NAN;
+}
 
 #endif

@@ -1,5 +1,6 @@
 #include "jobs/contact/contact_case.h"
 #include "core/cost.h"
+#include "jobs/contact/companion/block_error.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -33,15 +34,7 @@ bool contact_case_stretches(const struct contact_case *one_case, size_t model) {
 }
 
 double contact_case_block_bound(const struct contact_case *one_case, size_t model) {
-    static const double SAFETY = 10;
-    /* 1 - (cosh 2x - 1)/(sinh 2x + 2x) (compliance.h), in a form without overflow and
-     * cancellation. */
-    double longest = surface_case_longest(&one_case->surface);
-    double x = 2 * M_PI * one_case->blocks[model].height / longest;
-    double falling = exp(-2 * x);
-    if (!(falling > 0))
-        return 0;
-    return SAFETY * 2 * falling * (1 + 2 * x - falling) / (1 - falling * falling + 4 * x * falling);
+    return block_bound(one_case->blocks[model].height, surface_case_longest(&one_case->surface));
 }
 
 void contact_case_clear(struct contact_case *one_case) {

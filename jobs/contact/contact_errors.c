@@ -165,14 +165,14 @@ bool contact_errors_model_change(const struct contact_tally *tally, enum contact
 
 /* --- solver, missing realisations --- */
 
-double contact_errors_solver(const struct contact_case *one_case, enum contact_measure measure) {
-    return one_case->tolerance * TOLERANCES[MEASURES[measure].solver];
+double contact_errors_solver(enum measure_solver solver, double tolerance) {
+    return tolerance * TOLERANCES[solver];
 }
 
 static bool solver_errors(const struct contact_tally *tally, enum contact_measure measure,
                           size_t model, struct contact_error *out) {
     const struct contact_case *one_case = tally->one_case;
-    double share = contact_errors_solver(one_case, measure);
+    double share = contact_errors_solver(MEASURES[measure].solver, one_case->tolerance);
     for (size_t k = 0; k < one_case->load_count; k++) {
         double y = finest_mean(tally, measure, model, k).value;
         out[k] = (struct contact_error){.value = 0 * y, .bound = share * fabs(y), .order = NAN};

@@ -11,6 +11,8 @@
  * and nothing in out, where nothing is known of the source. */
 bool contact_errors(const struct contact_tally *tally, enum contact_measure measure, size_t model,
                     enum error_source source, struct contact_error *out);
+/* Returns the bound of a solution's error over the value, for a tolerance of its solver. */
+double contact_errors_solver(enum measure_solver solver, double tolerance);
 /* Returns whether the source bears on a measure of a model. */
 bool contact_error_applies(const struct contact_tally *tally, enum contact_measure measure,
                            size_t model, size_t level, enum error_source source);
@@ -35,8 +37,6 @@ void contact_errors_bins(const struct contact_case *one_case, const struct estim
                          double *bound, double *standard_error);
 /* Raises each bound of n bins to those of the two bins on either side; NaN stays. */
 void contact_errors_near_bins(size_t n, double *bound);
-/* Returns the relative error of a measure by the tolerance of the solver. */
-double contact_errors_solver(const struct contact_case *one_case, enum contact_measure measure);
 /* Returns the relative error of a measure that finer levels of a model do not reduce. */
 double contact_errors_mesh_floor(const struct contact_case *one_case, enum contact_measure measure,
                                  size_t model);

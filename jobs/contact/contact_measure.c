@@ -17,10 +17,14 @@ static bool has_stretched(const struct contact_case *one_case) {
     return one_case->edges && contact_case_has_scale(one_case);
 }
 
+static double stretched(const struct measure_context *context, double edges, double open) {
+    return context->free_space ? stretch_free(edges, open) : stretch_first_order(edges, open);
+}
+
 /* One row a measure, in the order of their curves in a result:
  *
  *     name, shown, kept, value,
- *     quantity, series, label, theories, order, solver, field, load, cell, values
+ *     quantity, series, label, theories, order, solver, field, load, cell, values, over
  *
  * Words are those of measure.h without their first part. Shown is a condition on `one_case`
  * and `model`, kept one on `one_case`; the value is made of the variables of contact_measure. Fits
@@ -29,47 +33,51 @@ static bool has_stretched(const struct contact_case *one_case) {
 /* clang-format off */
 #define LIST(ROW)                                                                                  \
     ROW(EDGES, one_case->edges, true, stretch_fraction(area.edges, open_now),                      \
-        "contact_area", "edges", "A/A0", AREA, 2, SMOOTH, PRESSURE, FALLS, SAME, ALL)              \
+        "contact_area", "edges", "A/A0", AREA, 2, SMOOTH, PRESSURE, FALLS, SAME, ALL, AREA)        \
     ROW(EDGES_STRETCHED, has_stretched(one_case) && !contact_case_stretches(one_case, model),      \
         has_stretched(one_case),                                                                   \
-        context->scaled ? stretch_first_order(area.edges, pressed->open_stretch) : (double)NAN,    \
-        "contact_area", "edges_stretched", "A/A0", NONE, 2, SMOOTH, PRESSURE, FALLS, SAME, SOME)   \
+        context->scaled ? stretched(context, area.edges, pressed->open_stretch) : (double)NAN,     \
+        "contact_area", "edges_stretched", "A/A0", NONE,                                           \
+        2, SMOOTH, PRESSURE, FALLS, SAME, SOME, AREA)                                              \
     ROW(NODES, one_case->nodes, one_case->nodes, now * area.nodes,                                 \
-        "contact_area", "nodes", "A/A0", AREA, 1, COUNTED, PRESSURE, FALLS, SAME, ALL)             \
+        "contact_area", "nodes", "A/A0", AREA, 1, COUNTED, PRESSURE, FALLS, SAME, ALL, AREA)       \
     ROW(NODES_LOWER, one_case->nodes, false, now * area.lower,                                     \
-        "contact_area", "nodes_lower", "A/A0", AREA, 1, COUNTED, PRESSURE, FALLS, SAME, SOME)      \
+        "contact_area", "nodes_lower", "A/A0", AREA,                                               \
+        1, COUNTED, PRESSURE, FALLS, SAME, SOME, AREA)                                             \
     ROW(NODES_UPPER, one_case->nodes, false, now * area.upper,                                     \
-        "contact_area", "nodes_upper", "A/A0", AREA, 1, COUNTED, PRESSURE, FALLS, SAME, SOME)      \
+        "contact_area", "nodes_upper", "A/A0", AREA,                                               \
+        1, COUNTED, PRESSURE, FALLS, SAME, SOME, AREA)                                             \
     ROW(PERIMETER, one_case->perimeter, one_case->perimeter,                                       \
         stretch_fraction(area.perimeter, open_now),                                                \
-        "contact_area", "perimeter", "A/A0", AREA, 1, COUNTED, PRESSURE, FALLS, SAME, SOME)        \
+        "contact_area", "perimeter", "A/A0", AREA, 1, COUNTED, PRESSURE, FALLS, SAME, SOME, AREA)  \
     ROW(GAP, true, true, area.mean_gap / context->rms_height,                                      \
-        "mean_gap", "", "mean gap/sqrt(m0)", GAP, 2, SMOOTH, GAP, STAYS, SAME, ALL)                \
+        "mean_gap", "", "mean gap/sqrt(m0)", GAP, 2, SMOOTH, GAP, STAYS, SAME, ALL, HEIGHT)        \
     ROW(STIFFNESS, one_case->stiffness, true,                                                      \
         limited(state->stiffness * context->rms_height / context->rms_slope),                      \
-        "stiffness", "", "K sqrt(m0)/(E* h'_rms)", NONE, 2, COUNTED, GAP, FALLS, SAME, REPORTED)   \
+        "stiffness", "", "K sqrt(m0)/(E* h'_rms)", NONE,                                           \
+        2, COUNTED, GAP, FALLS, SAME, REPORTED, STIFFNESS)                                         \
     ROW(PATCHES, true, false, (double)patches.count,                                               \
-        "patch_count", "cell", "patches", NONE, 1, COUNTED, PRESSURE, STAYS, GROWS, SOME)          \
+        "patch_count", "cell", "patches", NONE, 1, COUNTED, PRESSURE, STAYS, GROWS, SOME, ONE)     \
     ROW(PATCH_MEAN, true, false, now * patches.mean / context->points,                             \
         "patch_mean_area", "", "mean patch", NONE,                                                 \
-        1, COUNTED, PRESSURE, FALLS, SHRINKS, SOME)                                                \
+        1, COUNTED, PRESSURE, FALLS, SHRINKS, SOME, AREA)                                          \
     ROW(PATCH_LARGEST, true, false, now * (double)patches.largest / context->points,               \
         "patch_largest_area", "", "largest patch/cell", NONE,                                      \
-        1, COUNTED, PRESSURE, FALLS, UNLIMITED, SOME)                                              \
+        1, COUNTED, PRESSURE, FALLS, UNLIMITED, SOME, AREA)                                        \
     ROW(KAPPA, false, false, NAN,                                                                  \
-        NULL, "", NULL, NONE, 2, SMOOTH, PRESSURE, STAYS, SAME, SOME)                              \
+        NULL, "", NULL, NONE, 2, SMOOTH, PRESSURE, STAYS, SAME, SOME, ONE)                         \
     ROW(POWER_LAW_A, false, false, NAN,                                                            \
-        NULL, "", NULL, NONE, 2, SMOOTH, PRESSURE, STAYS, SAME, SOME)                              \
+        NULL, "", NULL, NONE, 2, SMOOTH, PRESSURE, STAYS, SAME, SOME, ONE)                         \
     ROW(POWER_LAW_B, false, false, NAN,                                                            \
-        NULL, "", NULL, NONE, 2, SMOOTH, PRESSURE, STAYS, SAME, SOME)                              \
+        NULL, "", NULL, NONE, 2, SMOOTH, PRESSURE, STAYS, SAME, SOME, ONE)                         \
     ROW(ITERATIONS, true, false, (double)state->iterations,                                        \
-        "iterations", "", "iterations", NONE, 1, COUNTED, NONE, STAYS, SAME, ALL)                  \
+        "iterations", "", "iterations", NONE, 1, COUNTED, NONE, STAYS, SAME, ALL, ONE)             \
     ROW(WORK, true, false, state->work / context->points,                                          \
-        "work", "", "points x transforms", NONE, 1, COUNTED, NONE, STAYS, POINT, SOME)             \
+        "work", "", "points x transforms", NONE, 1, COUNTED, NONE, STAYS, POINT, SOME, ONE)        \
     ROW(VIOLATION, false, false, state->violation,                                                 \
-        NULL, "", NULL, NONE, 1, COUNTED, NONE, STAYS, SAME, SOME)                                 \
+        NULL, "", NULL, NONE, 1, COUNTED, NONE, STAYS, SAME, SOME, ONE)                            \
     ROW(PENETRATION, false, false, state->penetration,                                             \
-        NULL, "", NULL, NONE, 1, COUNTED, NONE, STAYS, SAME, SOME)
+        NULL, "", NULL, NONE, 1, COUNTED, NONE, STAYS, SAME, SOME, ONE)
 #define CONDITIONS(name, shown, kept, ...)                                                         \
     static bool shown_##name(const struct contact_case *one_case, size_t model) {                  \
         (void)one_case, (void)model;                                                               \
@@ -82,10 +90,10 @@ static bool has_stretched(const struct contact_case *one_case) {
 LIST(CONDITIONS)
 
 #define MEMBERS(name, shown, kept, value, quantity, series, label, theories, order, solver, field, \
-                load, cell, values)                                                                \
+                load, cell, values, over)                                                          \
     [MEASURE_##name] = {quantity, series, label, shown_##name, kept_##name, order,                 \
                         THEORIES_##theories, SOLVER_##solver, FIELD_##field,                       \
-                        LOAD_##load, CELL_##cell, VALUES_##values},
+                        LOAD_##load, CELL_##cell, VALUES_##values, OVER_##over},
 const struct measure MEASURES[MEASURE_COUNT] = {LIST(MEMBERS)};
 /* clang-format on */
 

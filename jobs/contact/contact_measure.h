@@ -16,6 +16,7 @@ struct measure_context {
     double points;                /* of the grid */
     double rms_slope, rms_height; /* of the prescribed spectrum */
     bool scaled;                  /* the surface has a scale */
+    bool free_space;              /* the grid is a map in free space, no cell of fixed sides */
 };
 /* Fills all measures but the fits. */
 void contact_measure(const struct measure_context *context, const struct contact_pressed *pressed,

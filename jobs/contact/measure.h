@@ -44,6 +44,9 @@ enum measure_load { LOAD_STAYS, LOAD_FALLS };
 /* What it is in a cell n times as large: the same; n times it; an nth of it; without a limit in
  * large cells; or the same for each point of the grid, and its curve is for all points. */
 enum measure_cell { CELL_SAME, CELL_GROWS, CELL_SHRINKS, CELL_UNLIMITED, CELL_POINT, CELL_KINDS };
+/* What its value is over: 1, the area of the cell, E* h', the RMS height, or the stiffness
+ * E* h'/RMS height. By it a value is taken from one map to another under the same force. */
+enum measure_over { OVER_ONE, OVER_AREA, OVER_PRESSURE, OVER_HEIGHT, OVER_STIFFNESS, OVER_KINDS };
 /* Which solved realisations have a value: some; all, or a partial result is refused; some, and its
  * curve reports how many have none. */
 enum measure_values { VALUES_SOME, VALUES_ALL, VALUES_REPORTED };
@@ -64,6 +67,7 @@ struct measure {
     enum measure_load load;
     enum measure_cell cell;
     enum measure_values values;
+    enum measure_over over;
 };
 /* Measures of the models have no rows: they are zero. */
 extern const struct measure MEASURES[MEASURE_COUNT];

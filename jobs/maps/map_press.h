@@ -1,8 +1,9 @@
 /* The contact of one measured map with a rigid flat, load by load, by any of the models of contact
- * (jobs/contact/model/model.h). Its measures are those of studies, and a few that one solution
- * alone has.
+ * (jobs/contact/model/model.h), one after the other. Its measures are those of studies, and a few
+ * that one solution alone has.
  *
- * Life: {0} -> begin (a map) -> load (rising) ... -> release -> clear. */
+ * Life: {0} -> begin (a map) -> lift (a model) -> load (rising) ... -> lift (the next) ... ->
+ * release -> clear. map_press_loads lifts and loads. */
 #ifndef RUGO_JOBS_MAPS_MAP_PRESS_H
 #define RUGO_JOBS_MAPS_MAP_PRESS_H
 
@@ -15,56 +16,60 @@ enum press_boundary { PRESS_OPEN, PRESS_MIRRORED, PRESS_PERIODIC };
 
 struct press_block {
     const struct contact_model *model;
-    enum press_boundary boundary;
     double poisson;
     double lengths; /* height of the block in lengths of the map as it is pressed; 0: the model's */
+    double tolerance; /* of a solution, as in studies; 0: the model's */
 };
 
-/* What is known of one load; lengths over the RMS height h, pressures over E* h', areas over the
- * map's; NaN where the model does not give them. */
+/* Values of a load have the numbers of the measures of studies and of the model's own; these
+ * follow. Lengths are over the RMS height h, pressures over E* h', areas over the map's. */
 enum press_value {
-    PRESS_LOAD,
-    PRESS_EDGES,
-    PRESS_NODES,
-    PRESS_LOWER,
-    PRESS_UPPER,
-    PRESS_PERIMETER,
+    PRESS_LOAD = MEASURE_COUNT,
     PRESS_PEAK,
     PRESS_APPROACH,
-    PRESS_MEAN_GAP,
-    PRESS_STIFFNESS,
-    PRESS_PATCHES,
     PRESS_CONTACT_NODES,
-    PRESS_ITERATIONS,
     PRESS_VIOLATION,
     PRESS_VALUES
 };
-/* The unit of a value, by which it is taken from one map to another. */
-enum press_unit { PRESS_NUMBER, PRESS_SHARE, PRESS_PRESSURE, PRESS_LENGTH };
-struct press_column {
-    const char *heading;          /* in tables for people */
-    const char *key;              /* in JSON */
-    const char *y_label;          /* of its curve */
-    enum contact_measure measure; /* MEASURE_OWN: none of a study's */
-    enum press_unit unit;
-    bool uncertain; /* its error by the points is estimated (map_press_error.h) */
-};
-extern const struct press_column PRESS_COLUMNS[PRESS_VALUES];
+/* Returns what a value is, but for the model's own: its curve, its unit and how it errs. */
+const struct measure *press_measure(size_t value);
 
+/* A column of tables and of JSON documents. */
+struct press_column {
+    const char *heading; /* in tables for people */
+    const char *key;     /* in JSON */
+    size_t value;
+    bool fold;      /* tables for people may start a line here */
+    bool uncertain; /* its errors stand in tables for people */
+};
+enum { PRESS_COLUMN_COUNT = 15 };
+extern const struct press_column PRESS_COLUMNS[PRESS_COLUMN_COUNT];
+
+/* (reported - true) lies within value +- bound; NaN: not known. */
+struct press_error {
+    double value, bound;
+};
 /* One load. */
 struct press_row {
-    double value[PRESS_VALUES];
-    double error[PRESS_VALUES];      /* by the points; NaN: not known */
-    double measured[MEASURE_OWN];    /* all measures of studies, of the map */
-    double own[MODEL_MEASURES_MOST]; /* the model's own measures; NaN: none */
+    double value[PRESS_VALUES];                            /* NaN: none */
+    struct press_error error[ERROR_SOURCES][PRESS_VALUES]; /* map_press_error.h */
+};
+/* All loads of one model. */
+struct press_series {
+    struct press_block block;
+    double height;          /* of the block, in the map's length */
+    double tolerance;       /* of the solutions */
+    double full_contact;    /* least mean pressure of full contact, E*; NaN: not known */
+    struct press_row *rows; /* borrowed: room for all loads */
 };
 
 struct map_press {
-    struct grid map;              /* as it was measured */
-    struct grid grid;             /* as it is pressed: mirrored 2nx x 2ny */
-    double copies;                /* of the map in that */
-    double slope, height;         /* RMS, of the map */
-    double full_contact;          /* least mean pressure of full contact, E*; NaN: not known */
+    struct grid map;      /* as it was measured */
+    struct grid grid;     /* as it is pressed: mirrored 2nx x 2ny */
+    double copies;        /* of the map in that */
+    double slope, height; /* RMS, of the map */
+    enum press_boundary boundary;
+    double full_contact;          /* as of a series, of the model that was lifted last */
     struct contact_state state;   /* under the last load, on the grid as it is pressed */
     struct contact_case one_case; /* of the one model, as its functions need it */
     struct compliance *compliance;
@@ -73,22 +78,26 @@ struct map_press {
     struct patch_finder *patches;
 };
 
-/* Takes the map, which is mirrored where it is to be, and lifts it off; heights are to be whole.
- * ERROR_INPUT for a map without slopes, and for what the model or the boundary does not allow.
- * *press, {0} at first, is cleared by the caller in any case. */
-int map_press_begin(struct map_press *press, struct height_map *map,
-                    const struct press_block *block, struct error *err);
+/* Returns ERROR_INPUT where the model does not press a map with this boundary. */
+int map_press_check(enum press_boundary boundary, const struct contact_model *model,
+                    struct error *err);
+/* Takes the map, which is mirrored where it is to be; heights are to be whole. ERROR_INPUT for a
+ * map without slopes. *press, {0} at first, is cleared by the caller in any case. */
+int map_press_begin(struct map_press *press, struct height_map *map, enum press_boundary boundary,
+                    struct error *err);
 void map_press_clear(struct map_press *press);
+/* Puts a block over the map, out of contact, in place of the one before. z: heights as they are
+ * pressed. ERROR_INPUT for what the model or the boundary does not allow. */
+int map_press_lift(struct map_press *press, const double *z, const struct press_block *block,
+                   struct error *err);
 /* Frees the solver and the state; what is known of the map stays. */
 void map_press_release(struct map_press *press);
 /* Presses to a mean pressure in E*. Errors of the row are NaN. */
 int map_press_load(struct map_press *press, double pressure, struct press_row *row,
                    struct error *err);
-
-/* Appends a curve for each column, in their order, to *out, {0} at first, which the caller clears
- * in any case: x is the load, and the error of discretisation is a bound. Measures that
- * studies show beside follow, and the model's own curves. ERROR_MEMORY. */
-int map_press_result(struct case_result *out, const struct map_press *press, size_t loads,
-                     const struct press_row *rows, struct error *err);
+/* Lifts the block of a series and presses it to all loads. On failure the rows from that load on
+ * have no values. */
+int map_press_loads(struct map_press *press, const double *z, size_t loads, const double *pressures,
+                    struct press_series *series, struct error *err);
 
 #endif

@@ -1,17 +1,30 @@
-/* What the points of a map do to its contact: the change from every second point. */
+/* The errors of the contact of one map by source, as of a study's case (schema/result/result.h).
+ *
+ * What each source is estimated from:
+ * discretisation: the change from every second point along each axis, under the same force. It is
+ *     the error where that falls with the spacing, more where it falls faster. At single loads the
+ *     change may vanish.
+ * block: the pair of an exact layer and a half-space on the map, where the block is low
+ *     (block_error.h).
+ * model: the difference to the most complete of the models asked for; of this one, where it is
+ *     linear, the area's first order of sideways strain (FORMULAS.md, F14.5).
+ * solver: a multiple of the tolerance (contact_errors.h).
+ *
+ * One map has no error of sampling, and nothing is known of its cell and its generation. */
 #ifndef RUGO_JOBS_MAPS_MAP_PRESS_ERROR_H
 #define RUGO_JOBS_MAPS_MAP_PRESS_ERROR_H
 
 #include "jobs/maps/map_press.h"
 
-/* Presses the map with every second point along each axis under the same forces, and fills errors
- * of the uncertain columns with the size of the change: the error itself where it falls with the
- * spacing, more than it where it falls faster. All others are NaN, as are those of maps that cannot
- * be thinned (fewer than 16 points along a side, of a periodic one an odd number) or whose coarse
- * contact is not found. press may be released; pressures are the loads, in E*. ERROR_MEMORY
- * alone. */
-int map_press_error(const struct map_press *press, const struct height_map *map,
-                    const struct press_block *block, size_t loads, const double *pressures,
-                    struct press_row *rows, struct error *err);
+/* Returns whether a source bears on a value of series m of so many. */
+bool map_press_applies(size_t count, const struct press_series *series, size_t m, size_t value,
+                       enum error_source source);
+/* Fills the errors of all series. What needs every second point is not known of maps that cannot be
+ * thinned (fewer than 16 points along a side, of a periodic one an odd number), nor of loads whose
+ * coarse contact is not found. map: as it is pressed. press may be released; pressures are the
+ * loads, in E*. ERROR_MEMORY alone. */
+int map_press_error(const struct map_press *press, const struct height_map *map, size_t count,
+                    const struct press_series *series, size_t loads, const double *pressures,
+                    struct error *err);
 
 #endif

@@ -103,16 +103,37 @@ static void write_models(const char *between, const char *last, char *text, size
 }
 
 void option_argument(const struct option_row *row, char *text, size_t size) {
-    if (row->type == OPTION_MODEL)
+    if (row->type == OPTION_MODELS)
         write_models("|", "|", text, size);
     else
         snprintf(text, size, "%s", row->argument != NULL ? row->argument : "");
 }
 
-static int refuse_model(const char *command, const struct option_row *row, const char *text) {
+bool models_find(const char *text, int places[CONTACT_MODELS_MOST], size_t *count) {
+    *count = 0;
+    for (;; text++) {
+        const struct choice *choice = CONTACT_MODEL_CHOICES;
+        size_t length = strcspn(text, ",");
+        while (choice->name != NULL &&
+               !(strlen(choice->name) == length && strncmp(choice->name, text, length) == 0))
+            choice++;
+        if (choice->name == NULL)
+            return false;
+        for (size_t m = 0; m < *count; m++)
+            if (places[m] == choice->value)
+                return false;
+        places[(*count)++] = choice->value;
+        text += length;
+        if (*text == '\0')
+            return true;
+    }
+}
+
+static int refuse_models(const char *command, const struct option_row *row, const char *text) {
     char names[200];
     write_models(", ", " or ", names, sizeof names);
-    return usage_error(command, "--%s %.40s is not %s", row->name, text, names);
+    return usage_error(command, "--%s %.40s is not %s, nor several of them with commas between",
+                       row->name, text, names);
 }
 
 static int refuse_choice(const char *command, const struct option_row *row, const char *text) {
@@ -145,14 +166,15 @@ static int take_value(const char *command, const struct option_row *row, void *v
                       const char *text) {
     void *value = (char *)values + row->at;
     int64_t whole = 0;
-    int choice = 0;
+    int choice = 0, places[CONTACT_MODELS_MOST];
+    size_t models;
     switch (row->type) {
     case OPTION_FLAG:
         *(bool *)value = true;
         return 0;
-    case OPTION_MODEL:
-        if (choice_find(CONTACT_MODEL_CHOICES, text) == NULL)
-            return refuse_model(command, row, text);
+    case OPTION_MODELS:
+        if (!models_find(text, places, &models))
+            return refuse_models(command, row, text);
         *(const char **)value = text;
         return 0;
     case OPTION_TEXT:

@@ -2,13 +2,14 @@
 #ifndef RUGO_SERVER_COMMAND_OPTIONS_H
 #define RUGO_SERVER_COMMAND_OPTIONS_H
 
+#include "jobs/contact/model/model.h"
 #include <stdbool.h>
 #include <stddef.h>
 
 enum option_type { /* what a value becomes; where it has no default and is not given: */
                    OPTION_FLAG,   /* bool; false */
                    OPTION_TEXT,   /* const char *, borrowed from argv or the table; NULL */
-                   OPTION_MODEL,  /* const char *, a name of CONTACT_MODEL_CHOICES; NULL */
+                   OPTION_MODELS, /* const char *, names that models_find reads; NULL */
                    OPTION_COUNT,  /* unsigned in [low, high]; 0 */
                    OPTION_INDEX,  /* int64_t, 0 or more; -1 */
                    OPTION_PAIR,   /* int64_t[2], each 0 or more, given as "1 0" or "1,0"; -1 */
@@ -44,6 +45,10 @@ __attribute__((format(printf, 2, 3))) int usage_error(const char *command, const
 /* A text of numbers with commas between, rising and above 0; false where it is not that, or more
  * than `most`. */
 bool rising_numbers(const char *text, size_t most, double *out, size_t *count);
+
+/* Finds the models of a text of their names with commas between, each once; false where it is not
+ * that. places: of CONTACT_MODELS. */
+bool models_find(const char *text, int places[CONTACT_MODELS_MOST], size_t *count);
 
 /* Returns whether `name` is nearer than *best to what was typed (letters changed, left out, put in
  * or swapped): *best, 3 at first, becomes its distance. What is typed whole in `name` is near. */

@@ -3,6 +3,7 @@
  * and differ by the height alone, of which they estimate the error. The half-space is also compared
  * with surfaces of another length (companion_cell.c) and with those of alternative generators
  * (companion_generation.c). */
+#include "jobs/contact/companion/block_error.h"
 #include "jobs/contact/companion/companion.h"
 #include "jobs/contact/model/model_linear.h"
 #include <stdlib.h>
@@ -13,12 +14,6 @@ static const struct subset LOW_BLOCKS = {16, 1, 4};
 /* Else they are as few as the error of the cell needs: this is their time over that of the case
  * without. */
 static const double TIME_SHARE = 0.02;
-/* With a larger bound of its relative change (contact_case_block_bound) the error of the height is
- * estimated. */
-static const double BLOCK_LOW = 1e-4;
-/* The relative error of the block is that of a half-space on a coarse mesh; for other models and
- * meshes it holds within this part of itself. */
-static const double BLOCK_MARGIN = 0.25;
 /* The half-space, and a layer for each model. */
 enum { BLOCKS_MOST = CONTACT_MODELS_MOST + 1 };
 
@@ -47,8 +42,7 @@ static size_t first_of_height(const struct contact_case *one_case, size_t number
 static size_t twin_of(const struct contact_case *one_case, const struct companion_plan *plan) {
     size_t m = 0;
     while (m < one_case->model_count &&
-           (one_case->models[m]->press != linear_press ||
-            one_case->blocks[m].model != MODEL_HALFSPACE || isfinite(one_case->blocks[m].height)))
+           (!linear_is_exact(one_case->models[m]) || isfinite(one_case->blocks[m].height)))
         m++;
     return plan->level.grid.nx == one_case->levels[0].grid.nx ? m : one_case->model_count;
 }
@@ -106,7 +100,7 @@ static void set_pairs(const struct contact_case *one_case, struct companion_plan
 static bool probe_plan(const struct contact_case *one_case, struct companion_plan *out) {
     bool low = false;
     for (size_t m = 0; m < one_case->model_count; m++)
-        low = low || contact_case_block_bound(one_case, m) > BLOCK_LOW;
+        low = low || block_is_low(contact_case_block_bound(one_case, m));
     if (!low && !contact_case_has(one_case, COMPANION_LONGER) &&
         !contact_case_has(one_case, COMPANION_SHORTER))
         return false;
@@ -193,17 +187,13 @@ static bool probe_errors(const struct contact_tally *tally, enum contact_measure
     double bound = contact_case_block_bound(one_case, model);
     for (size_t k = 0; k < one_case->load_count; k++) {
         double y = contact_mean(tally, measure, model, one_case->level_count - 1, k).value;
-        if (bound <= BLOCK_LOW) { /* practically infinitely high */
-            out[k] = (struct contact_error){.value = 0 * y, .bound = bound * fabs(y), .order = NAN};
+        if (!block_is_low(bound)) {
+            out[k] = block_error_high(y, bound);
             continue;
         }
         struct estimate change = contact_tally_pair(tally, COMPANION_PROBE, model, measure, k);
         double block = contact_tally_companion(tally, COMPANION_PROBE, model + 1, measure, k).value;
-        double scale = block != 0 ? y / block : (double)NAN;
-        out[k] = (struct contact_error){.value = scale * change.value,
-                                        .bound = BLOCK_MARGIN * fabs(scale * change.value),
-                                        .standard_error = fabs(scale) * change.standard_error,
-                                        .order = NAN};
+        out[k] = block_error_low(y, block, change);
     }
     return true;
 }

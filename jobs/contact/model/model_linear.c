@@ -58,3 +58,14 @@ int linear_press(struct contact_solver *solver, double pressure, struct contact_
 double linear_full_pressure(const struct contact_solver *solver) {
     return contact_full_pressure(solver->contact);
 }
+
+bool linear_is_exact(const struct contact_model *model) {
+    return model->press == linear_press && model->block == MODEL_HALFSPACE;
+}
+
+const struct contact_model *linear_exact(void) {
+    size_t m = 0;
+    while (CONTACT_MODELS[m] != NULL && !linear_is_exact(CONTACT_MODELS[m]))
+        m++;
+    return CONTACT_MODELS[m];
+}

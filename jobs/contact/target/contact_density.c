@@ -254,8 +254,8 @@ static void bound_named_mesh(struct summing *summing) {
  * points do. */
 static void bound_solver(struct summing *summing) {
     struct contact_sum *sum = &summing->out->sum;
-    const double share =
-        contact_errors_solver(component_case(summing->answer->of[ROLE_BASE]), MEASURE_NODES);
+    const struct contact_case *base = component_case(summing->answer->of[ROLE_BASE]);
+    const double share = contact_errors_solver(MEASURES[MEASURE_NODES].solver, base->tolerance);
     for (size_t b = 0; b < summing->bins; b++)
         sum->solver[b] = share * fabs(sum->value[b]);
     contact_errors_near_bins(summing->bins, sum->solver);

@@ -18,7 +18,7 @@ static void print_option(FILE *file, const struct option_row *row, const void *v
     if (row->type == OPTION_COUNT) {
         snprintf(number, sizeof number, "%u", *(const unsigned *)value);
         alone[0] = number;
-    } else if (row->type == OPTION_TEXT || row->type == OPTION_MODEL) {
+    } else if (row->type == OPTION_TEXT || row->type == OPTION_MODELS) {
         alone[0] = *(const char *const *)value;
     } else if (row->type == OPTION_LIST) {
         texts = *(const char *const *const *)value;

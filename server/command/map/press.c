@@ -1,6 +1,8 @@
 /* rugo press FILE: the contact of a height map in a file with a rigid flat. */
 #include "core/map/height_map_file.h"
+#include "jobs/maps/map_press_curves.h"
 #include "jobs/maps/map_press_error.h"
+#include "schema/result/csv.h"
 #include "schema/result/result_json.h"
 #include "schema/study/parameter.h"
 #include "server/command/command.h"
@@ -114,6 +116,11 @@ static int write_mesh(const char *path, const struct fields *fields, const char 
     return output_file_close(file, path, status, err);
 }
 
+static bool are_asked(const struct press_paths *paths) {
+    return paths->pressures != NULL || paths->gap != NULL || paths->contact != NULL ||
+           paths->mesh != NULL;
+}
+
 /* Writes the part of the map that was measured: pressures are over E* h' times `unit`, gaps in the
  * map's length, contact is 1 or 0. z: heights as they were pressed. */
 static int press_files_write(const struct press_paths *paths, const struct map_press *press,
@@ -124,8 +131,7 @@ static int press_files_write(const struct press_paths *paths, const struct map_p
     const char *const list[DRAWN_FIELDS] = {NULL, paths->pressures, paths->gap, paths->contact};
     char pressure[40];
     const char *const names[DRAWN_FIELDS] = {"z", pressure, "gap", "contact"};
-    if (paths->pressures == NULL && paths->gap == NULL && paths->contact == NULL &&
-        paths->mesh == NULL)
+    if (!are_asked(paths))
         return 0;
     struct fields fields = {press, z, unit / press->slope,
                             array_create(DRAWN_FIELDS * n, sizeof(double))};
@@ -151,7 +157,8 @@ enum { CONTACT_NODES_FEW = 50 };
 
 struct press_options {
     const char *model;
-    double lengths; /* height of the block in lengths of the map, 0: not given */
+    double lengths;   /* height of the block in lengths of the map, 0: not given */
+    double tolerance; /* likewise */
     int boundary, format, without_error;
     struct press_words words;
     struct press_paths paths;
@@ -173,15 +180,19 @@ static const struct option_row OPTIONS[] = {
      "Young's modulus of the block, such as 210GPa: results in physical units"},
     {"effective-modulus", 0, OPTION_TEXT, 0, 0, AT(words.effective_modulus), "E*", NULL,
      "in place of it: E* = E/(1 - nu^2), or that of two elastic bodies"},
-    {"model", 0, OPTION_MODEL, 0, 0, AT(model), "MODEL", "halfspace", "what the block is made of"},
+    {"model", 0, OPTION_MODELS, 0, 0, AT(model), "MODEL", "halfspace",
+     "what the block is made of; of several, with commas between, the differences to the most "
+     "complete one are errors of the others"},
     {"poisson", 0, OPTION_NUMBER, 0, 0.4999, AT(words.poisson), "NU", "0.3",
      "Poisson's ratio, of meshes and for --modulus"},
     {"height", 0, OPTION_NUMBER, 1e-3, 1e3, AT(lengths), "LENGTHS", NULL,
      "height of the block in lengths of the map (infinite; of meshes 1.5)"},
+    {"tolerance", 0, OPTION_NUMBER, 1e-12, 1e-2, AT(tolerance), "T", NULL,
+     "of the solutions, as in studies (of linear models 1e-8)"},
     {"error", 0, OPTION_CHOICE, 0, 0, AT(without_error), "points|none", "points",
-     "tell what every second point alone changes, for a third more time at most"},
-    {"format", 0, OPTION_CHOICE, 0, 0, AT(format), "text|json|curves", "text",
-     "what to print; curves: as those of a study's case, with what the model alone tells"},
+     "estimate the errors by source, ERROR_HELP"},
+    {"format", 0, OPTION_CHOICE, 0, 0, AT(format), "text|json|curves|csv", "text",
+     "what to print; curves, csv: as those of a study's case, with what the model alone tells"},
     {"output", 'o', OPTION_TEXT, 0, 0, AT(paths.pressures), "FILE", NULL,
      "write the pressures of the last load (p/(E* h'), with a modulus Pa) as npy, csv, xyz, png or "
      "svg"},
@@ -192,13 +203,15 @@ static const struct option_row OPTIONS[] = {
      "the surface with all three on it, for ParaView"},
     {0}};
 
-enum { FORMAT_TEXT, FORMAT_JSON, FORMAT_CURVES };
+enum { FORMAT_TEXT, FORMAT_JSON, FORMAT_CURVES, FORMAT_CSV };
 
 /* The options ask for this. */
 struct press_order {
     const char *path;
     const struct press_options *options;
-    struct press_block block;
+    enum press_boundary boundary;
+    size_t model_count;
+    struct press_block blocks[CONTACT_MODELS_MOST]; /* one a model */
     struct press_loads loads;
     struct preparation_record record;
 };
@@ -237,9 +250,11 @@ static int read_map(struct height_map *map, struct press_order *order, struct er
         status = press_loads_of_map(&order->loads, map, err);
     if (status != 0)
         return status;
-    order->block.boundary = boundary_of(order);
+    order->boundary = boundary_of(order);
     warn_of_seam(order);
-    return 0;
+    for (size_t m = 0; m < order->model_count && status == 0; m++)
+        status = map_press_check(order->boundary, order->blocks[m].model, err);
+    return status == 0 ? 0 : error_context(err, "%s", order->path);
 }
 
 /* --- the loads --- */
@@ -258,22 +273,47 @@ static double map_area(const struct map_press *press) {
     return grid_is_profile(grid) ? grid->lx : grid->lx * grid->ly;
 }
 
-/* One load after the other, and the files of the last one. pressures: mean, in E*. */
-static int press_loads(const struct press_order *order, struct map_press *press,
-                       const struct height_map *map, double *pressures, struct press_row *rows,
-                       struct error *err) {
+/* The map under all loads, by each model. */
+struct pressed {
+    struct map_press press;
+    double *pressures;      /* mean, in E*; owned, as the rows */
+    struct press_row *rows; /* all loads of the first model, then those of the next */
+    struct press_series series[CONTACT_MODELS_MOST];
+};
+
+static void pressed_clear(struct pressed *pressed) {
+    map_press_clear(&pressed->press);
+    free(pressed->pressures);
+    free(pressed->rows);
+}
+
+/* Loads without a solution are no failure where another model has them, and no file needs them. */
+static int keep_others(const struct press_order *order, size_t m, int status, struct error *err) {
+    const struct contact_model *model = order->blocks[m].model;
+    bool files = m == 0 && are_asked(&order->options->paths);
+    if (status != ERROR_NUMERIC || order->model_count == 1 || !model->may_fail || files)
+        return error_context(err, "%s", order->path);
+    fprintf(stderr, "rugo press: warning: %s: model %s has no values from a load on: %s\n",
+            order->path, contact_model_name(model), err->text);
+    *err = (struct error){0};
+    return 0;
+}
+
+/* All loads of a model, and of the first one the files of the last load. */
+static int press_model(const struct press_order *order, struct pressed *pressed,
+                       const struct height_map *map, size_t m, struct error *err) {
+    struct press_series *series = &pressed->series[m];
     double modulus = order->loads.modulus;
-    int status = 0;
-    for (size_t l = 0; status == 0 && l < order->loads.count; l++) {
-        pressures[l] = press_loads_mean(&order->loads, l, press->slope, map_area(press));
-        status = map_press_load(press, pressures[l], &rows[l], err);
-    }
-    if (status != 0)
+    size_t loads = order->loads.count;
+    *series = (struct press_series){.block = order->blocks[m], .rows = pressed->rows + m * loads};
+    int status = map_press_loads(&pressed->press, map->z, loads, pressed->pressures, series, err);
+    status = status != 0 ? keep_others(order, m, status, err) : 0;
+    if (status != 0 || m > 0)
         return status;
-    warn_of_few_nodes(order, &rows[0]);
-    return press_files_write(&order->options->paths, press, map->z,
-                             modulus > 0 ? modulus * press->slope : 1, modulus > 0 ? "Pa" : "E* h'",
-                             err);
+    warn_of_few_nodes(order, &series->rows[0]);
+    return press_files_write(&order->options->paths, &pressed->press, map->z,
+                             modulus > 0 ? modulus * pressed->press.slope : 1,
+                             modulus > 0 ? "Pa" : "E* h'", err);
 }
 
 static int print_json(const struct press_report *report, struct error *err) {
@@ -284,84 +324,111 @@ static int print_json(const struct press_report *report, struct error *err) {
     return status;
 }
 
+/* As those of a study with one case. Returns false when out of memory. */
+static bool print_curves(const struct press_report *report, int format) {
+    const struct study_result study = {.case_count = 1, .cases = report->result};
+    if (format == FORMAT_CSV)
+        return csv_print(stdout, &study);
+    return result_print(stdout, report->result) && putchar('\n') != EOF;
+}
+
 static int print(const struct press_report *report, int format, struct error *err) {
     if (format == FORMAT_JSON)
         return print_json(report, err);
     if (format == FORMAT_TEXT)
         press_print_table(stdout, report);
-    else if (result_print(stdout, report->result)) /* as those of a study's case */
-        putchar('\n');
-    else
+    else if (!print_curves(report, format))
         return error_memory(err, sizeof *report->result, "the curves");
     return output_flush(err);
 }
 
-static int report(const struct press_order *order, const struct map_press *press,
-                  const struct height_map *map, const struct press_row *rows, struct error *err) {
+static int report(const struct press_order *order, const struct pressed *pressed,
+                  const struct height_map *map, struct error *err) {
     static const char *const BOUNDARY_NAMES[] = {"open", "mirrored", "periodic"};
+    const struct map_press *press = &pressed->press;
     struct case_result result = {0};
     const struct press_report report = {.press = press,
                                         .record = &order->record,
-                                        .boundary = BOUNDARY_NAMES[order->block.boundary],
+                                        .boundary = BOUNDARY_NAMES[order->boundary],
                                         .boundary_by = order->options->boundary != ASKED_AUTO
                                                            ? "option"
                                                            : order->record.boundary_by,
-                                        .model = order->options->model,
+                                        .model_count = order->model_count,
+                                        .series = pressed->series,
                                         .modulus = order->loads.modulus,
                                         .metres = strcmp(map->xy_unit, "m") == 0,
                                         .map_area = map_area(press),
                                         .loads = order->loads.count,
                                         .with_errors = order->options->without_error == 0,
                                         .result = &result};
-    int status = map_press_result(&result, press, order->loads.count, rows, err);
+    int status = map_press_result(&result, press, order->model_count, pressed->series,
+                                  order->loads.count, err);
     if (status == 0)
         status = print(&report, order->options->format, err);
     result_clear(&result);
     return status;
 }
 
-static int press_map(struct press_order *order, struct height_map *map, struct error *err) {
-    struct map_press press = {0};
-    size_t count = order->loads.count;
-    double *pressures = array_create(count, sizeof *pressures);
-    struct press_row *rows = array_create(count, sizeof *rows);
-    int status = pressures == NULL || rows == NULL
-                     ? error_memory(err, count * sizeof *rows, "the loads")
-                     : map_press_begin(&press, map, &order->block, err);
+static int press_models(const struct press_order *order, struct pressed *pressed,
+                        const struct height_map *map, struct error *err) {
+    const struct map_press *press = &pressed->press;
+    size_t loads = order->loads.count;
+    int status = 0;
+    for (size_t l = 0; l < loads; l++)
+        pressed->pressures[l] = press_loads_mean(&order->loads, l, press->slope, map_area(press));
+    for (size_t m = 0; m < order->model_count && status == 0; m++)
+        status = press_model(order, pressed, map, m, err);
+    map_press_release(&pressed->press);
+    if (status == 0 && order->options->without_error == 0)
+        status = map_press_error(press, map, order->model_count, pressed->series, loads,
+                                 pressed->pressures, err);
+    return status == 0 ? report(order, pressed, map, err) : status;
+}
+
+static int press_map(const struct press_order *order, struct height_map *map, struct error *err) {
+    size_t loads = order->loads.count, count = order->model_count * loads;
+    struct pressed pressed = {.pressures = array_create(loads, sizeof *pressed.pressures),
+                              .rows = array_create(count, sizeof *pressed.rows)};
+    int status = pressed.pressures == NULL || pressed.rows == NULL
+                     ? error_memory(err, count * sizeof *pressed.rows, "the loads")
+                     : map_press_begin(&pressed.press, map, order->boundary, err);
     if (status != 0)
         error_context(err, "%s", order->path);
     if (status == 0)
-        status = press_loads(order, &press, map, pressures, rows, err);
-    map_press_release(&press);
-    if (status == 0 && order->options->without_error == 0)
-        status = map_press_error(&press, map, &order->block, count, pressures, rows, err);
-    if (status == 0)
-        status = report(order, &press, map, rows, err);
-    map_press_clear(&press);
-    free(pressures);
-    free(rows);
+        status = press_models(order, &pressed, map, err);
+    pressed_clear(&pressed);
     return status;
+}
+
+/* Sets the models and their blocks. */
+static int order_models(struct press_order *order, struct error *err) {
+    const struct press_options *options = order->options;
+    int places[CONTACT_MODELS_MOST];
+    if (!models_find(options->model, places, &order->model_count))
+        return error_set(err, ERROR_INPUT, "there is no model %.40s", options->model);
+    for (size_t m = 0; m < order->model_count; m++)
+        order->blocks[m] = (struct press_block){.model = CONTACT_MODELS[places[m]],
+                                                .poisson = options->words.poisson,
+                                                .lengths = options->lengths,
+                                                .tolerance = options->tolerance};
+    return 0;
 }
 
 static int run(const void *values, const char *const *arguments) {
     const struct press_options *options = values;
     struct error err = {0};
-    const struct choice *model = choice_find(CONTACT_MODEL_CHOICES, options->model);
     struct press_order *order = array_create(1, sizeof *order);
     struct height_map map = {0};
     int status = order == NULL ? error_memory(&err, sizeof *order, "the loads") : 0;
-    if (status == 0 && model == NULL)
-        status = error_set(&err, ERROR_INPUT, "there is no model %.40s", options->model);
     if (status == 0) {
         order->path = arguments[0];
         order->options = options;
-        order->block = (struct press_block){.model = CONTACT_MODELS[model->value],
-                                            .poisson = options->words.poisson,
-                                            .lengths = options->lengths};
-        status = press_loads_parse(&order->loads, &options->words, &err);
-        if (status == 0)
-            status = press_files_check(&options->paths, &err);
+        status = order_models(order, &err);
     }
+    if (status == 0)
+        status = press_loads_parse(&order->loads, &options->words, &err);
+    if (status == 0)
+        status = press_files_check(&options->paths, &err);
     if (status == 0)
         status = read_map(&map, order, &err);
     if (status == 0)

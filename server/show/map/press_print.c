@@ -1,5 +1,6 @@
 #include "server/show/map/press_print.h"
 #include "core/map/length_unit.h"
+#include "jobs/maps/map_press_curves.h"
 #include "schema/json/json.h"
 #include "server/show/quantity.h"
 #include "server/show/table/text_table.h"
@@ -7,12 +8,41 @@
 #include <stdlib.h>
 #include <string.h>
 
-static double value_of(const struct press_report *report, size_t load, enum press_value value) {
-    return report->result->curves[value].y[load];
+/* What is printed of one model. */
+struct part {
+    const struct press_report *report;
+    const struct press_series *series;
+    const char *model;
+};
+
+static struct part part_of(const struct press_report *report, size_t m) {
+    return (struct part){report, &report->series[m],
+                         contact_model_name(report->series[m].block.model)};
 }
 
-static double error_of(const struct press_report *report, size_t load, enum press_value value) {
-    return report->result->curves[value].errors[ERROR_DISCRETISATION].bound[load];
+/* Returns NaN where the model has no such curve. */
+static double value_of(const struct part *part, size_t load, const struct press_column *column) {
+    const struct curve *curve = map_press_curve(part->report->result, column, part->model);
+    return curve != NULL ? curve->y[load] : (double)NAN;
+}
+
+/* Returns the error of a column from a source; one that does not apply where the model has no such
+ * curve. */
+static struct curve_error error_of(const struct part *part, const struct press_column *column,
+                                   enum error_source source) {
+    const struct curve *curve = map_press_curve(part->report->result, column, part->model);
+    return curve != NULL ? curve->errors[source] : (struct curve_error){.applies = false};
+}
+
+static double number_at(const double *numbers, size_t load) {
+    return numbers != NULL ? numbers[load] : (double)NAN;
+}
+
+static const struct press_column *column_of(size_t value) {
+    size_t c = 0;
+    while (PRESS_COLUMNS[c].value != value)
+        c++;
+    return &PRESS_COLUMNS[c];
 }
 
 /* --- physical units --- */
@@ -23,7 +53,7 @@ enum kind { KIND_PRESSURE, KIND_FORCE, KIND_AREA, KIND_LENGTH, KIND_STIFFNESS };
 struct physical_column {
     const char *name, *key;
     enum kind kind;
-    enum press_value value;
+    size_t value;
     double scale; /* to SI units; 0: not known */
 };
 enum { PHYSICAL_COLUMNS = 7 };
@@ -37,11 +67,11 @@ static void fill_physical(const struct press_report *report,
     const struct physical_column all[PHYSICAL_COLUMNS] = {
         {"pressure", "pressure", KIND_PRESSURE, PRESS_LOAD, pressure},
         {"force", "force", KIND_FORCE, PRESS_LOAD, pressure * area},
-        {"contact area", "contact_area", KIND_AREA, PRESS_EDGES, area},
+        {"contact area", "contact_area", KIND_AREA, MEASURE_EDGES, area},
         {"peak pressure", "peak_pressure", KIND_PRESSURE, PRESS_PEAK, pressure},
         {"approach", "approach", KIND_LENGTH, PRESS_APPROACH, length},
-        {"mean gap", "mean_gap", KIND_LENGTH, PRESS_MEAN_GAP, length},
-        {"stiffness", "stiffness", KIND_STIFFNESS, PRESS_STIFFNESS, stiffness}};
+        {"mean gap", "mean_gap", KIND_LENGTH, MEASURE_GAP, length},
+        {"stiffness", "stiffness", KIND_STIFFNESS, MEASURE_STIFFNESS, stiffness}};
     memcpy(columns, all, sizeof all);
 }
 
@@ -71,14 +101,15 @@ static double readable_unit(enum kind kind, bool profile, double most, char *uni
     return scale;
 }
 
-static double largest(const struct press_report *report, enum press_value value) {
+static double largest(const struct part *part, const struct press_column *column) {
     double most = 0;
-    for (size_t l = 0; l < report->loads; l++)
-        most = fmax(most, fabs(value_of(report, l, value))); /* NaN is passed over */
+    for (size_t l = 0; l < part->report->loads; l++)
+        most = fmax(most, fabs(value_of(part, l, column))); /* NaN is passed over */
     return most;
 }
 
-static void print_physical(FILE *file, const struct press_report *report) {
+static void print_physical(FILE *file, const struct part *part) {
+    const struct press_report *report = part->report;
     struct physical_column columns[PHYSICAL_COLUMNS];
     double scales[PHYSICAL_COLUMNS] = {0};
     bool profile = grid_is_profile(&report->press->map);
@@ -92,16 +123,16 @@ static void print_physical(FILE *file, const struct press_report *report) {
         char unit[24];
         if (!(columns[c].scale > 0))
             continue;
-        scales[c] =
-            columns[c].scale / readable_unit(columns[c].kind, profile,
-                                             columns[c].scale * largest(report, columns[c].value),
-                                             unit, sizeof unit);
+        scales[c] = columns[c].scale /
+                    readable_unit(columns[c].kind, profile,
+                                  columns[c].scale * largest(part, column_of(columns[c].value)),
+                                  unit, sizeof unit);
         table_cell(&table, "%s, %s", columns[c].name, unit);
     }
     for (size_t l = 0; l < report->loads; l++)
         for (size_t c = 0; c < PHYSICAL_COLUMNS; c++)
             if (columns[c].scale > 0)
-                table_number(&table, value_of(report, l, columns[c].value) * scales[c]);
+                table_number(&table, value_of(part, l, column_of(columns[c].value)) * scales[c]);
     fprintf(file, "\n");
     table_print(&table, file);
     table_clear(&table);
@@ -115,16 +146,21 @@ static void print_length(FILE *file, const char *name, double length, bool metre
     fprintf(file, "%s %.4g%s%s", name, length / scale, metres ? " " : "", unit);
 }
 
-static void print_heading(FILE *file, const struct press_report *report) {
-    const struct map_press *press = report->press;
+static void print_preparation(FILE *file, const struct press_report *report) {
     const struct preparation_record *record = report->record;
     for (size_t step = 0; step < record->count; step++)
         fprintf(file, "%s: %s\n", record->steps[step].name, record->steps[step].text);
+}
+
+static void print_heading(FILE *file, const struct part *part) {
+    const struct press_report *report = part->report;
+    const struct map_press *press = report->press;
+    double full_contact = part->series->full_contact;
     fprintf(file, "boundary: %s (by %s)\nmodel: %s\nRMS slope %.4g, ", report->boundary,
-            report->boundary_by, report->model, press->slope);
+            report->boundary_by, part->model, press->slope);
     print_length(file, "RMS height", press->height, report->metres);
-    if (!isnan(press->full_contact))
-        fprintf(file, "; full contact at p/(E* h') = %.4g", press->full_contact / press->slope);
+    if (!isnan(full_contact))
+        fprintf(file, "; full contact at p/(E* h') = %.4g", full_contact / press->slope);
     if (report->modulus > 0) {
         double scale;
         const char *prefix = quantity_prefix(report->modulus, &scale);
@@ -133,68 +169,134 @@ static void print_heading(FILE *file, const struct press_report *report) {
     fprintf(file, "\n\n");
 }
 
-static void print_errors(FILE *file, const struct press_report *report) {
+/* What tables for people say of a source; the others do not exist for one map. */
+static const char *const SOURCE_WORDS[ERROR_SOURCES] = {
+    [ERROR_DISCRETISATION] = "errors by the points: what every second point alone changes",
+    [ERROR_BLOCK] = "errors by the height of the block: this less an infinite one",
+    [ERROR_MODEL] = "errors by the model: this less the most complete one",
+    [ERROR_SOLVER] = "errors by the solver: a multiple of its tolerance"};
+
+static void put_error(struct text_table *table, const struct curve_error *error, size_t load) {
+    double value = number_at(error->value, load), bound = number_at(error->bound, load);
+    if (value != 0 && !isnan(value) && !isnan(bound))
+        table_cell(table, "%+.3g +- %.2g", value, bound);
+    else
+        table_number(table, bound);
+}
+
+/* Prints the errors from one source, unless it bears on no column or nothing is known of it. */
+static void print_errors(FILE *file, const struct part *part, enum error_source source) {
     struct text_table table = {.columns = 1};
-    if (!report->with_errors)
-        return;
-    for (size_t c = 0; c < PRESS_VALUES; c++)
+    bool known = source == ERROR_DISCRETISATION;
+    for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++) {
         table.columns += PRESS_COLUMNS[c].uncertain;
-    table_cell(&table, "%s", PRESS_COLUMNS[PRESS_LOAD].heading);
-    for (size_t c = 0; c < PRESS_VALUES; c++)
+        known = known || (PRESS_COLUMNS[c].uncertain &&
+                          error_of(part, &PRESS_COLUMNS[c], source).value != NULL);
+    }
+    if (!known || SOURCE_WORDS[source] == NULL)
+        return;
+    table_cell(&table, "%s", column_of(PRESS_LOAD)->heading);
+    for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++)
         if (PRESS_COLUMNS[c].uncertain)
             table_cell(&table, "%s", PRESS_COLUMNS[c].heading);
-    for (size_t l = 0; l < report->loads; l++) {
-        table_number(&table, value_of(report, l, PRESS_LOAD));
-        for (size_t c = 0; c < PRESS_VALUES; c++)
-            if (PRESS_COLUMNS[c].uncertain)
-                table_number(&table, error_of(report, l, (enum press_value)c));
+    for (size_t l = 0; l < part->report->loads; l++) {
+        table_number(&table, value_of(part, l, column_of(PRESS_LOAD)));
+        for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++)
+            if (PRESS_COLUMNS[c].uncertain) {
+                struct curve_error error = error_of(part, &PRESS_COLUMNS[c], source);
+                put_error(&table, &error, l);
+            }
     }
-    fprintf(file, "\nerrors by the points: what every second point alone changes\n\n");
+    fprintf(file, "\n%s\n\n", SOURCE_WORDS[source]);
     table_print(&table, file);
     table_clear(&table);
 }
 
-void press_print_table(FILE *file, const struct press_report *report) {
-    struct text_table table = {.columns = PRESS_VALUES};
-    print_heading(file, report);
-    for (size_t c = 0; c < PRESS_VALUES; c++) {
-        if (c == PRESS_EDGES || c == PRESS_PEAK || c == PRESS_PATCHES)
+static void print_part(FILE *file, const struct part *part) {
+    struct text_table table = {.columns = PRESS_COLUMN_COUNT};
+    print_heading(file, part);
+    for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++) {
+        if (PRESS_COLUMNS[c].fold)
             table_fold(&table);
         table_cell(&table, "%s", PRESS_COLUMNS[c].heading);
     }
-    for (size_t l = 0; l < report->loads; l++)
-        for (size_t c = 0; c < PRESS_VALUES; c++)
-            table_number(&table, value_of(report, l, (enum press_value)c));
+    for (size_t l = 0; l < part->report->loads; l++)
+        for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++)
+            table_number(&table, value_of(part, l, &PRESS_COLUMNS[c]));
     table_print(&table, file);
     table_clear(&table);
-    print_physical(file, report);
-    print_errors(file, report);
+    print_physical(file, part);
+    for (size_t s = 0; s < ERROR_SOURCES && part->report->with_errors; s++)
+        print_errors(file, part, (enum error_source)s);
+}
+
+void press_print_table(FILE *file, const struct press_report *report) {
+    print_preparation(file, report);
+    for (size_t m = 0; m < report->model_count; m++) {
+        const struct part part = part_of(report, m);
+        if (m > 0)
+            fputc('\n', file);
+        print_part(file, &part);
+    }
 }
 
 /* --- JSON --- */
 
-static bool add_column(cJSON *object, const char *key, const struct press_report *report,
-                       enum press_value value, double scale, double *column) {
-    for (size_t l = 0; l < report->loads; l++)
-        column[l] = scale * value_of(report, l, value);
-    return cJSON_AddItemToObject(object, key, json_numbers(column, report->loads));
+static bool add_column(cJSON *object, const char *key, const struct part *part,
+                       const struct press_column *from, double scale, double *column) {
+    for (size_t l = 0; l < part->report->loads; l++)
+        column[l] = scale * value_of(part, l, from);
+    return cJSON_AddItemToObject(object, key, json_numbers(column, part->report->loads));
 }
 
-static bool add_errors(cJSON *document, const struct press_report *report, double *column) {
+/* Adds the bounds by the points of the columns that tables show. */
+static bool add_bounds(cJSON *document, const struct part *part, double *column) {
     bool complete = true;
-    for (size_t c = 0; report->with_errors && c < PRESS_VALUES && complete; c++) {
+    for (size_t c = 0; c < PRESS_COLUMN_COUNT && complete; c++) {
+        struct curve_error error = error_of(part, &PRESS_COLUMNS[c], ERROR_DISCRETISATION);
         char key[40];
         if (!PRESS_COLUMNS[c].uncertain)
             continue;
         snprintf(key, sizeof key, "%s_error", PRESS_COLUMNS[c].key);
-        for (size_t l = 0; l < report->loads; l++)
-            column[l] = error_of(report, l, (enum press_value)c);
-        complete = cJSON_AddItemToObject(document, key, json_numbers(column, report->loads));
+        for (size_t l = 0; l < part->report->loads; l++)
+            column[l] = number_at(error.bound, l);
+        complete = cJSON_AddItemToObject(document, key, json_numbers(column, part->report->loads));
     }
     return complete;
 }
 
-static bool add_physical(cJSON *document, const struct press_report *report, double *column) {
+/* Adds the errors of a column by source, with the members of a study's curve. */
+static bool add_sources(cJSON *object, const struct part *part, const struct press_column *column) {
+    size_t loads = part->report->loads;
+    bool complete = object != NULL;
+    for (size_t s = 0; s < ERROR_SOURCES && complete; s++) {
+        const struct error_source_row *row = &ERROR_SOURCE_ROWS[s];
+        struct curve_error error = error_of(part, column, (enum error_source)s);
+        if (error.applies && error.value == NULL)
+            complete = cJSON_AddNullToObject(object, row->key) != NULL;
+        else if (error.applies)
+            complete =
+                cJSON_AddItemToObject(object, row->key, json_numbers(error.value, loads)) &&
+                cJSON_AddItemToObject(object, row->bound_key, json_numbers(error.bound, loads));
+    }
+    return complete;
+}
+
+static bool add_errors(cJSON *document, const struct part *part, double *room) {
+    if (!part->report->with_errors)
+        return true;
+    bool complete = add_bounds(document, part, room);
+    cJSON *errors = cJSON_AddObjectToObject(document, "errors");
+    for (size_t c = 0; c < PRESS_COLUMN_COUNT && complete; c++) {
+        const struct press_column *column = &PRESS_COLUMNS[c];
+        if (error_of(part, column, ERROR_SOLVER).applies)
+            complete = add_sources(cJSON_AddObjectToObject(errors, column->key), part, column);
+    }
+    return complete && errors != NULL;
+}
+
+static bool add_physical(cJSON *document, const struct part *part, double *column) {
+    const struct press_report *report = part->report;
     struct physical_column columns[PHYSICAL_COLUMNS];
     bool profile = grid_is_profile(&report->press->map), complete = true;
     fill_physical(report, columns);
@@ -213,13 +315,12 @@ static bool add_physical(cJSON *document, const struct press_report *report, dou
         if (columns[c].scale > 0)
             complete =
                 cJSON_AddStringToObject(units, columns[c].key, si_unit(columns[c].kind, profile)) &&
-                add_column(physical, columns[c].key, report, columns[c].value, columns[c].scale,
-                           column);
+                add_column(physical, columns[c].key, part, column_of(columns[c].value),
+                           columns[c].scale, column);
     return complete;
 }
 
 static bool add_heading(cJSON *document, const struct press_report *report) {
-    const struct map_press *press = report->press;
     const struct preparation_record *record = report->record;
     cJSON *preparation = cJSON_AddObjectToObject(document, "preparation");
     bool complete = preparation != NULL;
@@ -227,24 +328,55 @@ static bool add_heading(cJSON *document, const struct press_report *report) {
         complete = cJSON_AddStringToObject(preparation, record->steps[step].name,
                                            record->steps[step].text) != NULL;
     return complete && cJSON_AddStringToObject(document, "boundary", report->boundary) &&
-           cJSON_AddStringToObject(document, "boundary_by", report->boundary_by) &&
-           cJSON_AddStringToObject(document, "model", report->model) &&
-           cJSON_AddStringToObject(document, "unit", report->metres ? "m" : "") &&
+           cJSON_AddStringToObject(document, "boundary_by", report->boundary_by);
+}
+
+static bool add_scales(cJSON *document, const struct press_report *report) {
+    const struct map_press *press = report->press;
+    return cJSON_AddStringToObject(document, "unit", report->metres ? "m" : "") &&
            cJSON_AddItemToObject(document, "rms_slope", json_number(press->slope)) &&
-           cJSON_AddItemToObject(document, "rms_height", json_number(press->height)) &&
-           cJSON_AddItemToObject(document, "full_contact",
-                                 json_number(press->full_contact / press->slope));
+           cJSON_AddItemToObject(document, "rms_height", json_number(press->height));
+}
+
+static bool add_part(cJSON *document, const struct part *part, double *column) {
+    double full_contact = part->series->full_contact / part->report->press->slope;
+    bool complete = cJSON_AddItemToObject(document, "full_contact", json_number(full_contact));
+    for (size_t c = 0; c < PRESS_COLUMN_COUNT && complete; c++)
+        complete = add_column(document, PRESS_COLUMNS[c].key, part, &PRESS_COLUMNS[c], 1, column);
+    return complete && add_errors(document, part, column) && add_physical(document, part, column);
+}
+
+static bool add_model(cJSON *document, const struct part *part) {
+    return cJSON_AddStringToObject(document, "model", part->model) != NULL;
+}
+
+/* Adds the parts of several models, each an element of a list. */
+static bool add_parts(cJSON *document, const struct press_report *report, double *column) {
+    cJSON *models = cJSON_AddArrayToObject(document, "models");
+    bool complete = models != NULL;
+    for (size_t m = 0; m < report->model_count && complete; m++) {
+        const struct part part = part_of(report, m);
+        cJSON *one = cJSON_CreateObject();
+        complete = one != NULL && add_model(one, &part) && add_part(one, &part, column) &&
+                   cJSON_AddItemToArray(models, one);
+        if (!complete)
+            cJSON_Delete(one);
+    }
+    return complete;
+}
+
+static bool fill_document(cJSON *document, const struct press_report *report, double *column) {
+    const struct part first = part_of(report, 0);
+    bool one = report->model_count == 1;
+    return add_heading(document, report) && (!one || add_model(document, &first)) &&
+           add_scales(document, report) &&
+           (one ? add_part(document, &first, column) : add_parts(document, report, column));
 }
 
 cJSON *press_document(const struct press_report *report) {
     double *column = array_create(report->loads, sizeof *column);
     cJSON *document = column != NULL ? cJSON_CreateObject() : NULL;
-    bool complete = document != NULL && add_heading(document, report);
-    for (size_t c = 0; c < PRESS_VALUES && complete; c++)
-        complete =
-            add_column(document, PRESS_COLUMNS[c].key, report, (enum press_value)c, 1, column);
-    complete =
-        complete && add_errors(document, report, column) && add_physical(document, report, column);
+    bool complete = document != NULL && fill_document(document, report, column);
     free(column);
     if (complete)
         return document;

@@ -13,18 +13,21 @@ struct press_report {
     const struct preparation_record *record;
     const char *boundary;    /* "open", "mirrored", "periodic" */
     const char *boundary_by; /* "option", "seam", "holes", "window" */
-    const char *model;
-    double modulus;  /* E* in Pa; 0: not known */
-    bool metres;     /* the map's lengths are */
-    double map_area; /* of a profile its length */
+    size_t model_count;
+    const struct press_series *series; /* one a model */
+    double modulus;                    /* E* in Pa; 0: not known */
+    bool metres;                       /* the map's lengths are */
+    double map_area;                   /* of a profile its length */
     size_t loads;
-    bool with_errors;                 /* by the points (map_press_error.h) */
-    const struct case_result *result; /* its first curves are the columns (map_press_result) */
+    bool with_errors;           /* they are estimated (map_press_error.h) */
+    struct case_result *result; /* curves (map_press_curves.h), of which the columns are printed */
 };
 
-/* Prints heading, values, those in physical units where these are known, and errors. */
+/* Prints for each model heading, values, those in physical units where these are known, and errors
+ * by source. */
 void press_print_table(FILE *file, const struct press_report *report);
-/* Returns the same as a document, for the caller to delete; NULL when out of memory. */
+/* Returns the same as a document, for the caller to delete; NULL when out of memory. What several
+ * models have of their own is an element of "models" for each. */
 cJSON *press_document(const struct press_report *report);
 
 #endif

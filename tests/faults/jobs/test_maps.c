@@ -4,6 +4,7 @@
 
 #include "jobs/maps/map_characterisation.h"
 #include "jobs/maps/map_preparation.h"
+#include "jobs/maps/map_press_curves.h"
 #include "jobs/maps/map_press_error.h"
 #include "tests/support/failing/each_allocation.h"
 #include "tests/support/noise.h"
@@ -58,37 +59,41 @@ static int characterise(void *context, struct error *err) {
     return status;
 }
 
-static int press_rows(struct map_press *press, struct height_map *map,
-                      const struct press_block *block, struct work *work, struct error *err) {
+static int press_series(struct map_press *press, struct height_map *map,
+                        struct press_series *series, struct work *work, struct error *err) {
     const double pressure = 0.02;
     struct case_result result = {0};
-    struct press_row row;
-    int status = map_press_begin(press, map, block, err);
-    if (status == 0)
-        status = map_press_load(press, pressure, &row, err);
+    int status = map_press_begin(press, map, work->pressed, err);
+    for (size_t m = 0; m < 2 && status == 0; m++)
+        status = map_press_loads(press, map->z, 1, &pressure, &series[m], err);
     map_press_release(press);
     if (status == 0)
-        status = map_press_error(press, map, block, 1, &pressure, &row, err);
+        status = map_press_error(press, map, 2, series, 1, &pressure, err);
     if (status == 0)
-        status = map_press_result(&result, press, 1, &row, err);
+        status = map_press_result(&result, press, 2, series, 1, err);
     if (status == 0)
-        expect_same(work, result.curves[PRESS_EDGES].y[0] + row.error[PRESS_EDGES]);
+        expect_same(work, result_curve(&result, "contact_area")->y[0] +
+                              series[0].rows->error[ERROR_DISCRETISATION][MEASURE_EDGES].bound);
     result_clear(&result);
     return status;
 }
 
+/* The second model has a low block, so that exact layers are pressed beside it. */
 static int press_map(void *context, struct error *err) {
     struct work *work = context;
     const struct choice *choice = choice_find(CONTACT_MODEL_CHOICES, work->model);
-    const struct press_block block = {
-        .model = CONTACT_MODELS[choice->value], .boundary = work->pressed, .poisson = 0.3};
+    struct press_row rows[2];
+    struct press_series series[] = {
+        {.block = {.model = CONTACT_MODELS[choice->value], .poisson = 0.3}, .rows = &rows[0]},
+        {.block = {.model = CONTACT_MODELS[0], .lengths = work->pressed == PRESS_OPEN ? 0 : 0.2},
+         .rows = &rows[1]}};
     struct map_press press = {.copies = 0};
     struct height_map map = {.grid = {SIDE, 1, 10, 1}, .z = array_create(SIDE, sizeof *map.z)};
     int status = map.z == NULL ? error_memory(err, SIDE * sizeof *map.z, "a map") : 0;
     for (size_t i = 0; i < SIDE && status == 0; i++)
         map.z[i] = 0.05 * cos(2 * M_PI * (double)i / SIDE);
     if (status == 0)
-        status = press_rows(&press, &map, &block, work, err);
+        status = press_series(&press, &map, series, work, err);
     map_press_clear(&press);
     height_map_clear(&map);
     return status;

@@ -29,7 +29,7 @@ static const struct option_row *row_of(const struct command *command, const char
 /* The text of an option; NULL where the command has none of this name, or it is not given. */
 static const char *text_at(const struct command *command, const void *options, const char *name) {
     const struct option_row *row = row_of(command, name);
-    return row != NULL && (row->type == OPTION_TEXT || row->type == OPTION_MODEL)
+    return row != NULL && (row->type == OPTION_TEXT || row->type == OPTION_MODELS)
                ? *(const char *const *)((const char *)options + row->at)
                : NULL;
 }
@@ -53,7 +53,7 @@ static bool has_choice(const struct command *command, const void *options, const
  * no time. */
 static bool are_many(const struct command *command, const void *options, double points) {
     const char *model = text_at(command, options, "model");
-    const double most = model == NULL ? 3000 : strcmp(model, "full") == 0 ? 40 : 400;
+    const double most = model == NULL ? 3000 : strstr(model, "full") != NULL ? 40 : 400;
     return points > most && points < 1e11;
 }
 

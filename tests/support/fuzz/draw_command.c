@@ -168,7 +168,7 @@ static void put_plausible(struct word *word, struct choices *choices, const stru
     case OPTION_CHOICE:
         put_alternative(word, choices, row->argument);
         break;
-    case OPTION_MODEL:
+    case OPTION_MODELS:
         option_argument(row, models, sizeof models);
         put_alternative(word, choices, models);
         break;
@@ -188,7 +188,7 @@ static void put_odd(struct word *word, struct choices *choices, const struct opt
     const bool one_sided = row->high == 0;
     /* Texts may be quoted, where NaN and infinity are looked for. */
     const bool is_text =
-        row->type == OPTION_TEXT || row->type == OPTION_MODEL || row->type == OPTION_LIST;
+        row->type == OPTION_TEXT || row->type == OPTION_MODELS || row->type == OPTION_LIST;
     const struct text_words *words = words_of(row);
     if (words != NULL && choose(choices, 4) != 3) {
         put_pattern(word, choices, words->odd, unit);

@@ -1,7 +1,8 @@
 /* A contact model is one struct: a fourth one, springs without neighbours (Winkler's foundation),
  * stands in this file alone, and goes from parameters to curves beside a half-space. */
 #include "jobs/contact/contact_case_read.h"
-#include "jobs/maps/map_press.h"
+#include "jobs/maps/map_press_curves.h"
+#include "jobs/maps/map_press_error.h"
 #include "tests/support/check.h"
 #include "tests/support/contact_document.h"
 #include <stdlib.h>
@@ -177,33 +178,35 @@ static void table_is_all_that_is_known(void **state) {
  * maps that do not repeat; its own curve follows those of all models. */
 static void fourth_model_presses_a_map(void **state) {
     (void)state;
-    struct press_block block = {
-        .model = &WINKLER_MODEL, .boundary = PRESS_MIRRORED, .poisson = 0.3};
-    struct map_press press = {0};
     struct press_row row;
+    struct press_series series = {.block = {.model = &WINKLER_MODEL, .poisson = 0.3}, .rows = &row};
+    struct map_press press = {0};
     struct error err = {0};
     struct case_result result = {0};
     struct height_map map = {.grid = {24, 1, 6, 1}, .z = array_create(24, sizeof *map.z)};
+    const double load = 0.001;
     assert_non_null(map.z);
     for (size_t i = 0; i < 24; i++)
         map.z[i] = 0.05 * cos(2 * M_PI * (double)i / 24);
-    if (map_press_begin(&press, &map, &block, &err) != 0 ||
-        map_press_load(&press, 0.001, &row, &err) != 0 ||
-        map_press_result(&result, &press, 1, &row, &err) != 0)
+    if (map_press_begin(&press, &map, PRESS_MIRRORED, &err) != 0 ||
+        map_press_loads(&press, map.z, 1, &load, &series, &err) != 0 ||
+        map_press_error(&press, &map, 1, &series, 1, &load, &err) != 0 ||
+        map_press_result(&result, &press, 1, &series, 1, &err) != 0)
         fail_msg("%s", err.text);
-    assert_true(row.value[PRESS_NODES] > 0 && row.value[PRESS_NODES] < 1);
+    assert_true(row.value[MEASURE_NODES] > 0 && row.value[MEASURE_NODES] < 1);
     assert_true(isnan(press.full_contact));
     const struct curve *spring = result_curve(&result, "shortest_spring");
     assert_non_null(spring);
     assert_string_equal(spring->model, "winkler");
     assert_true(spring->y[0] > 0);
+    /* Its face is not known to strain sideways: the error of the model applies, and is unknown. */
+    const struct curve_error *model = &result_curve(&result, "contact_area")->errors[ERROR_MODEL];
+    assert_true(model->applies && model->value == NULL);
     result_clear(&result);
     map_press_clear(&press);
-    block.boundary = PRESS_OPEN;
-    assert_int_equal(map_press_begin(&press, &map, &block, &err), ERROR_INPUT);
+    assert_int_equal(map_press_check(PRESS_OPEN, &WINKLER_MODEL, &err), ERROR_INPUT);
     assert_non_null(strstr(err.text, "--model winkler needs a block that does"));
     assert_non_null(strstr(err.text, "or --model halfspace"));
-    map_press_clear(&press);
     height_map_clear(&map);
 }
 

@@ -21,7 +21,7 @@ struct values {
 static const struct option_row ROWS[] = {
     {"flag", 'f', OPTION_FLAG, 0, 0, AT(flag), NULL, NULL, "a flag"},
     {"text", 't', OPTION_TEXT, 0, 0, AT(text), "TEXT", "standard", "a text"},
-    {"model", 0, OPTION_MODEL, 0, 0, AT(model), "MODEL", "halfspace", "a model"},
+    {"model", 0, OPTION_MODELS, 0, 0, AT(model), "MODEL", "halfspace", "a model"},
     {"count", 0, OPTION_COUNT, 1, 7, AT(count), "N", "3", "a count"},
     {"index", 0, OPTION_INDEX, 0, 0, AT(index), "I", NULL, "an index"},
     {"pair", 0, OPTION_PAIR, 0, 0, AT(pair), "A B", NULL, "two indices"},

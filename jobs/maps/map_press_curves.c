@@ -1,0 +1,133 @@
+#include "jobs/maps/map_press_curves.h"
+#include "jobs/maps/map_press_error.h"
+#include <math.h>
+
+/* What the curves are made from. */
+struct curve_maker {
+    const struct map_press *press;
+    size_t count, loads;
+    const struct press_series *series;
+    struct case_result *out;
+};
+
+static int no_room(const struct curve_maker *maker, struct error *err) {
+    return error_memory(err, 3 * maker->loads * sizeof(double), "a curve of contact");
+}
+
+/* Adds an error that is known at some load. */
+static int put_error(const struct curve_maker *maker, size_t m, size_t value,
+                     enum error_source source, struct curve_error *out, struct error *err) {
+    const struct press_row *rows = maker->series[m].rows;
+    size_t loads = maker->loads, known = 0;
+    out->applies = map_press_applies(maker->count, maker->series, m, value, source);
+    out->order = NAN;
+    for (size_t l = 0; l < loads && out->applies; l++)
+        known += isnan(rows[l].error[source][value].bound) ? 0 : 1;
+    if (known == 0)
+        return 0;
+    double *numbers = result_numbers(maker->out, 3 * loads);
+    if (numbers == NULL)
+        return no_room(maker, err);
+    for (size_t l = 0; l < loads; l++) {
+        numbers[l] = rows[l].error[source][value].value;
+        numbers[loads + l] = rows[l].error[source][value].bound;
+        numbers[2 * loads + l] = NAN; /* one map has no statistical error */
+    }
+    out->value = numbers;
+    out->bound = numbers + loads;
+    out->standard_error = numbers + 2 * loads;
+    return 0;
+}
+
+/* Appends a curve over the loads, whose label is NULL for want of memory. */
+static int append(const struct curve_maker *maker, size_t m, size_t value, struct curve *curve,
+                  struct error *err) {
+    const struct press_series *series = &maker->series[m];
+    const struct contact_model *model = series->block.model;
+    size_t loads = maker->loads;
+    double *x = result_numbers(maker->out, 3 * loads);
+    if (x == NULL || curve->y_label == NULL)
+        return no_room(maker, err);
+    for (size_t l = 0; l < loads; l++) {
+        x[l] = series->rows[l].value[PRESS_LOAD];
+        x[loads + l] = series->rows[l].value[value];
+        x[2 * loads + l] = NAN;
+    }
+    curve->model = contact_model_name(model);
+    if (model->kinematics != NULL)
+        curve->kinematics = model->kinematics(&maker->press->one_case);
+    curve->points = (double)grid_points(&maker->press->grid);
+    curve_set_points(curve, loads, x, x + loads, x + 2 * loads);
+    int status = 0;
+    for (enum error_source s = 0; s < ERROR_SOURCES && status == 0; s++)
+        status = put_error(maker, m, value, s, &curve->errors[s], err);
+    return status == 0 ? result_add_curve(maker->out, curve, err) : status;
+}
+
+/* Returns whether the model shows a value. */
+static bool is_shown(const struct curve_maker *maker, size_t m, size_t value) {
+    const struct measure *of = press_measure(value);
+    struct contact_case one_case = maker->press->one_case;
+    one_case.models[0] = maker->series[m].block.model;
+    return of->shown == NULL || of->shown(&one_case, 0);
+}
+
+/* Appends a value of each model that shows it; its cell is the map. */
+static int append_value(const struct curve_maker *maker, size_t value, struct error *err) {
+    const struct measure *of = press_measure(value);
+    const char *label = measure_label(of, UNIT_CELL, 0, maker->out);
+    int status = 0;
+    for (size_t m = 0; m < maker->count && status == 0; m++) {
+        struct curve curve = curve_named(of->quantity, "p/(E* h'_rms)", label);
+        if (of->series != NULL)
+            curve.series = of->series;
+        if (is_shown(maker, m, value))
+            status = append(maker, m, value, &curve, err);
+    }
+    return status;
+}
+
+static bool is_column(size_t value) {
+    size_t c = 0;
+    while (c < PRESS_COLUMN_COUNT && PRESS_COLUMNS[c].value != value)
+        c++;
+    return c < PRESS_COLUMN_COUNT;
+}
+
+static int append_own(const struct curve_maker *maker, size_t m, struct error *err) {
+    const struct contact_model *model = maker->series[m].block.model;
+    int status = 0;
+    for (size_t c = 0; c < model->curve_count && status == 0; c++) {
+        const struct model_curve *own = &model->curves[c];
+        struct curve curve = curve_named(own->quantity, "p/(E* h'_rms)", own->y_label);
+        status = append(maker, m, MEASURE_OWN + own->measure, &curve, err);
+    }
+    return status;
+}
+
+int map_press_result(struct case_result *out, const struct map_press *press, size_t count,
+                     const struct press_series *series, size_t loads, struct error *err) {
+    const struct curve_maker maker = {press, count, loads, series, out};
+    int status = 0;
+    out->realisations = 1;
+    for (size_t c = 0; c < PRESS_COLUMN_COUNT && status == 0; c++)
+        status = append_value(&maker, PRESS_COLUMNS[c].value, err);
+    for (size_t a = 0; a < MEASURE_OWN && status == 0; a++)
+        if (MEASURES[MEASURE_CURVES[a]].quantity != NULL && !is_column(MEASURE_CURVES[a]))
+            status = append_value(&maker, MEASURE_CURVES[a], err);
+    for (size_t m = 0; m < count && status == 0; m++)
+        status = append_own(&maker, m, err);
+    return status;
+}
+
+const struct curve *map_press_curve(const struct case_result *result,
+                                    const struct press_column *column, const char *model) {
+    const struct measure *of = press_measure(column->value);
+    for (size_t c = 0; c < result->curve_count; c++) {
+        const struct curve *curve = &result->curves[c];
+        if (same_text(curve->quantity, of->quantity) && same_text(curve->model, model) &&
+            same_text(curve->series, of->series != NULL ? of->series : ""))
+            return curve;
+    }
+    return NULL;
+}
