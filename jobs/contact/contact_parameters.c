@@ -22,9 +22,8 @@ static const struct parameter ROWS[] = {
      .choices = CONTACT_MODEL_CHOICES,
      .default_json = "\"halfspace\"",
      .example_json = "[\"halfspace\", \"layered\"]",
-     .help =
-         "halfspace, layered, full (finite elements on the rough geometry itself), or a list of "
-         "them: all solved on the same realisations"},
+     .help = "what the block is made of (full: finite elements on the rough geometry itself), or a "
+             "list of models, all solved on the same realisations"},
     {.path = "/contact/young",
      .symbol = "E",
      .type = PARAMETER_NUMBER,

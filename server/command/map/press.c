@@ -190,7 +190,8 @@ static const struct option_row OPTIONS[] = {
     {"tolerance", 0, OPTION_NUMBER, 1e-12, 1e-2, AT(tolerance), "T", NULL,
      "of the solutions, as in studies (of linear models 1e-8)"},
     {"error", 0, OPTION_CHOICE, 0, 0, AT(without_error), "points|none", "points",
-     "estimate the errors by source, ERROR_HELP"},
+     "estimate errors by source, by every second point for a third more time at most, and of a low "
+     "--height by an infinite block"},
     {"format", 0, OPTION_CHOICE, 0, 0, AT(format), "text|json|curves|csv", "text",
      "what to print; curves, csv: as those of a study's case, with what the model alone tells"},
     {"output", 'o', OPTION_TEXT, 0, 0, AT(paths.pressures), "FILE", NULL,

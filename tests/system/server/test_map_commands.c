@@ -1,5 +1,6 @@
 /* Protects: the commands of maps: surfaces and measured maps in files are written, characterised,
  * pressed and converted, in their units. */
+#include "schema/json/json.h"
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include "tests/support/small_studies.h"
@@ -47,6 +48,41 @@ static void a_map_in_a_file_is_pressed(void **state) {
         assert_true(fabs(cJSON_GetArrayItem(edges, l)->valuedouble - exact[l]) < 1e-3);
     cJSON_Delete(document);
     free(text);
+}
+
+/* Several models are elements of a list, each with its errors as a study's curves have them; the
+ * same stand in the table for spreadsheets and in that for people. Without errors none is there. */
+static void several_models_press_a_map(void **state) {
+    (void)state;
+    assert_int_equal(
+        run_shell("awk 'BEGIN { for (i = 0; i < 64; i++) print cos(i * 3.14159265358979 / 32) }' "
+                  "> wave.csv; press=\"$RUGO press wave.csv --boundary periodic --height 0.4 "
+                  "--loads 0.1 --model halfspace,layered\"; $press --format json > models.json && "
+                  "$press --format csv > models.csv && $press > models.txt && "
+                  "$press --error none > bare.txt"),
+        0);
+    char *text = slurp("models.json");
+    cJSON *document = cJSON_Parse(text);
+    const cJSON *models = cJSON_GetObjectItem(document, "models");
+    assert_int_equal(cJSON_GetArraySize(models), 2);
+    for (int m = 0; m < 2; m++) {
+        const cJSON *one = cJSON_GetArrayItem(models, m);
+        const cJSON *edges = json_at(one, "/errors/edges"), *gap = json_at(one, "/errors/mean_gap");
+        assert_string_equal(json_at(one, "/model")->valuestring, m == 0 ? "halfspace" : "layered");
+        assert_true(json_at(edges, "/block_error/0")->valuedouble < 0);
+        assert_true(json_at(edges, "/model_bound/0")->valuedouble > 0);
+        assert_true(cJSON_IsNull(json_at(gap, "/model_error")) == (m == 1));
+        assert_null(json_at(edges, "/cell_error"));
+    }
+    cJSON_Delete(document);
+    free(text);
+    assert_true(contains("models.csv", ",block_error,block_bound,model_error,model_bound,"));
+    assert_true(contains("models.csv", "contact_area,edges,layered,"));
+    assert_true(contains("models.txt", "errors by the height of the block"));
+    assert_false(contains("bare.txt", "errors by"));
+    assert_int_equal(run_shell("$RUGO press wave.csv --model layered,layered"), 2);
+    assert_true(contains("shell.err", "--model layered,layered is not halfspace, layered or full"));
+    assert_int_equal(run_shell("$RUGO press wave.csv --boundary open --model halfspace,full"), 2);
 }
 
 /* A tilted map with a hole is open, loses a plane and has no seam to be pressed over. */
@@ -224,6 +260,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_surface_goes_out_and_in),
         cmocka_unit_test(a_map_in_a_file_is_pressed),
+        cmocka_unit_test(several_models_press_a_map),
         cmocka_unit_test(a_measured_map_does_not_repeat),
         cmocka_unit_test(lengths_have_units),
         cmocka_unit_test(a_map_is_converted),
