@@ -109,7 +109,7 @@ void option_argument(const struct option_row *row, char *text, size_t size) {
         snprintf(text, size, "%s", row->argument != NULL ? row->argument : "");
 }
 
-bool models_find(const char *text, int places[CONTACT_MODELS_MOST], size_t *count) {
+bool models_find(const char *text, int positions[CONTACT_MODELS_MOST], size_t *count) {
     *count = 0;
     for (;; text++) {
         const struct choice *choice = CONTACT_MODEL_CHOICES;
@@ -120,9 +120,9 @@ bool models_find(const char *text, int places[CONTACT_MODELS_MOST], size_t *coun
         if (choice->name == NULL)
             return false;
         for (size_t m = 0; m < *count; m++)
-            if (places[m] == choice->value)
+            if (positions[m] == choice->value)
                 return false;
-        places[(*count)++] = choice->value;
+        positions[(*count)++] = choice->value;
         text += length;
         if (*text == '\0')
             return true;
@@ -166,14 +166,14 @@ static int take_value(const char *command, const struct option_row *row, void *v
                       const char *text) {
     void *value = (char *)values + row->at;
     int64_t whole = 0;
-    int choice = 0, places[CONTACT_MODELS_MOST];
+    int choice = 0, positions[CONTACT_MODELS_MOST];
     size_t models;
     switch (row->type) {
     case OPTION_FLAG:
         *(bool *)value = true;
         return 0;
     case OPTION_MODELS:
-        if (!models_find(text, places, &models))
+        if (!models_find(text, positions, &models))
             return refuse_models(command, row, text);
         *(const char **)value = text;
         return 0;

@@ -47,8 +47,8 @@ __attribute__((format(printf, 2, 3))) int usage_error(const char *command, const
 bool rising_numbers(const char *text, size_t most, double *out, size_t *count);
 
 /* Finds the models of a text of their names with commas between, each once; false where it is not
- * that. places: of CONTACT_MODELS. */
-bool models_find(const char *text, int places[CONTACT_MODELS_MOST], size_t *count);
+ * that. positions: in CONTACT_MODELS. */
+bool models_find(const char *text, int positions[CONTACT_MODELS_MOST], size_t *count);
 
 /* Returns whether `name` is nearer than *best to what was typed (letters changed, left out, put in
  * or swapped): *best, 3 at first, becomes its distance. What is typed whole in `name` is near. */

@@ -22,6 +22,11 @@ function put(document, pointer, value) {
   else node[last] = value;
 }
 
+/** The words that a value may be, alone or in a list, each once. */
+function choicesOf(schema) {
+  return [...new Set([...(schema.enum ?? []), ...(schema.anyOf ?? []).flatMap(choicesOf), ...(schema.items ? choicesOf(schema.items) : [])])];
+}
+
 /** All members that a study of this kind may have: pointer, description, default, choices. */
 function membersOf(schema, kind) {
   const found = [];
@@ -29,7 +34,7 @@ function membersOf(schema, kind) {
     for (const [name, member] of Object.entries(node.properties ?? {})) {
       const pointer = `${prefix}/${name}`;
       if (member.properties) walk(member, pointer);
-      else if (member.description) found.push({ pointer, member, choices: [member, ...(member.anyOf ?? [])].flatMap((one) => one.enum ?? one.items?.enum ?? []) });
+      else if (member.description) found.push({ pointer, member, choices: choicesOf(member) });
     }
   };
   walk({ properties: schema.properties }, "");

@@ -404,11 +404,11 @@ static int press_map(const struct press_order *order, struct height_map *map, st
 /* Sets the models and their blocks. */
 static int order_models(struct press_order *order, struct error *err) {
     const struct press_options *options = order->options;
-    int places[CONTACT_MODELS_MOST];
-    if (!models_find(options->model, places, &order->model_count))
+    int positions[CONTACT_MODELS_MOST];
+    if (!models_find(options->model, positions, &order->model_count))
         return error_set(err, ERROR_INPUT, "there is no model %.40s", options->model);
     for (size_t m = 0; m < order->model_count; m++)
-        order->blocks[m] = (struct press_block){.model = CONTACT_MODELS[places[m]],
+        order->blocks[m] = (struct press_block){.model = CONTACT_MODELS[positions[m]],
                                                 .poisson = options->words.poisson,
                                                 .lengths = options->lengths,
                                                 .tolerance = options->tolerance};
