@@ -187,6 +187,8 @@ void tally_sums_clear(struct tally_sums *sums) {
 }
 
 void tally_sums_add(struct tally_sums *sums, size_t cell, double k, uint64_t n) {
+    if (k == 0) /* then all sums stay, as in the rings beyond a band */
+        return;
     exact_sum_add(&sums->sum[cell], k);
     exact_sum_add(&sums->square[cell], k * k);
     exact_sum_add(&sums->cross[cell], k * (double)n);

@@ -49,7 +49,7 @@ void histogram_add(const struct bins *bins, size_t n, const double *values, doub
 }
 
 static const double UNIT = 0x1p-60;
-static const double LARGEST = 0x1p60;
+static const double LARGEST = 0x1p60, SMALL = 4; /* below which 64 bits hold the units */
 
 static void add_units(struct exact_sum *sum, fixed_point units) {
     fixed_point total;
@@ -60,7 +60,9 @@ static void add_units(struct exact_sum *sum, fixed_point units) {
 }
 
 void exact_sum_add(struct exact_sum *sum, double value) {
-    if (fabs(value) < LARGEST)
+    if (fabs(value) < SMALL)
+        add_units(sum, llrint(value / UNIT));
+    else if (fabs(value) < LARGEST)
         add_units(sum, (fixed_point)rint(value / UNIT));
     else
         sum->lost++;

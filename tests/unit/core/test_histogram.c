@@ -70,6 +70,21 @@ static void a_million_additions_lose_nothing(void **state) {
     check_close(exact_sum_value(&sum), 0.1 * VALUES, 5e-13 + 1e-11);
 }
 
+/* Small values take a shorter conversion: both round to the nearest unit, halves to even. */
+static void small_values_have_the_units_of_large_ones(void **state) {
+    (void)state;
+    static const double VALUES_ABOUT[] = {
+        0,  0x1p-61, 0x1.8p-60, 0x1.4p-59, 0.1, M_PI, 0x1.fffffffffffffp1, 4, 0x1.0000000000001p2,
+        1e9};
+    for (size_t a = 0; a < sizeof VALUES_ABOUT / sizeof *VALUES_ABOUT; a++)
+        for (int sign = -1; sign <= 1; sign += 2) {
+            struct exact_sum sum = {0};
+            double value = sign * VALUES_ABOUT[a];
+            exact_sum_add(&sum, value);
+            assert_true(sum.lost == 0 && sum.total == (fixed_point)rint(value * 0x1p60));
+        }
+}
+
 static void what_does_not_fit_is_told(void **state) {
     (void)state;
     struct exact_sum sum = {0};
@@ -90,6 +105,7 @@ int main(void) {
         cmocka_unit_test(values_are_scaled),
         cmocka_unit_test(sum_is_the_same_in_any_order),
         cmocka_unit_test(a_million_additions_lose_nothing),
+        cmocka_unit_test(small_values_have_the_units_of_large_ones),
         cmocka_unit_test(what_does_not_fit_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
