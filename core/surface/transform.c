@@ -8,7 +8,7 @@
 /* FFTW's planner is its only part that is not safe from many threads. */
 static pthread_mutex_t planner = PTHREAD_MUTEX_INITIALIZER;
 
-enum { ROWS = 8 }; /* rows processed together: a cache line of each column serves four of them */
+enum { ROWS = TRANSFORM_ROWS }; /* a cache line of each column serves four of them */
 
 struct transform {
     size_t nx, ny, columns; /* columns = mode_x + 1 */
@@ -128,6 +128,11 @@ static void inverse_lines(struct transform *t, size_t j, size_t rows) {
         for (size_t row = 0; row < rows; row++)
             t->rows[row * t->half + i] = t->spectrum[i * t->ny + j + row];
     fftw_execute(t->row_inverse);
+}
+
+double *transform_inverse_strip(struct transform *t, size_t first, size_t count) {
+    inverse_lines(t, first, count);
+    return t->lines;
 }
 
 void transform_inverse_rows(struct transform *t, size_t first, size_t count, double *z) {

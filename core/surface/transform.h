@@ -35,6 +35,10 @@ void transform_inverse(struct transform *transform, double *z);
  * rows first .. first + count - 1 into z[count*nx], as often as needed. */
 void transform_inverse_columns(struct transform *transform);
 void transform_inverse_rows(struct transform *transform, size_t first, size_t count, double *z);
+/* As transform_inverse_rows, of at most TRANSFORM_ROWS rows, into memory of the plan, which the
+ * caller may change until the plan is used again. */
+enum { TRANSFORM_ROWS = 8 };
+double *transform_inverse_strip(struct transform *transform, size_t first, size_t count);
 /* Copies the spectrum of `from` into that of `to`, which has the same band and another grid: zero
  * padding. A Nyquist mode of an even grid stands for two modes of a finer one, each of half its
  * amplitude. */

@@ -215,6 +215,20 @@ size_t radial_bins(const struct grid *grid) {
     return (size_t)(radius(grid, (double)nyquist_x, (double)nyquist_y) + 0.5) + 1;
 }
 
+size_t radial_bin(const struct grid *grid, size_t mx, long my) {
+    return (size_t)(radius(grid, (double)mx, (double)my) + 0.5);
+}
+
+void radial_counts(const struct grid *grid, double *count) {
+    long half_y = (long)(grid->ny / 2);
+    for (size_t r = 0; r < radial_bins(grid); r++)
+        count[r] = 0;
+    for (long my = -half_y; my <= half_y; my++)
+        for (size_t mx = 0; mx <= grid->nx / 2; mx++)
+            if (my >= 0 || 2 * (size_t)-my != grid->ny)
+                count[radial_bin(grid, mx, my)] += modes_weight(grid, mx);
+}
+
 /* band: means are over the waves of a ring that have any power, else over all of the ring. */
 static void ring_density(const struct modes *modes, bool band, double *wave_number,
                          double *density) {
@@ -227,15 +241,16 @@ static void ring_density(const struct modes *modes, bool band, double *wave_numb
         wave_number[r] = 0; /* first the number of modes, then the wave number */
         density[r] = 0;
     }
-    for (long my = -(long)(grid->ny / 2); my <= (long)(grid->ny / 2); my++)
-        for (size_t mx = 0; mx <= grid->nx / 2; mx++) {
-            if (my < 0 && 2 * (size_t)-my == grid->ny)
+    if (!band)
+        radial_counts(grid, wave_number);
+    for (long my = -mode_y; my <= mode_y; my++)
+        for (size_t mx = 0; mx <= modes->mode_x; mx++) {
+            double power = modes_power(modes, mx, my);
+            if (power == 0 || (my < 0 && 2 * (size_t)-my == grid->ny))
                 continue;
-            size_t r = (size_t)(radius(grid, (double)mx, (double)my) + 0.5);
-            double weight = mx == 0 || 2 * mx == grid->nx ? 1 : 2;
-            double power =
-                mx <= modes->mode_x && labs(my) <= mode_y ? modes_power(modes, mx, my) : 0;
-            wave_number[r] += band && power == 0 ? 0 : weight;
+            size_t r = radial_bin(grid, mx, my);
+            double weight = modes_weight(grid, mx);
+            wave_number[r] += band ? weight : 0;
             density[r] += weight * power;
         }
     for (size_t r = 0; r < bins; r++) {

@@ -31,6 +31,10 @@ int map_modes_measure(const struct grid *grid, const double *z, struct modes *mo
 /* Returns the number of radial bins of the functions below for a grid: rings of width one in |m|
  * (min(lx,ly)). */
 size_t radial_bins(const struct grid *grid);
+/* Returns the bin of a wave vector of the grid, and fills how many of the full plane each bin
+ * has. */
+size_t radial_bin(const struct grid *grid, size_t mx, long my);
+void radial_counts(const struct grid *grid, double *count);
 /* Power spectral density, radially averaged for surfaces: C(k) such that m00 = integral of
  * C dkx dky (surface) or of C dk over both signs (profile). wave_number and density have
  * radial_bins entries (bin r: r - 1/2 <= |m| < r + 1/2, wave_number 2 pi r / min(lx, ly)). */
