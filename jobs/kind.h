@@ -69,8 +69,10 @@ struct realisation {
     struct random_key key; /* the number of the realisation among others */
     const double *z;       /* heights on the grid of the case */
     struct surface_report report;
-    struct roughness roughness; /* empty where the kind measures it itself */
-    struct moments moments;     /* of its own spectrum: the prescribed one where that is exact */
+    const struct modes *modes; /* its own spectrum; NULL where it has waves beyond the band */
+    /* Empty where the kind measures them itself; moments are of its own spectrum. */
+    struct roughness roughness;
+    struct moments moments;
     /* To be called repeatedly within a realisation that may take long: non-zero stops it with
      * ERROR_STOPPED. */
     int (*stop)(void *context);
@@ -103,7 +105,8 @@ struct job_kind {
     void (*estimate)(const void *study, struct study_cost *out);
     /* Returns the surface that realisations are made of; NULL for kinds without surfaces. */
     const struct surface_case *(*surface)(const void *study);
-    bool measures_roughness; /* the kind measures it itself: realisations come without it */
+    bool measures_roughness; /* the kind measures roughness and moments itself: realisations come
+                                without them */
 
     /* --- what all runners of a case can share, such as a factorised matrix; 0 and NULL: nothing.
      * Immutable once made, read by many threads. --- */

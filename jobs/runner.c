@@ -157,18 +157,28 @@ static int is_stopped(void *context) {
            control->poll(control->context, progress->done) != 0;
 }
 
+static int surface_measure(const struct job_runner *runner, struct realisation *realisation,
+                           struct error *err) {
+    const struct surface_case *surface = runner->surface;
+    roughness_measure(&surface->grid, runner->z, &realisation->roughness);
+    if (realisation->modes == NULL)
+        return roughness_spectral(&surface->grid, runner->z, &realisation->moments, err);
+    realisation->moments = runner->basis.moments;
+    if (!surface_case_exact(surface))
+        modes_moments(realisation->modes, &realisation->moments);
+    return 0;
+}
+
 static int surface_generate(struct job_runner *runner, struct realisation *realisation,
                             struct error *err) {
-    const struct surface_case *surface = runner->surface;
     realisation->z = runner->z;
-    realisation->moments = runner->basis.moments;
     int status =
         generator_run(runner->generator, runner->key, runner->z, &realisation->report, err);
-    if (status == 0 && !surface_case_exact(surface))
-        status = roughness_spectral(&surface->grid, runner->z, &realisation->moments, err);
-    if (status == 0 && !runner->kind->measures_roughness)
-        roughness_measure(&surface->grid, runner->z, &realisation->roughness);
-    return status;
+    if (status != 0)
+        return status;
+    if (surface_case_band_limited(runner->surface))
+        realisation->modes = generator_drawn(runner->generator);
+    return runner->kind->measures_roughness ? 0 : surface_measure(runner, realisation, err);
 }
 
 static int realise(struct job_runner *runner, uint64_t number, struct progress *progress,

@@ -11,8 +11,8 @@ struct generator {
     struct modes *modes;
     struct transform *transform;
     struct nongaussian *nongaussian; /* NULL: Gaussian heights */
-    struct modes *drawn;             /* spectrum of the last draw, where amplitudes are random and
-                                        heights not Gaussian; else NULL */
+    struct modes *drawn;             /* spectrum of the last draw, where amplitudes are random; else
+                                        NULL */
     double *amplitude;  /* sqrt(power), rows of wave numbers: [(my + mode_y)*(mode_x + 1) + mx] */
     size_t *row_length; /* 2 mode_y + 1: 1 + highest mx of the row with power; 0: none */
     uint64_t *words;    /* mode_x + 1, as row_drawn */
@@ -77,7 +77,7 @@ int generator_create(struct generator **out, const struct spectrum *spectrum,
         status = transform_create(&g->transform, grid, g->modes->mode_x, g->modes->mode_y, err);
     if (status == 0)
         status = arrays_create(g, random, err);
-    if (status == 0 && random && iterated)
+    if (status == 0 && random)
         status = drawn_create(g, err);
     if (status == 0 && iterated)
         status = nongaussian_create(&g->nongaussian, random ? g->drawn : g->modes, options, err);
@@ -109,16 +109,20 @@ const struct modes *generator_modes(const struct generator *generator) {
     return generator->modes;
 }
 
+const struct modes *generator_drawn(const struct generator *generator) {
+    return generator->drawn != NULL ? generator->drawn : generator->modes;
+}
+
 double generator_bytes(const struct grid *grid, size_t mode_x, size_t mode_y,
                        const struct surface_options *options) {
     double points = (double)grid->nx * (double)grid->ny;
     double band = (double)(mode_x + 1) * (double)(2 * mode_y + 1);
     double columns = (double)(mode_x + 1) * (double)grid->ny;
     double bytes = sizeof(double) * (points + 2 * band) + sizeof(double complex) * columns;
-    if (!surface_is_iterated(options))
-        return bytes;
     if (options->amplitudes == AMPLITUDES_RANDOM)
         bytes += sizeof(double) * band;
+    if (!surface_is_iterated(options))
+        return bytes;
     return bytes + nongaussian_bytes(grid, mode_x, mode_y, options);
 }
 
@@ -177,8 +181,9 @@ static const double *row_amplitudes(struct generator *g, struct random_key key, 
         return amplitude;
     random_words(key, STREAM_AMPLITUDES, row_first_word(my), length, g->words);
     for (size_t mx = 0; mx < length; mx++)
-        g->row_drawn[mx] =
-            amplitude[mx] > 0 ? amplitude[mx] * sqrt(-log1p(-uniform(g->words[mx]))) : 0;
+        g->row_drawn[mx] = amplitude[mx] > 0 ? -log1p(-uniform(g->words[mx])) : 0;
+    for (size_t mx = 0; mx < length; mx++) /* apart from the calls, it is a loop of vectors */
+        g->row_drawn[mx] = amplitude[mx] * sqrt(g->row_drawn[mx]);
     return g->row_drawn;
 }
 

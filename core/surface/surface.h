@@ -23,6 +23,10 @@ void generator_destroy(struct generator **generator);
 /* Returns the prescribed spectrum, which lives as long as the generator. It is that of every
  * surface, or with random amplitudes that of the mean. */
 const struct modes *generator_modes(const struct generator *generator);
+/* Returns the spectrum that was drawn for the last run: the prescribed one, or with random
+ * amplitudes its own. The surface has it, to rounding, unless heights were kept in its place
+ * (KEEP_HEIGHTS). Lives as long, and changes with the next run. */
+const struct modes *generator_drawn(const struct generator *generator);
 /* Peak bytes of a generator with these settings, including the caller's z of grid_points
  * doubles. */
 double generator_bytes(const struct grid *grid, size_t mode_x, size_t mode_y,

@@ -195,41 +195,52 @@ static void workspace_clear(void *workspace) {
         summit_list_clear(&work->summits[side]);
 }
 
-/* Returns the roughness of a surface whose spectrum is exact: constants, and what depends on
- * heights. */
-static struct roughness roughness_of(const struct roughness *constants,
-                                     const struct height_sums *sums) {
-    struct roughness out = *constants;
-    double variance = out.rms_height * out.rms_height;
-    out.skewness = sums->third / (variance * out.rms_height);
-    out.kurtosis = sums->fourth / (variance * variance);
-    out.lowest = sums->lowest;
-    out.highest = sums->highest;
-    return out;
+struct measured {
+    struct roughness roughness;
+    struct moments moments; /* of its own spectrum */
+};
+
+/* Fills the parameters of a surface whose spectrum is known: constants of all surfaces, or what
+ * this spectrum has, and what depends on heights. */
+static void known_fill(const struct statistics_workspace *work, const struct modes *modes,
+                       const struct height_sums *sums, struct measured *out) {
+    *out = (struct measured){work->constants, work->moments};
+    struct roughness *roughness = &out->roughness;
+    if (!surface_case_exact(&work->one_case->surface))
+        spectral_band_moments(work->spectra.band, modes, &out->moments, roughness);
+    double variance = roughness->rms_height * roughness->rms_height;
+    roughness->skewness = sums->third / (variance * roughness->rms_height);
+    roughness->kurtosis = sums->fourth / (variance * variance);
+    roughness->lowest = sums->lowest;
+    roughness->highest = sums->highest;
 }
 
 /* Counts the heights into the tally's scratch, and finds summits and pits. */
-static int measure_surface(struct statistics_workspace *work, const double *z,
-                           struct statistics_tally *tally, struct roughness *roughness,
+static int measure_surface(struct statistics_workspace *work, const struct realisation *realisation,
+                           struct statistics_tally *tally, struct measured *out,
                            struct error *err) {
     const struct statistics_case *one_case = work->one_case;
     const struct grid *grid = &one_case->surface.grid;
     struct height_sums sums;
-    bool exact = surface_case_exact(&one_case->surface);
+    bool known = realisation->modes != NULL; /* then heights have no mean, too */
     const struct surface_pass pass = {.finder = work->finder,
                                       .bins = &one_case->height,
                                       .scale = tally->scales.height,
                                       .counts = tally->counts.height,
-                                      .sums = exact ? &sums : NULL,
+                                      .sums = known ? &sums : NULL,
                                       .summits = &work->summits[SIDE_SUMMITS],
                                       .pits = &work->summits[SIDE_PITS]};
-    int status = surface_pass_run(&pass, grid, z, err);
+    int status = surface_pass_run(&pass, grid, realisation->z, err);
     if (status != 0)
         return status;
-    if (exact)
-        *roughness = roughness_of(&work->constants, &sums);
-    else
-        roughness_measure(grid, z, roughness);
+    if (known)
+        known_fill(work, realisation->modes, &sums, out);
+    else {
+        roughness_measure(grid, realisation->z, &out->roughness);
+        status = roughness_spectral(grid, realisation->z, &out->moments, err);
+    }
+    if (status != 0)
+        return status;
     if (!statistics_case_symmetric(one_case))
         return 0;
     return summit_list_append(&work->summits[SIDE_SUMMITS], &work->summits[SIDE_PITS], err);
@@ -239,10 +250,10 @@ static int realise(void *workspace, const struct realisation *realisation, void 
                    double *scalars, struct error *err) {
     struct statistics_workspace *work = workspace;
     const struct grid *grid = &work->one_case->surface.grid;
-    struct roughness roughness;
-    int status = measure_surface(work, realisation->z, tally, &roughness, err);
+    struct measured measured;
+    int status = measure_surface(work, realisation, tally, &measured, err);
     if (status == 0)
-        status = spectra_measure(&work->spectra, grid, realisation->z, tally, err);
+        status = spectra_measure(&work->spectra, realisation, grid, tally, err);
     if (status != 0)
         return status;
     statistics_tally_add(tally, realisation->key.realisation, grid_points(grid), work->summits);
@@ -250,8 +261,8 @@ static int realise(void *workspace, const struct realisation *realisation, void 
                                   work->summits, tally, err);
     if (status != 0)
         return status;
-    const struct realisation_measures measures = {.roughness = &roughness,
-                                                  .moments = &realisation->moments,
+    const struct realisation_measures measures = {.roughness = &measured.roughness,
+                                                  .moments = &measured.moments,
                                                   .summits = work->summits,
                                                   .report = &realisation->report};
     statistics_scalars_measure(work->one_case, &work->moments, &measures, scalars);

@@ -79,10 +79,26 @@ int spectra_create(struct spectra *out, const struct statistics_case *one_case,
                             "spectra");
     }
     spectra_reference(modes, out->abscissa, out->reference);
-    return 0;
+    if (!surface_case_band_limited(&one_case->surface))
+        return 0;
+    int status = spectral_band_create(&out->band, &modes->grid, modes->mode_x, modes->mode_y, err);
+    if (status != 0)
+        spectra_clear(out);
+    return status;
+}
+
+double spectra_bytes(const struct statistics_case *one_case) {
+    const struct grid *grid = &one_case->surface.grid;
+    const struct surface_band band = surface_case_band(&one_case->surface);
+    if (surface_case_exact(&one_case->surface))
+        return 0;
+    if (surface_case_band_limited(&one_case->surface))
+        return spectral_band_bytes(grid, band.x, band.y);
+    return 26 * (double)grid_points(grid); /* of a transform of the grid */
 }
 
 void spectra_clear(struct spectra *spectra) {
+    spectral_band_destroy(&spectra->band);
     free(spectra->abscissa);
     free(spectra->measured);
     free(spectra->reference);
@@ -128,10 +144,26 @@ static int measure_correlation(struct spectra *spectra, const struct grid *grid,
     return status;
 }
 
-int spectra_measure(struct spectra *spectra, const struct grid *grid, const double *z,
-                    struct statistics_tally *tally, struct error *err) {
+/* Adds what a known spectrum has, whose changes are 0. */
+static void add_known(struct spectra *spectra, const struct modes *modes,
+                      struct statistics_tally *tally) {
+    spectral_band_density(spectra->band, modes, spectra->measured);
+    for (size_t a = 0; a < spectra->sizes.densities; a++)
+        tally_sums_add(&tally->density, a, spectra->measured[a] / spectra->reference[a], 1);
+    spectral_band_correlation(spectra->band, modes, spectra->measured);
+    for (size_t a = 0; a < spectra->sizes.correlations; a++)
+        tally_sums_add(&tally->correlation, a, spectra->measured[a], 1);
+}
+
+int spectra_measure(struct spectra *spectra, const struct realisation *realisation,
+                    const struct grid *grid, struct statistics_tally *tally, struct error *err) {
+    const double *z = realisation->z;
     if (spectra->sizes.densities == 0)
         return 0;
+    if (spectra->band != NULL) {
+        add_known(spectra, realisation->modes, tally);
+        return 0;
+    }
     if (spectra->sizes.density_changes > 0)
         sample(grid, z, &spectra->coarse, spectra->samples);
     int status = measure_density(spectra, grid, z, tally, err);

@@ -1,8 +1,10 @@
 /* Spectral density and autocorrelation of a case. Where the surfaces have the prescribed spectrum
- * exactly, both are known in advance; else they are measured on every realisation. */
+ * exactly, both are known in advance. Else they are measured on every realisation: of its spectrum
+ * where that is known (random amplitudes), or of its heights. */
 #ifndef RUGO_JOBS_STATISTICS_STATISTICS_SPECTRA_H
 #define RUGO_JOBS_STATISTICS_STATISTICS_SPECTRA_H
 
+#include "core/statistics/spectra/spectral_band.h"
 #include "jobs/statistics/statistics_tally.h"
 #include "schema/result/result.h"
 
@@ -11,6 +13,7 @@ struct spectra_sizes spectra_sizes(const struct statistics_case *one_case);
 /* The workspace for measuring, made once a case. */
 struct spectra {
     struct spectra_sizes sizes;
+    struct spectral_band *band;  /* owned; NULL unless spectra are measured and known */
     double *abscissa, *measured; /* owned, scratch */
     struct grid coarse;          /* of every second point, where changes are measured */
     double *samples, *changed;   /* owned, scratch: its heights, what is measured on it */
@@ -22,8 +25,10 @@ void spectra_reference(const struct modes *modes, double *wave_number, double *d
 int spectra_create(struct spectra *out, const struct statistics_case *one_case,
                    const struct modes *modes, struct error *err);
 void spectra_clear(struct spectra *spectra);
-int spectra_measure(struct spectra *spectra, const struct grid *grid, const double *z,
-                    struct statistics_tally *tally, struct error *err);
+int spectra_measure(struct spectra *spectra, const struct realisation *realisation,
+                    const struct grid *grid, struct statistics_tally *tally, struct error *err);
+/* Returns the peak bytes of the workspace and of what is measured with it. */
+double spectra_bytes(const struct statistics_case *one_case);
 
 /* Appends the curves "psd" and "acf". */
 int spectra_curves(const struct statistics_case *one_case, const struct modes *modes,

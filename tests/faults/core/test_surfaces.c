@@ -4,6 +4,7 @@
 
 #include "core/map/height_map_file.h"
 #include "core/statistics/heights/roughness.h"
+#include "core/statistics/spectra/spectral_band.h"
 #include "core/statistics/summits/summits.h"
 #include "core/surface/surface.h"
 #include "tests/support/failing/each_allocation.h"
@@ -145,6 +146,19 @@ static int measure(void *context, struct error *err) {
     return status;
 }
 
+static int measure_band(void *context, struct error *err) {
+    (void)context;
+    struct spectral_band *band = NULL;
+    int status = spectral_band_create(&band, &GRID, 4, 4, err);
+    spectral_band_destroy(&band);
+    return status;
+}
+
+static void bands(void **state) {
+    (void)state;
+    each_allocation(&(struct failing_call){.name = "a band", measure_band, NULL});
+}
+
 static void roughness(void **state) {
     (void)state;
     static double z[POINTS] = {1, 2, 3};
@@ -188,7 +202,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(surfaces),   cmocka_unit_test(tables_of_heights),
         cmocka_unit_test(resampling), cmocka_unit_test(summits),
-        cmocka_unit_test(roughness),  cmocka_unit_test(files),
+        cmocka_unit_test(roughness),  cmocka_unit_test(bands),
+        cmocka_unit_test(files),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -264,6 +264,54 @@ static void a_wave_keeps_its_random_amplitude(void **state) {
     generator_destroy(&b);
 }
 
+/* Compares the spectrum of z with one that is known, on the half plane of a band below the grid's:
+ * to 12 digits. */
+static void check_spectrum(const struct modes *modes, const double *z) {
+    struct transform *transform = NULL;
+    size_t ny = modes->grid.ny, common = 0;
+    assert_int_equal(transform_create(&transform, &modes->grid, modes->mode_x, modes->mode_y, NULL),
+                     0);
+    transform_forward(transform, z);
+    for (size_t mx = 0; mx <= modes->mode_x; mx++)
+        for (long my = -(long)modes->mode_y; my <= (long)modes->mode_y; my++) {
+            size_t row = my >= 0 ? (size_t)my : ny - (size_t)-my;
+            double complex mode = transform_spectrum(transform)[mx * ny + row];
+            double power = modes_power(modes, mx, my);
+            check_close(creal(mode) * creal(mode) + cimag(mode) * cimag(mode), power,
+                        1e-15 + 1e-12 * power);
+            common += power > 0;
+        }
+    assert_true(common > 100);
+    transform_destroy(&transform);
+}
+
+/* What is known of a surface without a transform of it: its own spectrum, which changes with each
+ * run where amplitudes are random, and is the prescribed one where they are not. */
+static void the_drawn_spectrum_is_that_of_the_surface(void **state) {
+    (void)state;
+    const struct grid grid = {64, 64, 16, 16};
+    static const enum heights_type HEIGHTS[] = {HEIGHTS_GAUSSIAN, HEIGHTS_WEIBULL_MAX};
+    struct spectrum spectrum = self_affine(4);
+    static double z[64 * 64];
+    for (size_t h = 0; h < 2; h++)
+        for (int random = 0; random < 2; random++) {
+            struct surface_options options = SURFACE_DEFAULTS;
+            struct generator *generator = NULL;
+            options.heights = (struct heights){.type = HEIGHTS[h], .shape = 2};
+            options.amplitudes = random ? AMPLITUDES_RANDOM : AMPLITUDES_FIXED;
+            options.max_iterations = 20;
+            assert_int_equal(generator_create(&generator, &spectrum, &grid, &options, NULL), 0);
+            const struct modes *mean = generator_modes(generator);
+            for (uint64_t r = 0; r < 2; r++) {
+                assert_int_equal(
+                    generator_run(generator, (struct random_key){9, 0, r}, z, NULL, NULL), 0);
+                check_spectrum(generator_drawn(generator), z);
+            }
+            assert_true((generator_drawn(generator) == mean) == !random);
+            generator_destroy(&generator);
+        }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(spectrum_is_exact),
@@ -273,6 +321,7 @@ int main(void) {
         cmocka_unit_test(one_mode_is_one_wave),
         cmocka_unit_test(random_powers_are_those_of_normal_modes),
         cmocka_unit_test(a_wave_keeps_its_random_amplitude),
+        cmocka_unit_test(the_drawn_spectrum_is_that_of_the_surface),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

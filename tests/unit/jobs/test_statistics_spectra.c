@@ -3,6 +3,7 @@
  * are assigned point by point the change on every second point; none of what theory expects. */
 #include "jobs/statistics/statistics_case.h"
 #include "jobs/statistics/statistics_expectation.h"
+#include "jobs/statistics/statistics_scalars.h"
 #include "tests/support/statistics_study.h"
 
 enum { DRAWN = 3 };
@@ -131,11 +132,85 @@ static void waves_beyond_the_grid_are_folded(void **state) {
     result_clear(&expected);
 }
 
+/* The realisation that results are compared with, generated and measured anew. */
+static void check_measures(const char *surface, const struct surface_options *options) {
+    char text[400];
+    struct generator *generator = NULL;
+    struct roughness expected;
+    struct moments moments;
+    snprintf(text, sizeof text,
+             "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 4,"
+             " \"points_per_wavelength\": 4, %s}}",
+             surface);
+    const struct grid grid = {64, 64, 16, 16};
+    const struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
+                                      .hurst = 0.8,
+                                      .wavelength_long = 4,
+                                      .wavelength_rolloff = 4,
+                                      .wavelength_short = 1};
+    static double z[64 * 64], x[64 * 64], density[64 * 64], correlation[64 * 64];
+    static double whole[64 * 64], band[64 * 64];
+    const struct random_key key = {STUDY_SEED, STUDY_CASE, 0};
+    assert_int_equal(generator_create(&generator, &spectrum, &grid, options, NULL), 0);
+    assert_int_equal(generator_run(generator, key, z, NULL, NULL), 0);
+    roughness_measure(&grid, z, &expected);
+    assert_int_equal(roughness_spectral(&grid, z, &moments, NULL), 0);
+    assert_int_equal(psd_measure(&grid, z, x, density, NULL), 0);
+    assert_int_equal(acf_measure(&grid, z, x, correlation, NULL), 0);
+    psd_of_modes(generator_modes(generator), x, whole);
+    psd_of_band(generator_modes(generator), x, band);
+
+    struct case_result result = {0};
+    struct job_runner *runner = runner_of(text);
+    struct job_merger *merger = merger_of(text);
+    struct block_result block = run(runner, 0, 1);
+    const double *found = block.scalars;
+    check_relative(found[SCALAR_RMS_HEIGHT], expected.rms_height, 1e-12);
+    check_relative(found[SCALAR_RMS_SLOPE], expected.rms_slope, 1e-12);
+    check_relative(found[SCALAR_RMS_CURVATURE], expected.rms_curvature, 1e-12);
+    check_relative(found[SCALAR_M4_DIFFERENCE], expected.m4, 1e-12);
+    check_relative(found[SCALAR_NAYAK_ALPHA_DIFFERENCE], expected.nayak_alpha, 1e-12);
+    check_close(found[SCALAR_SKEWNESS], expected.skewness, 1e-12);
+    check_relative(found[SCALAR_KURTOSIS], expected.kurtosis, 1e-12);
+    check_relative(found[SCALAR_M0], moments.m0, 1e-12);
+    check_relative(found[SCALAR_M4], moments.m4, 1e-12);
+    check_relative(found[SCALAR_NAYAK_ALPHA], moments.nayak_alpha, 1e-12);
+    merge(merger, &block);
+    assert_int_equal(merger_result(merger, &result, NULL), 0);
+    const struct curve *psd = result_curve(&result, "psd"), *acf = result_curve(&result, "acf");
+    for (size_t a = 1; a <= psd->n;
+         a++) { /* bin 0 is the mean; others are over waves of the band */
+        double share = whole[a] > 0 ? band[a] / whole[a] : 0;
+        check_close(psd->y[a - 1], density[a] * share, 1e-12 * density[5]);
+    }
+    for (size_t a = 0; a < acf->n; a++)
+        check_close(acf->y[a], correlation[a], 1e-12);
+    result_clear(&result);
+    block_result_clear(&block);
+    merger_destroy(&merger);
+    runner_destroy(&runner);
+    generator_destroy(&generator);
+}
+
+/* With random amplitudes all that a spectrum holds is taken from the one that was drawn: the same,
+ * to 12 digits, as is measured on the heights. */
+static void drawn_spectra_are_as_measured(void **state) {
+    (void)state;
+    struct surface_options options = SURFACE_DEFAULTS;
+    options.amplitudes = AMPLITUDES_RANDOM;
+    check_measures("\"amplitudes\": \"random\"", &options);
+    options.heights = (struct heights){.type = HEIGHTS_WEIBULL_MAX, .shape = 2};
+    check_measures("\"amplitudes\": \"random\","
+                   " \"heights\": {\"distribution\": \"weibull_max\", \"shape\": 2}",
+                   &options);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rings_are_near_circles),
         cmocka_unit_test(profiles_have_no_rings),
         cmocka_unit_test(waves_beyond_the_grid_are_folded),
+        cmocka_unit_test(drawn_spectra_are_as_measured),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
