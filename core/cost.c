@@ -1,5 +1,6 @@
 #include "core/cost.h"
 #include "core/full/linear/gmres.h"
+#include "core/statistics/heights/roughness.h"
 #include <math.h>
 
 /* --- surfaces --- */
@@ -24,6 +25,10 @@ static const double REFINED_NS = 15, SPECTRAL_CURVATURE_NS = 4;
 /* Nanoseconds a point of psd_measure and acf_measure together, fitted to surfaces of 256 x 256 to
  * 8192 x 8192 points. */
 static const double SPECTRA_NS = 17;
+/* Random amplitudes (bench_statistics): nanoseconds a mode of the half plane, to be drawn and
+ * summed; a point, for the field of the autocorrelation; a value of a ring, for exact sums. Fitted
+ * to 512 x 512 and 1024 x 1024 points and profiles of 4096 and 65536, 2 to 16 a shortest wave. */
+static const double RANDOM_MODE_NS = 30, FIELD_NS = 1, RING_NS = 40;
 /* Relative increase of a surface's time a point with each doubling of the points from 2^20 on
  * (bench_surface). */
 static const double CACHE_SLOPE = 0.4, CACHE_DOUBLINGS = 20;
@@ -62,6 +67,12 @@ double cost_summits(enum summit_stencil stencil, enum summit_curvature curvature
 
 double cost_spectra(void) {
     return SPECTRA_NS;
+}
+
+double cost_random_amplitudes(const struct grid *grid, size_t mode_x, size_t mode_y) {
+    double modes = (double)(mode_x + 1) * (double)(2 * mode_y + 1);
+    double rings = hypot((double)mode_x, (double)mode_y) + (double)acf_lags(grid);
+    return RANDOM_MODE_NS * modes + FIELD_NS * (double)grid_points(grid) + RING_NS * rings;
 }
 
 double cost_caches(double points) {

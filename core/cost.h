@@ -9,11 +9,14 @@
 #include "core/surface/surface.h"
 
 /* Nanoseconds a point and realisation: to generate a surface (non-Gaussian ones by the number of
- * iterations expected for their tolerance and heights), to find its summits, and to measure its
- * spectral density and autocorrelation. */
+ * iterations expected for their tolerance and heights), to find its summits, and to measure the
+ * spectral density and autocorrelation of its heights. */
 double cost_generation(const struct surface_options *options, const struct grid *grid);
 double cost_summits(enum summit_stencil stencil, enum summit_curvature curvature);
 double cost_spectra(void);
+/* Nanoseconds a realisation: to draw random amplitudes, and to measure what the drawn spectrum has
+ * (core/statistics/spectra/spectral_band.h) and add it up exactly. */
+double cost_random_amplitudes(const struct grid *grid, size_t mode_x, size_t mode_y);
 /* Returns the factor by which work on this many points slows down beyond the processor's caches. */
 double cost_caches(double points);
 

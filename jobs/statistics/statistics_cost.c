@@ -5,25 +5,38 @@
 #include "jobs/statistics/statistics_case.h"
 #include "jobs/statistics/statistics_generation.h"
 #include "jobs/statistics/statistics_levels.h"
+#include "jobs/statistics/statistics_spectra.h"
 #include <math.h>
 
 /* Factor for spectra of every second point beside those of all. */
 static const double CHANGES_COST = 1.25;
+/* Nanoseconds a mode of the half plane (bench_statistics): its phase, and the summits of such
+ * waves. */
+static const double MODE_NS = 60;
+
+/* Returns the CPU nanoseconds of one realisation that its waves take. */
+static double expected_of_waves(const struct surface_case *surface) {
+    const struct surface_band band = surface_case_band(surface);
+    double all = MODE_NS * (double)(band.x + 1) * (double)(2 * band.y + 1);
+    if (surface->options.amplitudes == AMPLITUDES_RANDOM && surface_case_band_limited(surface))
+        all += cost_random_amplitudes(&surface->grid, band.x, band.y);
+    return all;
+}
 
 /* Returns the CPU seconds of one realisation. */
 static double expected_seconds(const struct statistics_case *one_case) {
     double points = (double)grid_points(&one_case->surface.grid);
     double nanoseconds = cost_generation(&one_case->surface.options, &one_case->surface.grid);
-    if (!surface_case_exact(&one_case->surface))
-        nanoseconds +=
-            cost_spectra() * (surface_case_band_limited(&one_case->surface) ? 1 : CHANGES_COST);
+    if (!surface_case_band_limited(&one_case->surface))
+        nanoseconds += cost_spectra() * CHANGES_COST;
     double summits = 2 * cost_summits(one_case->stencil, one_case->curvature); /* and pits */
     nanoseconds += summits;
     for (size_t l = 0; l < one_case->level_count; l++) {
         double part = (double)one_case->strides[l];
         nanoseconds += summits / (one_case->surface.dimension == 2 ? part * part : part);
     }
-    return 1e-4 + 1e-9 * nanoseconds * points * cost_caches(points) +
+    nanoseconds = nanoseconds * points + expected_of_waves(&one_case->surface);
+    return 1e-4 + 1e-9 * nanoseconds * cost_caches(points) +
            statistics_generation_seconds(one_case) + like_patch_seconds(&one_case->like);
 }
 
@@ -56,22 +69,21 @@ void statistics_case_estimate(const struct statistics_case *one_case, struct stu
     const struct grid *grid = &surface->grid;
     const struct surface_band band = surface_case_band(surface);
     const struct surface_band own = surface_case_own_band(surface);
-    double points = (double)grid_points(grid), alpha;
+    double alpha;
     double summits =
         fmax(1, spectrum_expected_summits(&surface->spectrum, grid, surface->length_ratio,
                                           (double)band.x, &alpha));
     double spread = sqrt(fmax(0.05, 1 - 0.8968 / fmax(alpha, 1))); /* of summit heights */
-    bool exact = surface_case_exact(surface);
     surface_law_estimate(&surface->law, out);
     out->nx = grid->nx;
     out->ny = grid->ny;
-    /* a list of summits doubles as it grows; spectra of height maps need a transform of the grid */
+    /* a list of summits doubles as it grows */
     out->memory_bytes =
         surface_case_bytes(surface) + statistics_generation_bytes(one_case) +
         summit_finder_bytes(grid, one_case->stencil, one_case->curvature, own.x, own.y) +
         statistics_tally_bytes(one_case) + statistics_levels_bytes(one_case) +
         like_patch_bytes(&one_case->like) + 6 * summits * sizeof(struct summit) +
-        (exact ? 0 : 26 * points) + 6e6;
+        spectra_bytes(one_case) + 6e6;
     out->seconds = expected_seconds(one_case);
     out->case_seconds = expected_case_seconds(one_case, summits);
     /* sum of the bins' errors over their sum: integral sqrt(p) / sqrt(N w), p near normal */

@@ -1,7 +1,11 @@
 /* A realisation of a study of statistics, 1024 x 1024, with all that it measures, beside generation
  * with nine-point summits alone. Printed: CPU time, one core, medians, taken in turn so that other
  * work on the machine is the same for all. Weibull surfaces are those without pairs for the error
- * `generation`, which one in 64 has. */
+ * `generation`, which one in 64 has.
+ *
+ * A second table has Gaussian surfaces and profiles with fixed and with random amplitudes, 8 and 2
+ * points a shortest wave, beside what is estimated before they run; ratios are medians of ratios.
+ */
 #include "core/statistics/summits/summits.h"
 #include "jobs/runner.h"
 #include <math.h>
@@ -111,6 +115,91 @@ static int bench_run(const struct statistics_bench *bench, struct error *err) {
     return 0;
 }
 
+/* --- fixed and random amplitudes --- */
+
+struct amplitude_bench {
+    int dimension;
+    size_t side, points_per_wave;
+    uint64_t block;
+};
+enum { FIXED, RANDOM, KINDS };
+
+static int runner_make(struct job_runner **out, const struct amplitude_bench *bench, int kind,
+                       double *expected, struct error *err) {
+    char text[300];
+    struct fault_list faults = {0};
+    struct study_cost cost = {0};
+    size_t ratio = bench->side / bench->points_per_wave / 8;
+    snprintf(text, sizeof text,
+             "{\"surface\":{\"dimension\":%d,\"hurst\":0.8,\"wavelength_ratio\":%zu,"
+             "\"length_ratio\":8,\"points_per_wavelength\":%zu,\"amplitudes\":\"%s\"}}",
+             bench->dimension, ratio, bench->points_per_wave, kind == FIXED ? "fixed" : "random");
+    cJSON *parameters = cJSON_Parse(text);
+    const struct job_kind *statistics = kind_find("statistics");
+    int status = parameters != NULL
+                     ? kind_check(&statistics->study, parameters, 0, &faults, &cost, err)
+                     : error_memory(err, sizeof text, "parameters");
+    if (status == 0)
+        status = runner_create(out, statistics, parameters, NULL, 1, 0, err);
+    *expected = 1e3 * cost.seconds;
+    fault_list_clear(&faults);
+    cJSON_Delete(parameters);
+    return status;
+}
+
+/* Fills the times a realisation of a block of each kind, one behind the other. */
+static int pair_measure(struct job_runner *const runners[], uint64_t block, double *times,
+                        struct error *err) {
+    int status = 0;
+    for (int kind = 0; kind < KINDS && status == 0; kind++) {
+        struct block_result result = {0};
+        double start = cpu_ms();
+        status = runner_run(runners[kind], 1, block, NULL, &result, err);
+        times[kind] = (cpu_ms() - start) / (double)block;
+        block_result_clear(&result);
+    }
+    return status;
+}
+
+static int amplitudes_run(const struct amplitude_bench *bench, struct error *err) {
+    struct job_runner *runners[KINDS] = {NULL};
+    double times[KINDS], expected[KINDS], of[KINDS][REPEATS_MOST], ratio[REPEATS_MOST];
+    int status = 0;
+    for (int kind = 0; kind < KINDS && status == 0; kind++)
+        status = runner_make(&runners[kind], bench, kind, &expected[kind], err);
+    if (status == 0) /* touches all memory */
+        status = pair_measure(runners, bench->block, times, err);
+    for (size_t r = 0; r < REPEATS_MOST && status == 0; r++) {
+        status = pair_measure(runners, bench->block, times, err);
+        of[FIXED][r] = times[FIXED];
+        of[RANDOM][r] = times[RANDOM];
+        ratio[r] = times[RANDOM] / times[FIXED];
+    }
+    for (int kind = 0; kind < KINDS; kind++)
+        runner_destroy(&runners[kind]);
+    if (status != 0)
+        return status;
+    qsort(of[FIXED], REPEATS_MOST, sizeof(double), by_value);
+    qsort(of[RANDOM], REPEATS_MOST, sizeof(double), by_value);
+    qsort(ratio, REPEATS_MOST, sizeof(double), by_value);
+    size_t half = REPEATS_MOST / 2;
+    printf("%3dD  %6zu  %6zu  %9.3f (%.3f)  %9.3f (%.3f)  %5.2f (%.2f-%.2f)\n", bench->dimension,
+           bench->side, bench->points_per_wave, of[FIXED][half], expected[FIXED], of[RANDOM][half],
+           expected[RANDOM], ratio[half], ratio[0], ratio[REPEATS_MOST - 1]);
+    return 0;
+}
+
+static int amplitudes_bench(struct error *err) {
+    static const struct amplitude_bench BENCHES[] = {{2, 512, 8, 40},    {2, 1024, 8, 10},
+                                                     {2, 512, 2, 10},    {1, 4096, 8, 100},
+                                                     {1, 65536, 8, 100}, {1, 65536, 2, 40}};
+    int status = 0;
+    printf("\n      points  a wave  fixed ms (estimate)  random ms (estimate)  ratio (spread)\n");
+    for (size_t b = 0; b < sizeof BENCHES / sizeof *BENCHES && status == 0; b++)
+        status = amplitudes_run(&BENCHES[b], err);
+    return status;
+}
+
 int main(void) {
     struct statistics_bench benches[] = {
         {"gaussian", "{\"surface\":{" SURFACE "}}", SURFACE_DEFAULTS, 15, 7},
@@ -127,5 +216,9 @@ int main(void) {
             fprintf(stderr, "bench_statistics: %s\n", err.text);
             return 1;
         }
+    if (amplitudes_bench(&err) != 0) {
+        fprintf(stderr, "bench_statistics: %s\n", err.text);
+        return 1;
+    }
     return 0;
 }
