@@ -40,7 +40,8 @@ static size_t rows_within(const struct grid *grid, bool square) {
         return 1;
     double reach = ((double)acf_lags(grid) - 0.5) * grid_dx(grid) / grid_dy(grid);
     double rows = floor(square ? reach / M_SQRT2 : reach) + 1;
-    return (size_t)fmin(rows, (double)(grid->ny / 2 + 1));
+    size_t half = grid->ny / 2 + 1;
+    return rows < (double)half ? (size_t)rows : half;
 }
 
 /* Returns how many lags of the whole field a computed one stands for. */
@@ -110,12 +111,13 @@ static bool arrays_create(struct spectral_band *band) {
 }
 
 double spectral_band_bytes(const struct grid *grid, size_t mode_x, size_t mode_y) {
+    size_t width = grid->nx / 2 + 1;
     double columns = (double)(mode_x + 1), rows = (double)(2 * mode_y + 1);
     double field = (double)rows_within(grid, grid_is_square(grid, mode_x, mode_y));
     double lines = (double)TRANSFORM_ROWS * (double)grid->nx;
     return sizeof(double) *
                (2 * (columns + rows) + columns * rows / 2 + (double)radial_bins(grid)) +
-           sizeof(uint32_t) * (columns * rows + field * (double)(grid->nx / 2 + 1)) +
+           sizeof(uint32_t) * (columns * rows + field * (double)width) +
            sizeof(double) * (field + (double)acf_lags(grid)) +
            sizeof(double complex) * (columns / 2 + 1) * (double)grid->ny +
            sizeof(double) * 6 * lines; /* of both transforms */
@@ -323,7 +325,7 @@ static void columns_fill(struct spectral_band *band) {
         for (size_t row = height; row + height <= ny; row++)
             column[row] = 0;
         for (size_t my = 0; my < height; my++) {
-            double complex pair = CMPLX(real[my], imaginary != NULL ? imaginary[my] : 0);
+            double complex pair = real[my] + (imaginary != NULL ? imaginary[my] : 0) * I;
             column[my] = pair;
             if (my > 0)
                 column[ny - my] = pair;
