@@ -10,29 +10,29 @@ static int resample(const struct contact_level *level, const struct surface_case
 }
 
 static int resample_translated(const struct contact_level *level,
-                               const struct surface_case *surface, const double *z, double *out,
-                               struct error *err) {
-    const struct height_function *function = translation_function(surface->law.translation);
-    double height = surface->law.height;
+                               const struct surface_case *surface, double rms_height,
+                               const double *z, double *out, struct error *err) {
+    const struct height_function *function = translation_function(surface->translation);
     size_t points = grid_points(&surface->grid);
     double *gaussian = array_create(points, sizeof *gaussian);
     if (gaussian == NULL)
         return error_memory(err, points * sizeof *gaussian, "a Gaussian field");
     memcpy(gaussian, z, points * sizeof *gaussian);
-    height_function_undo(function, height, points, gaussian);
+    height_function_undo(function, rms_height, points, gaussian);
     int status = resample(level, surface, gaussian, out, err);
     if (status == 0)
-        height_function_apply(function, height, grid_points(&level->grid), out);
+        height_function_apply(function, rms_height, grid_points(&level->grid), out);
     free(gaussian);
     return status;
 }
 
 int contact_level_sample(const struct contact_level *level, const struct surface_case *surface,
-                         const double *z, double *out, struct error *err) {
+                         double rms_height, const double *z, double *out, struct error *err) {
     const struct grid *grid = &level->grid;
     if (level->stride == 0)
-        return surface_case_translated(surface) ? resample_translated(level, surface, z, out, err)
-                                                : resample(level, surface, z, out, err);
+        return surface_case_translated(surface)
+                   ? resample_translated(level, surface, rms_height, z, out, err)
+                   : resample(level, surface, z, out, err);
     for (size_t j = 0; j < grid->ny; j++) {
         const double *row = z + j * level->stride * surface->grid.nx;
         for (size_t i = 0; i < grid->nx; i++)

@@ -10,9 +10,9 @@ struct contact_level {
     size_t stride; /* every n-th point of the own grid along x and y; 0: resampled from its band */
 };
 
-/* Samples heights on the grid of a surface on the grid of a level. A surface that is translated is
- * so by its Gaussian field, of which the heights are a function at each point. */
+/* Samples heights on the grid of a surface, of this RMS height, on the grid of a level. A surface
+ * that is translated is so by its Gaussian field, of which the heights are a function. */
 int contact_level_sample(const struct contact_level *level, const struct surface_case *surface,
-                         const double *z, double *out, struct error *err);
+                         double rms_height, const double *z, double *out, struct error *err);
 
 #endif

@@ -219,8 +219,8 @@ int contact_scene_solve(struct contact_scene *scene, const struct contact_surfac
     const struct contact_stopper stopper = {stop, context};
     int status = 0;
     for (size_t l = 0; l < one_case->level_count && status == 0; l++) {
-        status = contact_level_sample(&one_case->levels[l], &one_case->surface, surface->z,
-                                      scene->z, err);
+        status = contact_level_sample(&one_case->levels[l], &one_case->surface, scene->rms_height,
+                                      surface->z, scene->z, err);
         for (size_t m = 0; m < one_case->model_count && status == 0; m++)
             status = solve_model(scene, m, l, tally, &stopper, err);
     }
@@ -268,7 +268,7 @@ static double plain_bytes(const struct contact_case *one_case) {
 void contact_case_estimate(const struct contact_case *one_case, struct study_cost *out) {
     const struct surface_case *surface = &one_case->surface;
     const struct grid *finest = &contact_case_finest(one_case)->grid;
-    surface_law_estimate(&surface->law, out);
+    surface_law_estimate(surface->translation, out);
     out->nx = finest->nx;
     out->ny = finest->ny;
     out->memory_bytes = surface_case_bytes(surface) + plain_bytes(one_case) +

@@ -344,8 +344,8 @@ int surface_case_fill(struct surface_case *out, struct values *values,
     *whole = NULL;
     int status = read_surface(out, values, err);
     if (status == 0 && values_fault_count(values) == before)
-        status =
-            surface_law_fill(&out->law, &out->spectrum, &out->grid, &out->options, values, err);
+        status = surface_law_fill(&out->translation, &out->spectrum, out->dimension, &out->options,
+                                  values, err);
     if (status == 0 && values_fault_count(values) == before)
         *whole = out;
     else
@@ -372,7 +372,7 @@ int surface_case_read(struct surface_case *out, const cJSON *parameters, struct 
 void surface_case_clear(struct surface_case *surface) {
     free(surface->table);
     height_table_destroy(&surface->height_table);
-    surface_law_clear(&surface->law);
+    translation_destroy(&surface->translation);
     *surface = (struct surface_case){0};
 }
 

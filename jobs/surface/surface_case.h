@@ -18,7 +18,7 @@ struct surface_case {
                                             the length */
     double *table;                       /* owned: memory behind a table spectrum */
     struct height_table *height_table;   /* owned: samples or quantiles of heights; NULL: none */
-    struct surface_law law;              /* owned: its translation is that of the spectrum */
+    struct translation *translation;     /* owned: that of the spectrum; NULL: none */
     const char *heights_name;            /* of the theory curves of heights */
 };
 /* Highest wave numbers along x and y, in units of 2 pi over that side; y of profiles is 0. */

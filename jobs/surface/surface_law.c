@@ -1,5 +1,4 @@
 #include "jobs/surface/surface_law.h"
-#include "core/surface/spectrum.h"
 #include "schema/json/field.h"
 #include "schema/json/json.h"
 #include <math.h>
@@ -66,45 +65,33 @@ static void judge(const struct translation *translation, struct values *values) 
                      ceil(100 * fit->misfit) / 100);
 }
 
-/* Adds a fault for what cannot be; any other failure is returned. */
-static int fault_of(int status, const struct error *reason, struct values *values,
-                    struct error *err) {
-    if (status == ERROR_INPUT)
-        values_fault(values, LAW, "%s", reason->text);
-    return status == 0 || status == ERROR_INPUT ? 0 : error_set(err, status, "%s", reason->text);
-}
-
-int surface_law_fill(struct surface_law *out, struct spectrum *spectrum, const struct grid *grid,
+int surface_law_fill(struct translation **out, struct spectrum *spectrum, int dimension,
                      const struct surface_options *options, struct values *values,
                      struct error *err) {
     struct error reason = {0};
-    struct moments moments;
+    *out = NULL;
     if (options->law != LAW_TRANSLATION || options->heights.type == HEIGHTS_GAUSSIAN)
         return 0; /* a Gaussian field is its own translation */
     size_t before = values_fault_count(values);
     refuse_iteration(options, values);
     if (values_fault_count(values) != before)
         return 0;
-    int status = translation_create(&out->translation, spectrum, grid_is_profile(grid) ? 1 : 2,
-                                    &options->heights, &reason);
+    int status = translation_create(out, spectrum, dimension, &options->heights, &reason);
+    if (status == ERROR_INPUT) {
+        values_fault(values, LAW, "%s", reason.text);
+        return 0;
+    }
     if (status != 0)
-        return fault_of(status, &reason, values, err);
-    judge(out->translation, values);
-    spectrum->translation = out->translation;
-    status = spectrum_moments(spectrum, grid, &moments, &reason);
-    if (status == 0)
-        out->height = moments.rms_height;
-    return fault_of(status, &reason, values, err);
+        return error_set(err, status, "%s", reason.text);
+    judge(*out, values);
+    spectrum->translation = *out;
+    return 0;
 }
 
-void surface_law_clear(struct surface_law *law) {
-    translation_destroy(&law->translation);
-}
-
-void surface_law_estimate(const struct surface_law *law, struct study_cost *out) {
-    if (law->translation == NULL)
+void surface_law_estimate(const struct translation *translation, struct study_cost *out) {
+    if (translation == NULL)
         return;
-    const struct translation_fit *fit = translation_fit(law->translation);
+    const struct translation_fit *fit = translation_fit(translation);
     out->law_outside = isfinite(fit->outside) ? fit->outside : 0;
     out->law_misfit = fit->misfit;
 }

@@ -24,7 +24,8 @@ struct cell {
     const struct companion_plan *plan;
     struct generator *generator; /* owned, as all below */
     struct coarse_solver *halfspace;
-    double *own, *z; /* heights as generated, and on the coarse mesh */
+    double rms_height; /* of the surfaces */
+    double *own, *z;   /* heights as generated, and on the coarse mesh */
 };
 
 /* --- the plan --- */
@@ -125,6 +126,7 @@ static int cell_create(void *workspace, const struct contact_case *one_case,
     if (status != 0)
         return status;
     modes_moments(generator_modes(cell->generator), &own);
+    cell->rms_height = own.rms_height;
     status =
         coarse_solver_create(&cell->halfspace, one_case, &plan->level.grid, INFINITY, &own, err);
     if (status != 0)
@@ -165,7 +167,8 @@ static int cell_solve(void *workspace, const struct contact_surface *surface,
     key.sequence ^= UINT64_C(1) << (plan->length > 1 ? 63 : 62);
     int status = generator_run(cell->generator, key, cell->own, NULL, err);
     if (status == 0)
-        status = contact_level_sample(&plan->level, &plan->surface, cell->own, cell->z, err);
+        status = contact_level_sample(&plan->level, &plan->surface, cell->rms_height, cell->own,
+                                      cell->z, err);
     if (status == 0)
         status = coarse_solver_press(cell->halfspace, cell->z, series, stopper, err);
     if (status == 0)

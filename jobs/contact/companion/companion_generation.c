@@ -19,7 +19,8 @@ struct generation {
     const struct companion_plan *plan;
     struct surface_paths *paths; /* owned, as all below */
     struct coarse_solver *halfspace;
-    double *z; /* heights on the coarse mesh */
+    double rms_height; /* of the surfaces */
+    double *z;         /* heights on the coarse mesh */
 };
 
 /* --- the plan --- */
@@ -59,6 +60,7 @@ static int generation_create(void *workspace, const struct contact_case *one_cas
     struct generation *generation = workspace;
     const struct grid *grid = &plan->level.grid;
     generation->plan = plan;
+    generation->rms_height = moments->rms_height;
     int status = surface_paths_create(&generation->paths, &one_case->surface, err);
     if (status == 0)
         status =
@@ -81,8 +83,8 @@ static void generation_clear(void *workspace) {
 static int press(struct generation *generation, const double *z,
                  const struct contact_case *one_case, double *series,
                  const struct contact_stopper *stopper, struct error *err) {
-    int status =
-        contact_level_sample(&generation->plan->level, &one_case->surface, z, generation->z, err);
+    int status = contact_level_sample(&generation->plan->level, &one_case->surface,
+                                      generation->rms_height, z, generation->z, err);
     return status != 0
                ? status
                : coarse_solver_press(generation->halfspace, generation->z, series, stopper, err);

@@ -22,6 +22,7 @@ struct probe {
     struct coarse_solver *blocks[BLOCKS_MOST]; /* owned; NULL where same[] is another one, or a
                                                 * model's values stand for the half-space */
     size_t same[BLOCKS_MOST];                  /* the first block of that height */
+    double rms_height;                         /* of the surfaces */
     double *z;
 };
 
@@ -123,6 +124,7 @@ static int probe_create(void *workspace, const struct contact_case *one_case,
     size_t points = grid_points(&plan->level.grid);
     int status = 0;
     probe->plan = plan;
+    probe->rms_height = moments->rms_height;
     for (size_t b = 0; b < plan->series && status == 0; b++) {
         probe->same[b] = first_of_height(one_case, b);
         if (is_solved(one_case, plan, b))
@@ -160,8 +162,8 @@ static int probe_solve(void *workspace, const struct contact_surface *surface,
                        const struct contact_stopper *stopper, struct error *err) {
     const struct probe *probe = workspace;
     const struct contact_case *one_case = tally->one_case;
-    int status =
-        contact_level_sample(&probe->plan->level, &one_case->surface, surface->z, probe->z, err);
+    int status = contact_level_sample(&probe->plan->level, &one_case->surface, probe->rms_height,
+                                      surface->z, probe->z, err);
     for (size_t b = 0; b < probe->plan->series && status == 0; b++) {
         double *series = companion_series(one_case, out, b);
         if (probe->blocks[b] != NULL)

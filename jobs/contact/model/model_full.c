@@ -233,7 +233,12 @@ static int meshed_open(struct meshed *out, const struct contact_case *one_case, 
     *out = (struct meshed){.z = array_create(points, sizeof *out->z)};
     if (out->z == NULL)
         return error_memory(err, points * sizeof *out->z, "a surface");
-    int status = contact_level_sample(finest, &one_case->surface, z, out->z, err);
+    struct moments moments;
+    int status =
+        spectrum_moments(&one_case->surface.spectrum, &one_case->surface.grid, &moments, err);
+    if (status == 0)
+        status =
+            contact_level_sample(finest, &one_case->surface, moments.rms_height, z, out->z, err);
     if (status == 0)
         status = full_create(&out->full, &finest->grid, &one_case->blocks[model], &options, err);
     return status != 0 ? status : full_begin(out->full, out->z, err);
