@@ -15,6 +15,15 @@ void height_cells_add(double cells[HEIGHT_CELLS], double mean, double weight) {
     cells[cell + 1] += weight * upper;
 }
 
+double height_cells_mean(size_t cell) {
+    return FIRST_CENTRE + (double)cell * CELL_WIDTH;
+}
+
+double height_cells_deviation(double variance) {
+    double added = CELL_WIDTH * CELL_WIDTH / 6;
+    return sqrt(fmax(variance - added, added));
+}
+
 /* Of heights that are normal about a mean, which is a number of deviations below an edge: the
  * shares below and above the edge, and the normal density there. */
 struct share {
@@ -28,6 +37,7 @@ static struct share share_at(double a) {
 /* Shares by the distance from a cell to an edge, in parts of a cell. */
 struct share_table {
     const double *cells;
+    const double *at;     /* heights of the edges; NULL: those of the bins */
     size_t first, end;    /* cells outside this range are empty */
     double deviation;     /* of heights about the mean of their cell */
     long parts;           /* of a cell; 0: edges lie on no lattice of parts, and shares is NULL */
@@ -56,13 +66,15 @@ static void table_align(struct share_table *table, const struct bins *bins) {
 }
 
 static int table_create(struct share_table *table, const double *cells, double deviation,
-                        const struct bins *bins, struct error *err) {
-    *table = (struct share_table){.cells = cells, .end = HEIGHT_CELLS, .deviation = deviation};
+                        const struct bins *bins, const double *at, struct error *err) {
+    *table =
+        (struct share_table){.cells = cells, .at = at, .end = HEIGHT_CELLS, .deviation = deviation};
     while (table->first < table->end && cells[table->first] == 0)
         table->first++;
     while (table->end > table->first && cells[table->end - 1] == 0)
         table->end--;
-    table_align(table, bins);
+    if (at == NULL)
+        table_align(table, bins);
     if (table->parts == 0 || table->end == table->first)
         return 0;
     long farthest = table->edge + (long)bins->count * table->edge_step;
@@ -83,7 +95,7 @@ static struct share table_find(const struct share_table *table, const struct bin
     if (table->shares != NULL)
         return table->shares[table->edge + (long)b * table->edge_step - (long)cell * table->parts -
                              table->nearest];
-    double edge = bins->low + (double)b * bins_width(bins);
+    double edge = table->at != NULL ? table->at[b] : bins->low + (double)b * bins_width(bins);
     return share_at((edge - FIRST_CENTRE - (double)cell * CELL_WIDTH) / table->deviation);
 }
 
@@ -115,10 +127,9 @@ static struct edge_sums edge_sums(const struct share_table *table, const double 
 int height_cells_spread(const double cells[HEIGHT_CELLS], const double *moments, double variance,
                         double rise, const struct bins *bins, const struct height_edges *out,
                         struct error *err) {
-    /* Counting in two cells has added this much to the variance on the mean. */
-    double added = CELL_WIDTH * CELL_WIDTH / 6;
     struct share_table table;
-    int status = table_create(&table, cells, sqrt(fmax(variance - added, added)), bins, err);
+    int status =
+        table_create(&table, cells, height_cells_deviation(variance), bins, out->at, err);
     if (status != 0)
         return status;
     for (size_t b = 0; b <= bins->count; b++) {

@@ -12,10 +12,17 @@ enum { HEIGHT_CELLS = 24 * 64 };
 
 /* Adds weight to the two cells next to a mean, so that their weighted mean is that mean. */
 void height_cells_add(double cells[HEIGHT_CELLS], double mean, double weight);
+/* Returns the mean that a cell stands for. */
+double height_cells_mean(size_t cell);
+/* Returns the deviation of heights about the means of the cells, to which counting in two cells has
+ * added its part of the variance. */
+double height_cells_deviation(double variance);
+
 /* Sums at the edges of the bins: arrays of count + 1 entries, which the caller owns. */
 struct height_edges {
     double *below, *above;
     double *below_moment, *above_moment;
+    const double *at; /* rising heights that stand for the edges; NULL: the edges themselves */
 };
 /* Fills, at the edges of the bins, the weight of heights below and above. With moments not NULL, it
  * also fills below_moment and above_moment: the sums of the cells' moments plus rise times weight

@@ -2,6 +2,7 @@
 #include "core/random.h"
 #include "core/statistics/summits/summits.h"
 #include "core/theory/height_cells.h"
+#include "core/theory/quadrature.h"
 #include "core/theory/sampled_field.h"
 #include <float.h>
 #include <gsl/gsl_cdf.h>
@@ -262,7 +263,7 @@ static size_t point_count(size_t pairs) {
 struct lattice_sums {
     double weight, curvature, height[4]; /* weight times curvature, means of heights to a power */
     double shifted[SHIFTS_MOST];         /* weight of each shift */
-    double *cells, *moments;             /* owned, HEIGHT_CELLS; NULL: not wanted */
+    double *cells, *moments;             /* owned, HEIGHT_CELLS each; NULL: not wanted */
     double *t1;                          /* of the caller; NULL: not wanted */
     double *joint;                       /* owned, HEIGHT_CELLS of each bin of t1; NULL */
 };
@@ -321,10 +322,10 @@ static void add_point(const struct summit_integrand *f, const struct bins *t1, c
     sums->curvature += weight * curvature;
     for (size_t n = 0; n < 4; n++)
         sums->height[n] += power *= height;
-    if (sums->cells != NULL) {
+    if (sums->cells != NULL)
         height_cells_add(sums->cells, height, weight);
+    if (sums->moments != NULL)
         height_cells_add(sums->moments, height, weight * curvature);
-    }
     if (sums->t1 != NULL || sums->joint != NULL)
         add_curvatures(f, t1, height, curvature, interval * fabs(f->curvature.slope[0]), weight,
                        sums);
@@ -380,26 +381,71 @@ static void moments_take(const struct lattice_sums *sums, double rest,
     out->height_kurtosis = (fourth + 6 * rest * second + 3 * rest * rest) / (variance * variance);
 }
 
+/* A rule for a unit normal variable within RULE_MOST of its deviations. */
+enum { RULE_PANELS = 4, RULE = RULE_PANELS * QUADRATURE_NODES };
+static const double RULE_MOST = 8;
+struct normal_rule {
+    double node[RULE], weight[RULE];
+};
+
+static void normal_rule_fill(struct normal_rule *rule) {
+    for (size_t panel = 0; panel < RULE_PANELS; panel++) {
+        size_t first = panel * QUADRATURE_NODES;
+        double length = 2 * RULE_MOST / RULE_PANELS, low = (double)panel * length - RULE_MOST;
+        quadrature_panel(low, low + length, rule->node + first, rule->weight + first);
+    }
+    for (size_t q = 0; q < RULE; q++)
+        rule->weight[q] *= exp(-rule->node[q] * rule->node[q] / 2) * 0.39894228040143268;
+}
+
+/* Replaces the sums of heights of the Gaussian field, which are normal about the means in the
+ * cells, by those of the surface. */
+static void heights_translate(const struct translated_heights *translated, double variance,
+                              struct lattice_sums *sums) {
+    struct normal_rule rule;
+    double deviation = height_cells_deviation(variance);
+    normal_rule_fill(&rule);
+    for (size_t n = 0; n < 4; n++)
+        sums->height[n] = 0;
+    for (size_t cell = 0; cell < HEIGHT_CELLS; cell++) {
+        if (sums->cells[cell] == 0)
+            continue;
+        for (size_t q = 0; q < RULE; q++) {
+            double score = height_cells_mean(cell) + deviation * rule.node[q];
+            double height = translated_heights_at(translated, score).height;
+            double power = sums->cells[cell] * rule.weight[q];
+            for (size_t n = 0; n < 4; n++)
+                sums->height[n] += power *= height;
+        }
+    }
+}
+
 /* With less than this share of all summits, a bin reports no mean curvature. */
 static const double SHARE_LEAST = 1e-14;
 
 static int heights_take(const struct summit_integrand *f, const struct lattice_sums *sums,
-                        const struct sampled_bins *bins, struct error *err) {
+                        const struct sampled_bins *bins,
+                        const struct translated_heights *translated, struct error *err) {
     size_t edges = bins->height->count + 1;
-    double *room = array_create(edges, 4 * sizeof *room), width = bins_width(bins->height);
+    double *room = array_create(edges, 5 * sizeof *room), width = bins_width(bins->height);
     if (room == NULL)
-        return error_memory(err, edges * 4 * sizeof *room, "bins of theory");
-    struct height_edges out = {room, room + edges, room + 2 * edges, room + 3 * edges};
-    double rest = f->height.variance;
+        return error_memory(err, edges * 5 * sizeof *room, "bins of theory");
+    struct height_edges out = {room, room + edges, room + 2 * edges, room + 3 * edges, NULL};
+    double rest = f->height.variance, *scores = room + 4 * edges;
+    for (size_t b = 0; b < edges && translated != NULL; b++)
+        scores[b] = translated_heights_inverse(translated, bins->height->low + (double)b * width);
+    out.at = translated != NULL ? scores : NULL;
     int status = height_cells_spread(sums->cells, sums->moments, rest,
                                      rest > 0 ? f->common / rest : 0, bins->height, &out, err);
     for (size_t b = 0; b + 1 < edges && status == 0; b++) {
         double weight = height_edges_within(out.below, out.above, b);
+        bins->pdf[b] = weight / sums->weight / width;
+        bins->cdf[b] = fmin(out.below[b + 1] / sums->weight, 1);
+        if (sums->moments == NULL)
+            continue;
         bool lower = out.below[b] < out.above[b + 1];
         double moment = lower ? out.below_moment[b + 1] - out.below_moment[b]
                               : out.above_moment[b] - out.above_moment[b + 1];
-        bins->pdf[b] = weight / sums->weight / width;
-        bins->cdf[b] = fmin(out.below[b + 1] / sums->weight, 1);
         bins->curvature[b] = weight > SHARE_LEAST * sums->weight ? moment / weight : (double)NAN;
     }
     free(room);
@@ -427,12 +473,13 @@ static int joint_take(const struct summit_integrand *f, const struct lattice_sum
 }
 
 static int take(const struct summit_integrand *f, const struct sampled_surface *surface,
-                const struct lattice_sums *sums, const struct sampled_bins *bins,
+                struct lattice_sums *sums, const struct sampled_bins *bins,
                 struct sampled_summits *out, struct error *err) {
     const struct grid *grid = &surface->modes->grid;
+    const struct translated_heights *translated = surface->translated;
     int status = 0;
-    if (sums->cells != NULL)
-        status = heights_take(f, sums, bins, err);
+    if (bins != NULL && bins->pdf != NULL)
+        status = heights_take(f, sums, bins, translated, err);
     if (sums->joint != NULL && status == 0)
         status = joint_take(f, sums, bins, err);
     if (status != 0)
@@ -443,28 +490,33 @@ static int take(const struct summit_integrand *f, const struct sampled_surface *
     double area = grid_is_profile(grid) ? grid_dx(grid) : grid_dx(grid) * grid_dy(grid);
     out->density = sums->weight / points / area;
     out->density_error = relative_error(sums, shift_count(f->pairs));
-    out->curvature = sums->curvature / sums->weight;
-    moments_take(sums, f->height.variance, out);
+    out->curvature = translated != NULL ? (double)NAN : sums->curvature / sums->weight;
+    if (translated != NULL)
+        heights_translate(translated, f->height.variance, sums);
+    moments_take(sums, translated != NULL ? 0 : f->height.variance, out);
     return 0;
 }
 
-static int sums_create(struct lattice_sums *sums, const struct sampled_bins *bins,
+/* Of a translated surface heights alone are summed, in cells whether bins are wanted or not. */
+static int sums_create(struct lattice_sums *sums, const struct sampled_bins *bins, bool translated,
                        struct error *err) {
     *sums = (struct lattice_sums){0};
-    if (bins == NULL)
-        return 0;
-    size_t cells = bins->pdf != NULL ? 2 : 0, joint = bins->joint != NULL ? bins->t1->count : 0;
+    size_t cells = bins != NULL && bins->pdf != NULL ? 2 : 0, joint = 0;
+    if (translated)
+        cells = 1;
+    else if (bins != NULL && bins->joint != NULL)
+        joint = bins->t1->count;
     size_t bytes = (cells + joint) * HEIGHT_CELLS * sizeof(double);
-    sums->t1 = bins->t1_pdf;
+    sums->t1 = bins != NULL && !translated ? bins->t1_pdf : NULL;
     if (sums->t1 != NULL)
         memset(sums->t1, 0, bins->t1->count * sizeof *sums->t1);
     if (cells != 0)
-        sums->cells = array_create(2 * HEIGHT_CELLS, sizeof *sums->cells);
+        sums->cells = array_create(cells * HEIGHT_CELLS, sizeof *sums->cells);
     if (joint != 0)
         sums->joint = array_create(joint * HEIGHT_CELLS, sizeof *sums->joint);
     if ((cells != 0 && sums->cells == NULL) || (joint != 0 && sums->joint == NULL))
         return error_memory(err, bytes, "sums of theory");
-    sums->moments = cells != 0 ? sums->cells + HEIGHT_CELLS : NULL;
+    sums->moments = cells > 1 ? sums->cells + HEIGHT_CELLS : NULL;
     return 0;
 }
 
@@ -484,7 +536,7 @@ int sampled_summits(const struct sampled_surface *surface, struct sampled_summit
     if (status != 0)
         return status;
     summit_integrand_prepare(&field, surface->curvature, &f);
-    status = sums_create(&sums, bins, err);
+    status = sums_create(&sums, bins, surface->translated != NULL, err);
     if (status == 0) {
         integrate(&f, bins != NULL ? bins->t1 : NULL, &sums);
         status = take(&f, surface, &sums, bins, out, err);

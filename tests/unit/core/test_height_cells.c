@@ -17,7 +17,7 @@ static const double COUNTING = 1.5e-4;
 static void spread_is_the_sum(const struct bins *bins) {
     double cells[HEIGHT_CELLS] = {0}, moments[HEIGHT_CELLS] = {0};
     double below[BINS_MOST], above[BINS_MOST], below_moment[BINS_MOST], above_moment[BINS_MOST];
-    const struct height_edges out = {below, above, below_moment, above_moment};
+    const struct height_edges out = {below, above, below_moment, above_moment, NULL};
     for (int m = 0; m < MEANS; m++) {
         height_cells_add(cells, MEAN[m], WEIGHT[m]);
         height_cells_add(moments, MEAN[m], 3 * WEIGHT[m]);

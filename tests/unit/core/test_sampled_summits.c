@@ -32,7 +32,8 @@ static struct sample sample_make(int dimension, double ratio, size_t points) {
 static struct sampled_summits law(const struct sample *sample, enum summit_stencil stencil,
                                   enum summit_curvature curvature,
                                   const struct sampled_bins *bins) {
-    const struct sampled_surface surface = {sample->modes, &sample->moments, stencil, curvature};
+    const struct sampled_surface surface = {sample->modes, &sample->moments, stencil, curvature,
+                                            NULL};
     struct sampled_summits out;
     assert_int_equal(sampled_summits(&surface, &out, bins, NULL), 0);
     return out;
@@ -188,7 +189,7 @@ static void refined_summits_are_refused(void **state) {
     (void)state;
     struct sample sample = sample_make(2, 2, 4);
     const struct sampled_surface surface = {sample.modes, &sample.moments, SUMMITS_REFINED,
-                                            CURVATURE_SPECTRAL};
+                                            CURVATURE_SPECTRAL, NULL};
     struct sampled_summits out = {.density = 42};
     struct error err = {0};
     assert_int_equal(sampled_summits(&surface, &out, NULL, &err), ERROR_INPUT);

@@ -205,7 +205,7 @@ static void check_grid(size_t points, enum summit_stencil stencil,
     struct sampled_summits expected;
     measure(&grid, 8, stencil, curvature, AMPLITUDES_RANDOM, 200, &f);
     assert_int_equal(modes_create(&modes, &spectrum, &grid, NULL), 0);
-    const struct sampled_surface surface = {modes, &f.moments, stencil, curvature};
+    const struct sampled_surface surface = {modes, &f.moments, stencil, curvature, NULL};
     assert_int_equal(sampled_summits(&surface, &expected, &bins, NULL), 0);
     modes_destroy(&modes);
     for (size_t b = 0; b < (size_t)ROWS * COLUMNS; b++) {
