@@ -1,5 +1,6 @@
 #include "core/theory/sampled_field.h"
 #include "core/sum.h"
+#include "core/surface/translation/translation.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -128,12 +129,64 @@ static void moments_add(struct moment_sums *sums, double power, double weight, d
     sum_add(&sums->cumulant, (single ? 2 : 3) * weighted * power);
 }
 
+/* Fills the moments from the mean squares of differences, which are in the fields of a spectrum's
+ * moments. */
+static void moments_fill(const struct moments *m, bool profile, struct sampled_moments *out) {
+    out->m2 = profile ? m->m20 : (m->m20 + m->m02) / 2;
+    out->m4 = profile ? m->m40 : (m->m40 + m->m04) / 2;
+    out->nayak_alpha = m->m00 / out->m2 * (out->m4 / out->m2);
+    out->rms_slope = sqrt(m->m20 + m->m02);
+    out->rms_curvature = profile ? sqrt(m->m40) : sqrt(m->m40 + 2 * m->m22 + m->m04) / 2;
+    out->isotropy = profile ? (double)NAN : 3 * m->m22 / out->m4;
+}
+
+/* Of a translated surface, the share of the variance that its autocorrelation has lost at a lag of
+ * so many points. */
+static double decorrelation(const struct modes *modes, long i, long j) {
+    const struct grid *grid = &modes->grid;
+    long mode_y = (long)modes->mode_y;
+    struct sum sum = {0}, all = {0};
+    for (size_t mx = 0; mx <= modes->mode_x; mx++)
+        for (long my = -mode_y; my <= mode_y; my++) {
+            double power = modes_power(modes, mx, my) * modes_weight(grid, mx);
+            double waves = (double)mx * (double)i / (double)grid->nx +
+                           (double)my * (double)j / (double)grid->ny;
+            sum_add(&all, power);
+            sum_add(&sum, power * cos(2 * M_PI * waves));
+        }
+    return 1 - hermite_correlation(
+                   height_function_powers(translation_function(modes->translation)),
+                   sum_value(&sum) / sum_value(&all));
+}
+
+/* Mean squares of differences are sums of the autocorrelation at their lags. */
+static void translated_moments(const struct modes *modes, struct sampled_moments *out) {
+    const struct grid *grid = &modes->grid;
+    bool profile = grid_is_profile(grid);
+    double height = modes->height * modes->height;
+    double dx = grid_dx(grid) * grid_dx(grid), dy = profile ? 1 : grid_dy(grid) * grid_dy(grid);
+    double x = decorrelation(modes, 1, 0), y = profile ? 0 : decorrelation(modes, 0, 1);
+    struct moments m = {.m00 = height, .m20 = 2 * height * x / dx, .m02 = 2 * height * y / dy};
+    m.m40 = height * (8 * x - 2 * decorrelation(modes, 2, 0)) / (dx * dx);
+    if (!profile) {
+        double across = decorrelation(modes, 1, 1) + decorrelation(modes, 1, -1);
+        m.m04 = height * (8 * y - 2 * decorrelation(modes, 0, 2)) / (dy * dy);
+        m.m22 = height * (4 * x + 4 * y - 2 * across) / (dx * dy);
+    }
+    moments_fill(&m, profile, out);
+    out->kurtosis = NAN;
+}
+
 void sampled_moments(const struct modes *modes, struct sampled_moments *out) {
     const struct grid *grid = &modes->grid;
     bool profile = grid_is_profile(grid);
     double dx = grid_dx(grid), dy = profile ? 1 : grid_dy(grid);
     long mode_y = (long)modes->mode_y;
     struct moment_sums sums = {0};
+    if (modes->translation != NULL) {
+        translated_moments(modes, out);
+        return;
+    }
     for (size_t mx = 0; mx <= modes->mode_x; mx++) {
         double x = 2 * half_phase((double)mx, grid->nx).sine / dx;
         for (long my = -mode_y; my <= mode_y; my++) {
@@ -146,15 +199,12 @@ void sampled_moments(const struct modes *modes, struct sampled_moments *out) {
             moments_add(&sums, power, modes_weight(grid, mx), x * x, y * y, single);
         }
     }
-    double m0 = sum_value(&sums.power);
-    double slope_x = sum_value(&sums.slope_x), slope_y = sum_value(&sums.slope_y);
-    double bend_x = sum_value(&sums.bend_x), bend_y = sum_value(&sums.bend_y);
-    double both = sum_value(&sums.both);
-    out->m2 = profile ? slope_x : (slope_x + slope_y) / 2;
-    out->m4 = profile ? bend_x : (bend_x + bend_y) / 2;
-    out->nayak_alpha = m0 / out->m2 * (out->m4 / out->m2);
-    out->rms_slope = sqrt(slope_x + slope_y);
-    out->rms_curvature = profile ? sqrt(bend_x) : sqrt(bend_x + 2 * both + bend_y) / 2;
-    out->kurtosis = 3 - sum_value(&sums.cumulant) / (m0 * m0);
-    out->isotropy = profile ? (double)NAN : 3 * both / out->m4;
+    const struct moments m = {.m00 = sum_value(&sums.power),
+                              .m20 = sum_value(&sums.slope_x),
+                              .m02 = sum_value(&sums.slope_y),
+                              .m40 = sum_value(&sums.bend_x),
+                              .m04 = sum_value(&sums.bend_y),
+                              .m22 = sum_value(&sums.both)};
+    moments_fill(&m, profile, out);
+    out->kurtosis = 3 - sum_value(&sums.cumulant) / (m.m00 * m.m00);
 }

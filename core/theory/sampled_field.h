@@ -29,7 +29,8 @@ int sampled_field_fill(const struct modes *modes, const struct moments *moments,
                        struct sampled_field *out, struct error *err);
 
 /* Expected values of finite differences (F1.3) on surfaces with exactly this spectrum, as in struct
- * roughness; and the mean kurtosis of their heights over random phases (F3.3). */
+ * roughness; and the mean kurtosis of their heights over random phases (F3.3). Of translated
+ * surfaces those of the whole law, and no kurtosis (NaN). */
 struct sampled_moments {
     double rms_slope, rms_curvature, m2, m4, nayak_alpha;
     double kurtosis;

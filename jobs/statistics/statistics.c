@@ -166,7 +166,8 @@ static int workspace_create(void *workspace, const void *one_case,
     (void)shared;
     work->one_case = statistics;
     work->moments = basis->moments;
-    statistics_constants(modes, &basis->moments, &work->constants);
+    if (surface_case_exact(&statistics->surface))
+        statistics_constants(modes, &basis->moments, &work->constants);
     int status = summit_finder_create(&work->finder, grid, statistics->stencil,
                                       statistics->curvature, limited ? modes->mode_x : grid->nx / 2,
                                       limited ? modes->mode_y : grid->ny / 2, err);
@@ -321,9 +322,13 @@ static bool belongs(const void *tally, const struct block_result *result) {
 static int result(const void *one_case, const struct surface_basis *basis, const void *tally,
                   const struct realisations *realisations, struct case_result *out,
                   struct error *err) {
-    int status = statistics_scalars(one_case, basis, realisations, out, err);
+    struct summit_theories theories;
+    int status = summit_theories_create(&theories, one_case, basis, err);
     if (status == 0)
-        status = statistics_curves(one_case, basis->modes, &basis->moments, tally, out, err);
+        status = statistics_scalars(one_case, basis, &theories, realisations, out, err);
+    if (status == 0)
+        status = statistics_curves(one_case, basis->modes, &theories, tally, out, err);
+    summit_theories_clear(&theories);
     if (status == 0)
         status = statistics_grid_theory(one_case, basis, out, err);
     if (status == 0)

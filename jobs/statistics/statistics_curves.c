@@ -5,15 +5,20 @@
 #include <math.h>
 #include <string.h>
 
+/* Theories of summits by bin, of a side. That of both height and t1 is made on demand. */
+enum summit_values { OF_HEIGHTS, OF_HEIGHTS_BELOW, OF_MEAN_CURVATURE, OF_T1, OF_BOTH, SUMMIT_VALUES };
+
 /* What all curves of a case are made from. */
 struct statistics_curve_maker {
     const struct statistics_case *one_case;
     const struct statistics_tally *tally;
-    const char *theory_name;       /* of summits; NULL: does not apply */
-    enum summit_side side;         /* of the present curves */
-    struct case_result *result;    /* its arena owns all arrays */
-    double *pdf, *cdf, *curvature; /* theories by bin, of the present curves */
+    const struct summit_theories *theories; /* of summits */
+    double *values[SUMMIT_THEORIES_MOST][SIDES][SUMMIT_VALUES];
+    enum summit_side side;      /* of the present curves */
+    struct case_result *result; /* its arena owns all arrays */
 };
+
+static const char PITS[] = "pits"; /* the series */
 
 static int no_room(struct error *err) {
     return error_set(err, ERROR_MEMORY, "no memory left for curves");
@@ -34,20 +39,38 @@ static int curve_points_create(struct statistics_curve_maker *maker, size_t n,
     return 0;
 }
 
-/* Makes room for theories of the heights of the next curves. */
-static int theories_create(struct statistics_curve_maker *maker, struct error *err) {
-    size_t n = maker->one_case->height.count;
-    maker->pdf = result_numbers(maker->result, 3 * n);
-    if (maker->pdf == NULL)
-        return no_room(err);
-    maker->cdf = maker->pdf + n;
-    maker->curvature = maker->pdf + 2 * n;
+/* Makes the theories of summits of each side. */
+static int theories_fill(struct statistics_curve_maker *maker, struct error *err) {
+    const struct statistics_case *one_case = maker->one_case;
+    size_t n = one_case->height.count, columns = one_case->equivalent.count;
+    for (size_t t = 0; t < maker->theories->count; t++)
+        for (size_t side = 0; side < maker->tally->sides; side++) {
+            const struct summit_theory *theory = &maker->theories->of[t];
+            double *room = result_numbers(maker->result, 3 * n + columns);
+            double **of = maker->values[t][side];
+            if (room == NULL)
+                return no_room(err);
+            for (size_t a = OF_HEIGHTS; a <= OF_T1; a++)
+                of[a] = room + a * n;
+            summit_theory_heights(theory, one_case, side == SIDE_PITS, of[OF_HEIGHTS],
+                                  of[OF_HEIGHTS_BELOW], of[OF_MEAN_CURVATURE]);
+            summit_theory_equivalent(theory, one_case, side == SIDE_PITS, of[OF_T1]);
+        }
     return 0;
 }
 
-static void add_theory(struct curve *curve, const char *name, const double *y) {
-    if (name != NULL)
-        curve->theories[curve->theory_count++] = (struct theory){name, y};
+static void add_theory(struct curve *curve, const struct theory *theory) {
+    if (theory->name != NULL)
+        curve->theories[curve->theory_count++] = *theory;
+}
+
+static void add_summit_theories(const struct statistics_curve_maker *maker,
+                                enum summit_values values, struct curve *curve) {
+    for (size_t t = 0; t < maker->theories->count; t++) {
+        const struct theory theory = {maker->theories->of[t].name,
+                                      maker->values[t][maker->side][values]};
+        add_theory(curve, &theory);
+    }
 }
 
 static const char *height_label(void) {
@@ -63,7 +86,7 @@ static struct curve summit_curve(const struct statistics_curve_maker *maker, con
                                  const char *x_label, const char *y_label) {
     struct curve curve = curve_named(quantity, x_label, y_label);
     if (maker->side == SIDE_PITS)
-        curve.series = "pits";
+        curve.series = PITS;
     return curve;
 }
 static const struct summit_tally *side_tally(const struct statistics_curve_maker *maker) {
@@ -76,8 +99,8 @@ struct histogram {
     const struct bins *bins;
     const struct tally *cells;
     const struct tally_total *total;
-    const char *theory_name; /* NULL: none */
-    const double *theory;
+    enum summit_values values;   /* of a histogram of summits */
+    const struct theory *theory; /* of another one; NULL: of summits */
 };
 
 static int add_density(struct statistics_curve_maker *maker, const struct histogram *histogram,
@@ -101,17 +124,21 @@ static int add_density(struct statistics_curve_maker *maker, const struct histog
     }
     curve_set_points(&curve, bins->count, points.x, points.y, points.standard_error);
     curve.valueless = points.valueless;
-    add_theory(&curve, histogram->theory_name, histogram->theory);
+    if (histogram->theory == NULL)
+        add_summit_theories(maker, histogram->values, &curve);
+    else
+        add_theory(&curve, histogram->theory);
     curve.counted = true;
     curve.underflow = (double)histogram->cells->count[0];
     curve.overflow = (double)histogram->cells->count[bins->count + 1];
     return result_add_curve(maker->result, &curve, err);
 }
 
-/* Adds the cumulative probability at the upper edges of the bins. */
+/* Adds the cumulative probability at the upper edges of the bins. Without a theory of its own it is
+ * that of summits. */
 static int add_cumulative(struct statistics_curve_maker *maker, const char *quantity,
                           const struct tally *below, const struct tally_total *total,
-                          const char *theory_name, struct error *err) {
+                          const struct theory *theory, struct error *err) {
     const struct bins *bins = &maker->one_case->height;
     struct curve curve = summit_curve(maker, quantity, height_label(), "cumulative probability");
     struct curve_points points;
@@ -126,7 +153,10 @@ static int add_cumulative(struct statistics_curve_maker *maker, const char *quan
         points.standard_error[b] = share.standard_error;
     }
     curve_set_points(&curve, bins->count, points.x, points.y, points.standard_error);
-    add_theory(&curve, theory_name, maker->cdf);
+    if (theory == NULL)
+        add_summit_theories(maker, OF_HEIGHTS_BELOW, &curve);
+    else
+        add_theory(&curve, theory);
     return result_add_curve(maker->result, &curve, err);
 }
 
@@ -153,7 +183,7 @@ static int add_curvature(struct statistics_curve_maker *maker, struct error *err
     curve.counted = true;
     curve.underflow = (double)tally->height.count[0];
     curve.overflow = (double)tally->height.count[bins->count + 1];
-    add_theory(&curve, maker->theory_name, maker->curvature);
+    add_summit_theories(maker, OF_MEAN_CURVATURE, &curve);
     return result_add_curve(maker->result, &curve, err);
 }
 
@@ -231,7 +261,7 @@ static int add_joint(struct statistics_curve_maker *maker, struct error *err) {
     curve.cell_count = occupied.count;
     curve.empty_y = side->total.sum == 0 ? (double)NAN : 0;
     curve.empty_standard_error = tally_empty_bound(&side->joint, &side->total) / area;
-    add_theory(&curve, maker->theory_name, NULL);
+    add_summit_theories(maker, OF_BOTH, &curve);
     curve.counted = true;
     curve.underflow = 0;
     curve.overflow = (double)side->total.sum - occupied.inside;
@@ -239,32 +269,54 @@ static int add_joint(struct statistics_curve_maker *maker, struct error *err) {
 }
 
 static int complete_joint(const struct statistics_case *one_case, const struct surface_basis *basis,
-                          const char *theory, double *pdf, struct error *err) {
-    if (strcmp(theory, STATISTICS_GRID_THEORY) == 0)
+                          const struct summit_theories *theories, const struct curve *curve,
+                          const char *name, double *pdf, struct error *err) {
+    bool pits = same_text(curve->series, PITS);
+    if (strcmp(name, STATISTICS_GRID_THEORY) == 0)
         return statistics_grid_theory_joint(one_case, basis, pdf, err);
-    statistics_theory_joint(one_case, basis->moments.nayak_alpha, pdf);
+    for (size_t t = 0; t < theories->count; t++)
+        if (strcmp(name, theories->of[t].name) == 0)
+            summit_theory_joint(&theories->of[t], one_case, pits, pdf);
     return 0;
+}
+
+static int complete_curve(const struct statistics_case *one_case, const struct surface_basis *basis,
+                          const struct summit_theories *theories, struct case_result *result,
+                          struct curve *curve, struct error *err) {
+    for (size_t t = 0; t < curve->theory_count; t++) {
+        if (curve->theories[t].y != NULL || curve->columns != one_case->equivalent.count ||
+            curve->n != one_case->height.count)
+            continue;
+        double *pdf = result_numbers(result, curve->n * curve->columns);
+        if (pdf == NULL)
+            return no_room(err);
+        int status =
+            complete_joint(one_case, basis, theories, curve, curve->theories[t].name, pdf, err);
+        if (status != 0)
+            return status;
+        curve->theories[t].y = pdf;
+    }
+    return 0;
+}
+
+static bool has_joint(const struct case_result *result) {
+    for (size_t a = 0; a < result->curve_count; a++)
+        if (result->curves[a].columns > 0)
+            return true;
+    return false;
 }
 
 int statistics_curves_complete(const struct statistics_case *one_case,
                                const struct surface_basis *basis, struct case_result *result,
                                struct error *err) {
-    for (size_t a = 0; a < result->curve_count; a++) {
-        struct curve *curve = &result->curves[a];
-        for (size_t t = 0; t < curve->theory_count; t++) {
-            if (curve->theories[t].y != NULL || curve->columns != one_case->equivalent.count ||
-                curve->n != one_case->height.count)
-                continue;
-            double *pdf = result_numbers(result, curve->n * curve->columns);
-            if (pdf == NULL)
-                return no_room(err);
-            int status = complete_joint(one_case, basis, curve->theories[t].name, pdf, err);
-            if (status != 0)
-                return status;
-            curve->theories[t].y = pdf;
-        }
-    }
-    return 0;
+    struct summit_theories theories;
+    if (!has_joint(result))
+        return 0;
+    int status = summit_theories_create(&theories, one_case, basis, err);
+    for (size_t a = 0; a < result->curve_count && status == 0; a++)
+        status = complete_curve(one_case, basis, &theories, result, &result->curves[a], err);
+    summit_theories_clear(&theories);
+    return status;
 }
 
 /* --- all curves --- */
@@ -273,17 +325,23 @@ static int add_heights(struct statistics_curve_maker *maker, struct error *err) 
     const struct statistics_case *one_case = maker->one_case;
     const struct statistics_tally *tally = maker->tally;
     const char *name = one_case->surface.heights_name;
-    int status = theories_create(maker, err);
-    if (status == 0)
-        status = statistics_theory_heights(one_case, maker->pdf, maker->cdf, err);
-    const struct histogram heights = {"height_pdf",   height_label(), &one_case->height,
-                                      &tally->height, &tally->points, name,
-                                      maker->pdf};
+    size_t n = one_case->height.count;
+    double *pdf = result_numbers(maker->result, 2 * n), *cdf = pdf + n;
+    if (pdf == NULL)
+        return no_room(err);
+    int status = statistics_theory_heights(one_case, pdf, cdf, err);
+    const struct theory density = {name, pdf}, below = {name, cdf};
+    const struct histogram heights = {.quantity = "height_pdf",
+                                      .x_label = height_label(),
+                                      .bins = &one_case->height,
+                                      .cells = &tally->height,
+                                      .total = &tally->points,
+                                      .theory = &density};
     if (status == 0)
         status = add_density(maker, &heights, err);
     if (status == 0)
         status =
-            add_cumulative(maker, "height_cdf", &tally->height_below, &tally->points, name, err);
+            add_cumulative(maker, "height_cdf", &tally->height_below, &tally->points, &below, err);
     return status;
 }
 
@@ -302,67 +360,43 @@ static int add_sides(struct statistics_curve_maker *maker, add_curve_function *a
 
 static int add_summit_density(struct statistics_curve_maker *maker, struct error *err) {
     const struct summit_tally *tally = side_tally(maker);
-    const struct histogram heights = {"summit_height_pdf", height_label(), &maker->one_case->height,
-                                      &tally->height,      &tally->total,  maker->theory_name,
-                                      maker->pdf};
+    const struct histogram heights = {.quantity = "summit_height_pdf",
+                                      .x_label = height_label(),
+                                      .bins = &maker->one_case->height,
+                                      .cells = &tally->height,
+                                      .total = &tally->total,
+                                      .values = OF_HEIGHTS};
     return add_density(maker, &heights, err);
 }
 
 static int add_summit_cumulative(struct statistics_curve_maker *maker, struct error *err) {
     const struct summit_tally *tally = side_tally(maker);
-    return add_cumulative(maker, "summit_height_cdf", &tally->below, &tally->total,
-                          maker->theory_name, err);
-}
-
-static int add_summit_heights(struct statistics_curve_maker *maker, double alpha,
-                              struct error *err) {
-    int status = theories_create(maker, err);
-    if (status != 0)
-        return status;
-    if (maker->theory_name != NULL)
-        statistics_theory_summits(maker->one_case, alpha, maker->pdf, maker->cdf, maker->curvature);
-    status = add_sides(maker, add_summit_density, err);
-    if (status == 0)
-        status = add_sides(maker, add_summit_cumulative, err);
-    return status != 0 ? status : add_sides(maker, add_curvature, err);
+    return add_cumulative(maker, "summit_height_cdf", &tally->below, &tally->total, NULL, err);
 }
 
 static int add_equivalent(struct statistics_curve_maker *maker, struct error *err) {
     const struct summit_tally *tally = side_tally(maker);
-    const struct histogram curvatures = {"summit_curvature_pdf",
-                                         equivalent_label(maker),
-                                         &maker->one_case->equivalent,
-                                         &tally->equivalent,
-                                         &tally->total,
-                                         maker->theory_name,
-                                         maker->pdf};
+    const struct histogram curvatures = {.quantity = "summit_curvature_pdf",
+                                         .x_label = equivalent_label(maker),
+                                         .bins = &maker->one_case->equivalent,
+                                         .cells = &tally->equivalent,
+                                         .total = &tally->total,
+                                         .values = OF_T1};
     return add_density(maker, &curvatures, err);
 }
 
-static int add_summit_curvatures(struct statistics_curve_maker *maker, struct error *err) {
-    maker->pdf = result_numbers(maker->result, maker->one_case->equivalent.count);
-    if (maker->pdf == NULL)
-        return no_room(err);
-    if (maker->theory_name != NULL)
-        statistics_theory_equivalent(maker->one_case, maker->pdf);
-    return add_sides(maker, add_equivalent, err);
-}
+/* The first is the main curve of reports: errors of grids and generation bear on summits. */
+static add_curve_function *const OF_SUMMITS[] = {add_summit_density, add_summit_cumulative,
+                                                 add_curvature, add_equivalent, add_joint};
 
 int statistics_curves(const struct statistics_case *one_case, const struct modes *modes,
-                      const struct moments *moments, const struct statistics_tally *tally,
+                      const struct summit_theories *theories, const struct statistics_tally *tally,
                       struct case_result *out, struct error *err) {
-    bool applies = statistics_theory_applies(one_case, moments);
-    struct statistics_curve_maker maker = {.one_case = one_case,
-                                           .tally = tally,
-                                           .result = out,
-                                           .theory_name =
-                                               applies ? statistics_theory_name(one_case) : NULL};
-    /* the first is the main curve of reports: errors of grids and generation bear on summits */
-    int status = add_summit_heights(&maker, moments->nayak_alpha, err);
-    if (status == 0)
-        status = add_summit_curvatures(&maker, err);
-    if (status == 0)
-        status = add_sides(&maker, add_joint, err);
+    struct statistics_curve_maker maker = {
+        .one_case = one_case, .tally = tally, .theories = theories, .result = out};
+    int status = theories_fill(&maker, err);
+    for (size_t a = 0; a < sizeof OF_SUMMITS / sizeof *OF_SUMMITS && status == 0; a++)
+        status = add_sides(&maker, OF_SUMMITS[a], err);
     if (status == 0)
         status = add_heights(&maker, err);
     return status != 0 ? status : spectra_curves(one_case, modes, tally, out, err);

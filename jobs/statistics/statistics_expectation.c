@@ -1,8 +1,7 @@
 #include "jobs/statistics/statistics_expectation.h"
-#include "core/theory/nayak.h"
 #include "core/theory/sampled_field.h"
-#include "core/theory/sampled_summits.h"
 #include "jobs/statistics/statistics_grid_theory.h"
+#include "jobs/statistics/statistics_scalars.h"
 #include "jobs/statistics/statistics_spectra.h"
 #include "jobs/statistics/statistics_theory.h"
 #include "schema/json/field.h"
@@ -55,7 +54,7 @@ static int add_heights(struct expectation *e, struct error *err) {
 
 /* Theories of summits over bins; the arena owns the arrays. */
 struct summit_curves {
-    double *pdf, *cdf, *curvature, *t1_pdf, *joint; /* joint: NULL without */
+    double *pdf, *cdf, *curvature, *t1_pdf, *joint; /* of curvatures: NULL without */
 };
 
 static int summit_curves_create(struct expectation *e, bool joint, struct summit_curves *out,
@@ -100,11 +99,11 @@ static int add_summit_curves(struct expectation *e, const char *series,
     if (status == 0)
         status = add_curve(e, named("summit_height_cdf", "cumulative probability"), series, n,
                            e->edges, curves->cdf, err);
-    if (status == 0)
+    if (status == 0 && curves->curvature != NULL)
         status = add_curve(
             e, named("summit_mean_curvature", surface ? "kappa_m/sqrt(m4)" : "-z''/sqrt(m4)"),
             series, n, e->heights, curves->curvature, err);
-    if (status == 0)
+    if (status == 0 && curves->t1_pdf != NULL)
         status =
             add_curve(e, curve_named("summit_curvature_pdf", t1_label(e), "probability density"),
                       series, e->one_case.equivalent.count, e->t1, curves->t1_pdf, err);
@@ -133,6 +132,23 @@ static int add_scalars(struct expectation *e, size_t n, const struct expected_sc
     for (size_t a = 0; a < n && status == 0; a++)
         status = add_scalar(e, list[a].name, list[a].value, list[a].grid, err);
     return status;
+}
+
+/* Alphas of a translated surface beside its own: of its Gaussian field, and of the spectrum that is
+ * asked for. */
+static int add_alphas(struct expectation *e, struct error *err) {
+    struct spectrum spectrum = e->one_case.surface.spectrum;
+    struct moments asked, gaussian;
+    if (!surface_case_translated(&e->one_case.surface))
+        return 0;
+    spectrum.translation = NULL;
+    int status = spectrum_moments(&spectrum, &e->one_case.surface.grid, &asked, err);
+    if (status != 0)
+        return status;
+    modes_gaussian_moments(e->modes, &gaussian);
+    const struct expected_scalar list[] = {{"nayak_alpha_gaussian", gaussian.nayak_alpha, NAN},
+                                           {"nayak_alpha_asked", asked.nayak_alpha, NAN}};
+    return add_scalars(e, sizeof list / sizeof *list, list, err);
 }
 
 static double continuous_alpha(const struct surface_case *surface) {
@@ -173,70 +189,95 @@ static int add_moments(struct expectation *e, struct error *err) {
     return add_scalars(e, sizeof list / sizeof *list, list, err);
 }
 
-static int add_summit_scalars(struct expectation *e, const struct summit_expectation *value,
+static int add_summit_scalars(struct expectation *e, bool pits,
+                              const struct summit_expectation *value,
                               const struct sampled_summits *grid, struct error *err) {
     const struct surface_case *surface = &e->one_case.surface;
     double ratio = surface->wavelength_ratio, long_waves = ratio;
+    size_t side = pits ? SIDE_SCALARS : 0;
     if (surface->dimension == 2)
         long_waves *= ratio;
-    const struct expected_scalar list[] = {
-        {"summit_density", value->density, grid->density},
-        {"summit_density_per_area", value->density * long_waves, grid->density * long_waves},
-        {"summit_height_mean", value->height_mean, grid->height_mean},
-        {"summit_height_variance", value->height_variance, grid->height_variance},
-        {"summit_height_skewness", value->height_skewness, grid->height_skewness},
-        {"summit_height_kurtosis", value->height_kurtosis, grid->height_kurtosis},
-        {"summit_curvature_mean", value->curvature, grid->curvature},
+    const struct {
+        size_t scalar;
+        double value, grid;
+    } list[] = {
+        {SCALAR_SUMMIT_DENSITY, value->density, grid->density},
+        {SCALAR_SUMMIT_DENSITY_PER_AREA, value->density * long_waves, grid->density * long_waves},
+        {SCALAR_SUMMIT_HEIGHT_MEAN, value->height_mean, grid->height_mean},
+        {SCALAR_SUMMIT_HEIGHT_VARIANCE, value->height_variance, grid->height_variance},
+        {SCALAR_SUMMIT_HEIGHT_SKEWNESS, value->height_skewness, grid->height_skewness},
+        {SCALAR_SUMMIT_HEIGHT_KURTOSIS, value->height_kurtosis, grid->height_kurtosis},
+        {SCALAR_SUMMIT_CURVATURE_MEAN, value->curvature, grid->curvature},
     };
-    return add_scalars(e, sizeof list / sizeof *list, list, err);
+    int status = 0;
+    for (size_t a = 0; a < sizeof list / sizeof *list && status == 0; a++)
+        status = add_scalar(e, statistics_scalar_name(list[a].scalar + side), list[a].value,
+                            list[a].grid, err);
+    return status;
 }
 
-/* --- summits: both theories --- */
+/* --- summits: both theories, of each side --- */
 
-static int add_without_grid(struct expectation *e, bool joint, struct summit_expectation *out,
-                            struct error *err) {
-    const struct moments *m = &e->basis.moments;
+static int add_without_grid(struct expectation *e, const struct summit_theory *theory, bool joint,
+                            bool pits, struct summit_expectation *out, struct error *err) {
+    const struct statistics_case *one_case = &e->one_case;
     struct summit_curves curves;
     int status = summit_curves_create(e, joint, &curves, err);
     if (status != 0)
         return status;
-    *out = summit_expectation(e->one_case.surface.dimension, m->m2, m->m4, m->nayak_alpha);
-    statistics_theory_summits(&e->one_case, m->nayak_alpha, curves.pdf, curves.cdf,
-                              curves.curvature);
-    statistics_theory_equivalent(&e->one_case, curves.t1_pdf);
+    *out = summit_theory_expectation(theory, pits);
+    summit_theory_heights(theory, one_case, pits, curves.pdf, curves.cdf, curves.curvature);
+    summit_theory_equivalent(theory, one_case, pits, curves.t1_pdf);
     if (joint)
-        statistics_theory_joint(&e->one_case, m->nayak_alpha, curves.joint);
-    return add_summit_curves(e, statistics_theory_name(&e->one_case), &curves, err);
+        summit_theory_joint(theory, one_case, pits, curves.joint);
+    return add_summit_curves(e, pits ? "pits" : theory->name, &curves, err);
 }
 
-static int add_of_grid(struct expectation *e, bool joint, struct sampled_summits *out,
+static int add_of_grid(struct expectation *e, bool joint, bool pits, struct sampled_summits *out,
                        struct error *err) {
     const struct statistics_case *one_case = &e->one_case;
-    const struct sampled_surface surface = {e->modes, &e->basis.moments, one_case->stencil,
-                                            one_case->curvature};
+    bool translated = surface_case_translated(&one_case->surface);
     struct summit_curves curves;
-    int status = summit_curves_create(e, joint, &curves, err);
+    int status = summit_curves_create(e, joint && !translated, &curves, err);
     if (status != 0)
         return status;
     const struct sampled_bins bins = {&one_case->height, &one_case->equivalent, curves.pdf,
                                       curves.cdf,        curves.curvature,      curves.t1_pdf,
                                       curves.joint};
-    status = sampled_summits(&surface, out, &bins, err);
-    return status != 0 ? status : add_summit_curves(e, STATISTICS_GRID_THEORY, &curves, err);
+    status = statistics_grid_theory_summits(one_case, &e->basis, pits, out, &bins, err);
+    if (translated)
+        curves.curvature = curves.t1_pdf = NULL;
+    return status != 0
+               ? status
+               : add_summit_curves(e, pits ? "grid_pits" : STATISTICS_GRID_THEORY, &curves, err);
 }
 
-/* Adds summits, of which theory exists for Gaussian heights alone. */
-static int add_summits(struct expectation *e, bool joint, struct error *err) {
+static int add_side(struct expectation *e, const struct summit_theory *theory, bool joint,
+                    bool pits, struct error *err) {
     struct summit_expectation without = {NAN, NAN, NAN, NAN, NAN, NAN};
     struct sampled_summits grid = {NAN, NAN, NAN, NAN, NAN, NAN, NAN};
     int status = 0;
-    if (e->one_case.surface.options.heights.type != HEIGHTS_GAUSSIAN)
-        return 0;
-    if (statistics_theory_applies(&e->one_case, &e->basis.moments))
-        status = add_without_grid(e, joint, &without, err);
-    if (status == 0 && e->one_case.stencil != SUMMITS_REFINED)
-        status = add_of_grid(e, joint, &grid, err);
-    return status != 0 ? status : add_summit_scalars(e, &without, &grid, err);
+    if (theory != NULL)
+        status = add_without_grid(e, theory, joint, pits, &without, err);
+    if (status == 0 && statistics_grid_theory_applies(&e->one_case))
+        status = add_of_grid(e, joint, pits, &grid, err);
+    return status != 0 ? status : add_summit_scalars(e, pits, &without, &grid, err);
+}
+
+/* Adds summits. Of surfaces that are not Gaussian the translated ones alone are expected. */
+static int add_summits(struct expectation *e, bool joint, struct error *err) {
+    struct summit_theories theories;
+    int status = summit_theories_create(&theories, &e->one_case, &e->basis, err);
+    if (status != 0)
+        return status;
+    const struct summit_theory *theory = NULL;
+    for (size_t t = 0; t < theories.count; t++)
+        if (theories.of[t].translated || statistics_case_symmetric(&e->one_case))
+            theory = &theories.of[t];
+    for (size_t side = 0; side < statistics_case_sides(&e->one_case) && status == 0; side++)
+        status = add_side(e, theory, joint, side == SIDE_PITS, err);
+    summit_theories_clear(&theories);
+    return status;
 }
 
 /* --- alpha of self-affine spectra, by the continuous formula --- */
@@ -328,6 +369,8 @@ int statistics_expectation(const cJSON *parameters, bool joint, struct case_resu
         status = case_create(&e, parameters, err);
     if (status == 0)
         status = add_moments(&e, err);
+    if (status == 0)
+        status = add_alphas(&e, err);
     if (status == 0)
         status = add_heights(&e, err);
     if (status == 0)

@@ -1,6 +1,6 @@
 #include "jobs/statistics/statistics_grid_theory.h"
+#include "core/surface/translation/translation.h"
 #include "core/theory/sampled_field.h"
-#include "core/theory/sampled_summits.h"
 #include "jobs/statistics/statistics_scalars.h"
 #include <math.h>
 #include <string.h>
@@ -11,67 +11,83 @@ static bool is_gaussian(const struct statistics_case *one_case) {
     return one_case->surface.options.heights.type == HEIGHTS_GAUSSIAN;
 }
 
-static bool applies_to_summits(const struct statistics_case *one_case) {
-    return is_gaussian(one_case) && one_case->stencil != SUMMITS_REFINED;
+bool statistics_grid_theory_applies(const struct statistics_case *one_case) {
+    return (is_gaussian(one_case) || surface_case_translated(&one_case->surface)) &&
+           one_case->stencil != SUMMITS_REFINED;
 }
 
-static struct sampled_surface surface_of(const struct statistics_case *one_case,
-                                         const struct surface_basis *basis) {
-    return (struct sampled_surface){basis->modes, &basis->moments, one_case->stencil,
-                                    one_case->curvature};
+int statistics_grid_theory_summits(const struct statistics_case *one_case,
+                                   const struct surface_basis *basis, bool pits,
+                                   struct sampled_summits *out, const struct sampled_bins *bins,
+                                   struct error *err) {
+    const struct translation *law = basis->modes->translation;
+    struct translated_heights heights = {.mirrored = pits};
+    struct moments moments = basis->moments;
+    struct sampled_surface surface = {basis->modes, &moments, one_case->stencil,
+                                      one_case->curvature, NULL};
+    if (law != NULL) {
+        heights.function = translation_function(law);
+        modes_gaussian_moments(basis->modes, &moments);
+        surface.translated = &heights;
+    }
+    return sampled_summits(&surface, out, bins, err);
 }
 
-/* Adds the series to the curves of a quantity. */
-static void add_series(struct case_result *out, const char *quantity, const double *y) {
+/* Adds the series to the curves of a quantity of a side. */
+static void add_series(struct case_result *out, const char *quantity, bool pits, const double *y) {
     for (size_t a = 0; a < out->curve_count; a++) {
         struct curve *curve = &out->curves[a];
-        if (strcmp(curve->quantity, quantity) == 0 && curve->theory_count < THEORIES_MOST)
+        if (strcmp(curve->quantity, quantity) == 0 && (*curve->series != '\0') == pits &&
+            curve->theory_count < THEORIES_MOST)
             curve->theories[curve->theory_count++] = (struct theory){STATISTICS_GRID_THEORY, y};
     }
 }
 
 static int add_curves(const struct statistics_case *one_case, const struct surface_basis *basis,
-                      struct sampled_summits *summits, struct case_result *out, struct error *err) {
-    const struct sampled_surface surface = surface_of(one_case, basis);
+                      bool pits, struct sampled_summits *summits, struct case_result *out,
+                      struct error *err) {
     size_t n = one_case->height.count;
     double *room = result_numbers(out, 3 * n + one_case->equivalent.count);
     if (room == NULL)
         return error_set(err, ERROR_MEMORY, "no memory left for theory of the grid");
     const struct sampled_bins bins = {&one_case->height, &one_case->equivalent, room, room + n,
                                       room + 2 * n,      room + 3 * n,          NULL};
-    int status = sampled_summits(&surface, summits, &bins, err);
+    int status = statistics_grid_theory_summits(one_case, basis, pits, summits, &bins, err);
     if (status != 0)
         return status;
-    add_series(out, "summit_height_pdf", bins.pdf);
-    add_series(out, "summit_height_cdf", bins.cdf);
-    add_series(out, "summit_mean_curvature", bins.curvature);
-    add_series(out, "summit_curvature_pdf", bins.t1_pdf);
-    add_series(out, "summit_joint_pdf", NULL);
+    add_series(out, "summit_height_pdf", pits, bins.pdf);
+    add_series(out, "summit_height_cdf", pits, bins.cdf);
+    if (basis->modes->translation != NULL)
+        return 0;
+    add_series(out, "summit_mean_curvature", pits, bins.curvature);
+    add_series(out, "summit_curvature_pdf", pits, bins.t1_pdf);
+    add_series(out, "summit_joint_pdf", pits, NULL);
     return 0;
 }
 
-static void set_scalar(struct case_result *out, enum statistics_scalar scalar, double value) {
+static void set_scalar(struct case_result *out, size_t scalar, double value) {
     const char *name = statistics_scalar_name(scalar);
     for (size_t s = 0; s < out->scalar_count; s++)
         if (strcmp(out->scalars[s].name, name) == 0)
             out->scalars[s].grid = value;
 }
 
-static void set_summits(const struct statistics_case *one_case,
+static void set_summits(const struct statistics_case *one_case, bool pits,
                         const struct sampled_summits *summits, struct case_result *out) {
     const struct surface_case *surface = &one_case->surface;
     bool profile = surface->dimension == 1;
     double ratio = surface->wavelength_ratio;
     double cell = surface->grid.lx * (profile ? 1 : surface->grid.ly);
-    set_scalar(out, SCALAR_SUMMITS, summits->density * cell);
-    set_scalar(out, SCALAR_SUMMIT_DENSITY, summits->density);
-    set_scalar(out, SCALAR_SUMMIT_DENSITY_PER_AREA,
+    size_t side = pits ? SIDE_SCALARS : 0;
+    set_scalar(out, side + SCALAR_SUMMITS, summits->density * cell);
+    set_scalar(out, side + SCALAR_SUMMIT_DENSITY, summits->density);
+    set_scalar(out, side + SCALAR_SUMMIT_DENSITY_PER_AREA,
                summits->density * (profile ? ratio : ratio * ratio));
-    set_scalar(out, SCALAR_SUMMIT_HEIGHT_MEAN, summits->height_mean);
-    set_scalar(out, SCALAR_SUMMIT_HEIGHT_VARIANCE, summits->height_variance);
-    set_scalar(out, SCALAR_SUMMIT_HEIGHT_SKEWNESS, summits->height_skewness);
-    set_scalar(out, SCALAR_SUMMIT_HEIGHT_KURTOSIS, summits->height_kurtosis);
-    set_scalar(out, SCALAR_SUMMIT_CURVATURE_MEAN, summits->curvature);
+    set_scalar(out, side + SCALAR_SUMMIT_HEIGHT_MEAN, summits->height_mean);
+    set_scalar(out, side + SCALAR_SUMMIT_HEIGHT_VARIANCE, summits->height_variance);
+    set_scalar(out, side + SCALAR_SUMMIT_HEIGHT_SKEWNESS, summits->height_skewness);
+    set_scalar(out, side + SCALAR_SUMMIT_HEIGHT_KURTOSIS, summits->height_kurtosis);
+    set_scalar(out, side + SCALAR_SUMMIT_CURVATURE_MEAN, summits->curvature);
 }
 
 static int add_scalar(struct case_result *out, const char *name, double value, double theory,
@@ -116,20 +132,22 @@ int statistics_grid_theory(const struct statistics_case *one_case,
     struct sampled_summits summits;
     set_moments(one_case, basis->modes, out);
     int status = add_spectrum(one_case, basis, out, err);
-    if (status != 0 || !applies_to_summits(one_case))
+    if (!statistics_grid_theory_applies(one_case))
         return status;
-    status = add_curves(one_case, basis, &summits, out, err);
-    if (status == 0)
-        set_summits(one_case, &summits, out);
+    for (size_t side = 0; side < statistics_case_sides(one_case) && status == 0; side++) {
+        bool pits = side == SIDE_PITS;
+        status = add_curves(one_case, basis, pits, &summits, out, err);
+        if (status == 0)
+            set_summits(one_case, pits, &summits, out);
+    }
     return status;
 }
 
 int statistics_grid_theory_joint(const struct statistics_case *one_case,
                                  const struct surface_basis *basis, double *pdf,
                                  struct error *err) {
-    const struct sampled_surface surface = surface_of(one_case, basis);
     const struct sampled_bins bins = {
         .height = &one_case->height, .t1 = &one_case->equivalent, .joint = pdf};
     struct sampled_summits summits;
-    return sampled_summits(&surface, &summits, &bins, err);
+    return statistics_grid_theory_summits(one_case, basis, false, &summits, &bins, err);
 }

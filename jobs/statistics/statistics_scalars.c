@@ -1,10 +1,8 @@
 #include "jobs/statistics/statistics_scalars.h"
 #include "core/sum.h"
-#include "core/theory/nayak.h"
 #include "core/theory/sampled_field.h"
 #include "jobs/estimate.h"
 #include "jobs/like/like_percentile.h"
-#include "jobs/statistics/statistics_theory.h"
 #include "jobs/statistics/summit_heights.h"
 #include <math.h>
 #include <stdlib.h>
@@ -224,12 +222,11 @@ int statistics_scalar_values(const struct realisations *realisations, size_t sca
 }
 
 /* Fills in the theory of summits, or of pits in the same order. */
-static void theory_of_summits(const struct statistics_case *one_case, const struct moments *moments,
-                              double *out) {
+static void theory_of_summits(const struct statistics_case *one_case,
+                              const struct summit_theory *theory, bool pits, double *out) {
     int dimension = one_case->surface.dimension;
     double ratio = one_case->surface.wavelength_ratio, lx = one_case->surface.grid.lx;
-    struct summit_expectation expected =
-        summit_expectation(dimension, moments->m2, moments->m4, moments->nayak_alpha);
+    struct summit_expectation expected = summit_theory_expectation(theory, pits);
     out[SCALAR_SUMMIT_DENSITY] = expected.density;
     out[SCALAR_SUMMIT_DENSITY_PER_AREA] = expected.density * ratio;
     out[SCALAR_SUMMITS] = expected.density * lx;
@@ -246,7 +243,7 @@ static void theory_of_summits(const struct statistics_case *one_case, const stru
 
 /* Fills in the theory of each scalar, NaN where there is none. */
 static void theory_of_scalars(const struct statistics_case *one_case, const struct moments *moments,
-                              double out[SCALAR_COUNT]) {
+                              const struct summit_theories *theories, double out[SCALAR_COUNT]) {
     struct height_moments heights;
     for (size_t a = 0; a < SCALAR_COUNT; a++)
         out[a] = NAN;
@@ -266,9 +263,10 @@ static void theory_of_scalars(const struct statistics_case *one_case, const stru
         out[SCALAR_M4] = moments->m4;
         out[SCALAR_NAYAK_ALPHA] = moments->nayak_alpha;
     }
-    if (statistics_theory_applies(one_case, moments))
-        for (size_t side = 0; side < statistics_case_sides(one_case); side++)
-            theory_of_summits(one_case, moments, out + side * SIDE_SCALARS);
+    if (theories->count == 0)
+        return;
+    for (size_t side = 0; side < statistics_case_sides(one_case); side++)
+        theory_of_summits(one_case, &theories->of[0], side == SIDE_PITS, out + side * SIDE_SCALARS);
 }
 
 /* Adds a scalar with a fixed name. */
@@ -318,10 +316,10 @@ static struct estimate random_estimate(const struct scalar_columns *columns,
 }
 
 static int add_scalars(struct case_result *out, const struct statistics_case *one_case,
-                       const struct surface_basis *basis, const struct scalar_columns *columns,
-                       struct error *err) {
+                       const struct surface_basis *basis, const struct summit_theories *theories,
+                       const struct scalar_columns *columns, struct error *err) {
     double theory[SCALAR_COUNT], constants[SCALAR_COUNT];
-    theory_of_scalars(one_case, &basis->moments, theory);
+    theory_of_scalars(one_case, &basis->moments, theories, theory);
     constants_of_scalars(one_case, basis, constants);
     int status = 0;
     for (enum statistics_scalar a = 0; a < SCALAR_OWN && status == 0; a++) {
@@ -338,6 +336,7 @@ static int add_scalars(struct case_result *out, const struct statistics_case *on
 }
 
 int statistics_scalars(const struct statistics_case *one_case, const struct surface_basis *basis,
+                       const struct summit_theories *theories,
                        const struct realisations *realisations, struct case_result *out,
                        struct error *err) {
     struct scalar_columns columns = {.n = (size_t)realisations->count};
@@ -347,7 +346,7 @@ int statistics_scalars(const struct statistics_case *one_case, const struct surf
     columns.scratch = columns.values + SCALAR_COUNT * columns.n;
     for (size_t a = 0; a < SCALAR_COUNT; a++)
         realisations_column(realisations, a, columns.values + a * columns.n);
-    int status = add_scalars(out, one_case, basis, &columns, err);
+    int status = add_scalars(out, one_case, basis, theories, &columns, err);
     free(columns.values);
     return status != 0 ? status
                        : like_scalars(&one_case->like, realisations, SCALAR_PATCH, out, err);

@@ -6,6 +6,7 @@
 #include "core/statistics/patch.h"
 #include "jobs/kind.h"
 #include "jobs/realisations.h"
+#include "jobs/statistics/statistics_theory.h"
 #include "jobs/statistics/statistics_tally.h"
 #include "schema/result/result.h"
 
@@ -110,6 +111,7 @@ void statistics_constants(const struct modes *modes, const struct moments *momen
  * exact spectrum share, have the value of the spectrum and a standard error of 0, which no other
  * scalar has. */
 int statistics_scalars(const struct statistics_case *one_case, const struct surface_basis *basis,
+                       const struct summit_theories *theories,
                        const struct realisations *realisations, struct case_result *out,
                        struct error *err);
 

@@ -306,6 +306,35 @@ static void correlation_changes(const struct statistics_case *one_case,
 
 /* --- curves --- */
 
+/* Of a translated surface, whose modes are those of its Gaussian field, makes the case and the modes
+ * of the spectrum that is asked for, at its RMS height; *asked is NULL for others. The case borrows
+ * what it points to. */
+static int asked_create(const struct statistics_case *one_case, const struct modes *modes,
+                        struct statistics_case *out, struct modes **asked, struct error *err) {
+    struct spectrum *spectrum = &out->surface.spectrum;
+    *out = *one_case;
+    *asked = NULL;
+    if (modes->translation == NULL)
+        return 0;
+    spectrum->translation = NULL;
+    spectrum->scale = SCALE_RMS_HEIGHT;
+    spectrum->scale_value = modes->height;
+    return modes_create(asked, spectrum, &modes->grid, err);
+}
+
+/* Computes the prescribed density of the rings. */
+static int prescribed_density(const struct statistics_case *one_case, const struct modes *modes,
+                              struct spectrum_columns *out, struct error *err) {
+    struct statistics_case prescribed;
+    struct modes *asked;
+    int status = asked_create(one_case, modes, &prescribed, &asked, err);
+    if (status == 0)
+        status = psd_prescribed(&prescribed.surface.spectrum, asked != NULL ? asked : modes, out->x,
+                                out->theory, err);
+    modes_destroy(&asked);
+    return status;
+}
+
 static int density_curve(const struct statistics_case *one_case, const struct modes *modes,
                          const struct statistics_tally *tally, struct case_result *result,
                          struct error *err) {
@@ -324,7 +353,7 @@ static int density_curve(const struct statistics_case *one_case, const struct mo
      * reported as means over the waves of the band, the only ones that they have. */
     for (size_t a = 0; a < n && surface_case_band_limited(&one_case->surface); a++)
         reference.y[a] = reference.theory[a];
-    status = psd_prescribed(&one_case->surface.spectrum, modes, columns.x, columns.theory, err);
+    status = prescribed_density(one_case, modes, &columns, err);
     if (status != 0)
         return status;
     for (size_t a = 0; a < n; a++) {
@@ -388,19 +417,20 @@ static int prescribed_correlation(const struct statistics_case *one_case, const 
                                   struct case_result *result, struct spectrum_columns *out,
                                   size_t *n, struct error *err) {
     struct modes *coarse = NULL;
+    struct statistics_case prescribed;
     struct grid grid = correlation_grid(&one_case->surface);
-    int status = 0;
+    int status = asked_create(one_case, modes, &prescribed, &coarse, err);
     *n = acf_lags(&grid);
-    if (grid.nx != modes->grid.nx) {
+    if (status == 0 && coarse == NULL && grid.nx != modes->grid.nx)
         status = modes_create(&coarse, &one_case->surface.spectrum, &grid, err);
+    if (coarse != NULL)
         modes = coarse;
-    }
     if (status == 0)
         status = columns_create(result, out, *n, err);
     if (status == 0)
         status = acf_of_modes_changes(modes, out->x, out->y, out->change, err);
     if (status == 0)
-        status = acf_prescribed(&one_case->surface.spectrum, modes, out->x, out->theory, err);
+        status = acf_prescribed(&prescribed.surface.spectrum, modes, out->x, out->theory, err);
     modes_destroy(&coarse);
     return status;
 }
@@ -439,10 +469,14 @@ int spectra_curves(const struct statistics_case *one_case, const struct modes *m
 
 int spectra_prescribed(const struct statistics_case *one_case, const struct modes *modes,
                        struct case_result *result, struct error *err) {
-    struct statistics_case exact = *one_case; /* borrows what it points to */
+    struct statistics_case exact;
+    struct modes *asked;
+    int status = asked_create(one_case, modes, &exact, &asked, err);
     exact.surface.options.keep = KEEP_SPECTRUM;
     exact.surface.options.amplitudes = AMPLITUDES_FIXED;
-    int status = spectra_curves(&exact, modes, NULL, result, err);
+    if (status == 0)
+        status = spectra_curves(&exact, asked != NULL ? asked : modes, NULL, result, err);
+    modes_destroy(&asked);
     for (size_t a = 0; a < result->curve_count && status == 0; a++) /* nothing was measured */
         result->curves[a].errors[ERROR_DISCRETISATION] = (struct curve_error){.applies = false};
     return status;

@@ -16,6 +16,10 @@ static const char PROFILE[] =
 static const char WEIBULL[] =
     "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 2, \"heights\":"
     " {\"distribution\": \"weibull_max\", \"shape\": 1}}}";
+static const char TRANSLATED[] =
+    "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 2, \"heights\":"
+    " {\"distribution\": \"weibull_max\", \"shape\": 1, \"law\": \"translation\"},"
+    " \"amplitudes\": \"random\"}}";
 /* Flat ground of a fifth of the area, at the top. */
 static const char OWN[] =
     "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 2, \"heights\":"
@@ -112,8 +116,11 @@ static void results_have_the_same_theories(void **state) {
 static void only_what_theory_tells(void **state) {
     (void)state;
     struct case_result weibull = expect(WEIBULL, false), refined = expect(REFINED, true);
-    assert_null(result_scalar(&weibull, "summit_density"));
-    assert_null(result_curve(&weibull, "summit_height_pdf"));
+    struct case_result own = expect(OWN, false);
+    assert_null(result_scalar(&own, "summit_density")); /* flat ground is no translation */
+    assert_null(result_curve(&own, "summit_height_pdf"));
+    assert_null(series(&weibull, "summit_height_pdf", "nayak"));
+    assert_null(series(&weibull, "summit_height_pdf", "grid"));
     check_close(scalar_of(&weibull, "skewness")->value, -2, 1e-9);
     assert_true(isnan(scalar_of(&weibull, "kurtosis")->grid));
     assert_non_null(series(&weibull, "height_pdf", "weibull"));
@@ -127,8 +134,102 @@ static void only_what_theory_tells(void **state) {
     for (size_t a = 0; a < joint->cell_count; a++)
         sum += joint->y[a] * cell;
     check_close(sum, 1, 1e-4);
+    result_clear(&own);
     result_clear(&refined);
     result_clear(&weibull);
+}
+
+static void result_of(const char *text, struct case_result *out) {
+    struct error err = {0};
+    struct job_merger *merger = NULL;
+    cJSON *parameters = cJSON_Parse(text);
+    assert_int_equal(merger_create(&merger, kind_find("statistics"), parameters, &err), 0);
+    assert_int_equal(merger_result(merger, out, &err), 0);
+    cJSON_Delete(parameters);
+    merger_destroy(&merger);
+}
+
+static const double *theory_of(const struct case_result *result, const char *quantity,
+                               const char *side, const char *name) {
+    const struct curve *curve = series(result, quantity, side);
+    assert_non_null(curve);
+    for (size_t t = 0; t < curve->theory_count; t++)
+        if (strcmp(curve->theories[t].name, name) == 0)
+            return curve->theories[t].y;
+    return NULL;
+}
+
+static const char *const OF_SUMMITS[] = {"summit_height_pdf", "summit_height_cdf",
+                                         "summit_mean_curvature", "summit_curvature_pdf"};
+
+/* Checks that the theories of one side of a result are the expectations, to the bit. */
+static void check_side(const struct case_result *result, const char *side, const char *name,
+                       const struct case_result *expected, const char *expected_series,
+                       size_t quantities) {
+    for (size_t q = 0; q < 4; q++) {
+        const struct curve *curve = series(expected, OF_SUMMITS[q], expected_series);
+        const double *theory = theory_of(result, OF_SUMMITS[q], side, name);
+        if (q >= quantities) {
+            assert_true(curve == NULL && theory == NULL);
+            continue;
+        }
+        assert_true(curve != NULL && theory != NULL);
+        check_same(curve->n, theory, curve->y);
+    }
+}
+
+/* Summits and pits differ, and have one density. A grid has no theory of their curvature. */
+static void translated_surfaces_have_summits_and_pits(void **state) {
+    (void)state;
+    struct case_result expected = expect(TRANSLATED, true), result = {0};
+    result_of(TRANSLATED, &result);
+    check_side(&result, "", "translation", &expected, "translation", 4);
+    check_side(&result, "pits", "translation", &expected, "pits", 4);
+    check_side(&result, "", "grid", &expected, "grid", 2);
+    check_side(&result, "pits", "grid", &expected, "grid_pits", 2);
+    const struct scalar *top = scalar_of(&result, "summit_height_mean");
+    const struct scalar *bottom = scalar_of(&result, "pit_height_mean");
+    assert_true(top->theory == scalar_of(&expected, "summit_height_mean")->value);
+    assert_true(bottom->grid == scalar_of(&expected, "pit_height_mean")->grid);
+    assert_true(top->theory < 0.8 && bottom->theory > 1);
+    assert_true(scalar_of(&result, "summit_density")->theory ==
+                scalar_of(&result, "pit_density")->theory);
+    assert_true(isnan(scalar_of(&result, "summit_curvature_mean")->grid));
+    double asked = scalar_of(&expected, "nayak_alpha_asked")->value;
+    struct case_result iterated = expect(WEIBULL, false);
+    check_relative(scalar_of(&iterated, "nayak_alpha")->value, asked, 1e-12);
+    assert_true(scalar_of(&expected, "nayak_alpha_gaussian")->value > asked);
+    const struct curve *joint = series(&expected, "summit_joint_pdf", "pits");
+    double sum = 0, cell = (joint->x[1] - joint->x[0]) * (joint->x2[1] - joint->x2[0]);
+    for (size_t a = 0; a < joint->cell_count; a++)
+        sum += joint->y[a] * cell;
+    double inside = series(&expected, "summit_height_cdf", "pits")->y[joint->n - 1];
+    assert_true(inside > 0.99 && inside < 1);
+    check_close(sum, inside, 1e-3); /* bins of t1 end, too */
+    result_clear(&iterated);
+    result_clear(&result);
+    result_clear(&expected);
+}
+
+/* Iterated surfaces stand beside Gaussian ones, as they did, and beside the translated ones of
+ * their heights and spectrum. */
+static void iterated_surfaces_stand_beside_translated_ones(void **state) {
+    (void)state;
+    struct case_result expected = expect(WEIBULL, false), translated = expect(TRANSLATED, false);
+    struct case_result result = {0};
+    result_of(WEIBULL, &result);
+    check_side(&result, "", "translation", &expected, "translation", 4);
+    check_side(&result, "pits", "translation", &translated, "pits", 4);
+    const struct curve *curve = series(&result, "summit_height_pdf", "");
+    assert_int_equal(curve->theory_count, 2);
+    assert_string_equal(curve->theories[0].name, "nayak");
+    assert_true(scalar_of(&expected, "pit_height_mean")->value ==
+                scalar_of(&translated, "pit_height_mean")->value);
+    double gaussian = 4 / sqrt(M_PI * scalar_of(&expected, "nayak_alpha")->value);
+    check_relative(scalar_of(&result, "summit_height_mean")->theory, gaussian, 1e-12);
+    result_clear(&result);
+    result_clear(&translated);
+    result_clear(&expected);
 }
 
 /* Heights of one's own have a theory, of all of them, in results as without. */
@@ -230,6 +331,8 @@ int main(void) {
         cmocka_unit_test(alpha_is_that_of_the_table),
         cmocka_unit_test(results_have_the_same_theories),
         cmocka_unit_test(only_what_theory_tells),
+        cmocka_unit_test(translated_surfaces_have_summits_and_pits),
+        cmocka_unit_test(iterated_surfaces_stand_beside_translated_ones),
         cmocka_unit_test(heights_of_ones_own_have_their_density),
         cmocka_unit_test(theory_knows_its_limits),
         cmocka_unit_test(anisotropic_surfaces_are_of_the_grid_alone),
