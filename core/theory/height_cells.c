@@ -128,8 +128,7 @@ int height_cells_spread(const double cells[HEIGHT_CELLS], const double *moments,
                         double rise, const struct bins *bins, const struct height_edges *out,
                         struct error *err) {
     struct share_table table;
-    int status =
-        table_create(&table, cells, height_cells_deviation(variance), bins, out->at, err);
+    int status = table_create(&table, cells, height_cells_deviation(variance), bins, out->at, err);
     if (status != 0)
         return status;
     for (size_t b = 0; b <= bins->count; b++) {

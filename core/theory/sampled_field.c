@@ -154,9 +154,8 @@ static double decorrelation(const struct modes *modes, long i, long j) {
             sum_add(&all, power);
             sum_add(&sum, power * cos(2 * M_PI * waves));
         }
-    return 1 - hermite_correlation(
-                   height_function_powers(translation_function(modes->translation)),
-                   sum_value(&sum) / sum_value(&all));
+    return 1 - hermite_correlation(height_function_powers(translation_function(modes->translation)),
+                                   sum_value(&sum) / sum_value(&all));
 }
 
 /* Mean squares of differences are sums of the autocorrelation at their lags. */

@@ -45,6 +45,14 @@ struct summit_integrand {
     struct triangle even, odd;
     struct regression height, curvature; /* of z* and of kappa_m/sqrt(m4) */
     double common; /* covariance of the independent parts of height and curvature */
+    const struct translated_surface *translated; /* borrowed; NULL: none */
+};
+
+/* A point and its neighbours: s of each pair; t along x, and two values of t along y that stand for
+ * all with the others, where the surface is translated. */
+struct neighbours {
+    double s[PAIRS_MOST];
+    double t_x, t_y[2];
 };
 
 /* The curvature by differences runs from 0 to this many of its deviations, beyond which exp(-36) of
@@ -209,9 +217,13 @@ static double weigh_even(const struct summit_integrand *f, const double *u, doub
     return weight;
 }
 
+/* Gauss and Legendre's rule of two points on [0, 1]. */
+static const double HALVES[2] = {0.21132486540518712, 0.78867513459481288};
+
 /* Returns the probability that |t| < s for all pairs, by draws of t along x and of the independent
  * parts of the diagonals. */
-static double weigh_odd(const struct summit_integrand *f, const double *u, const double *s) {
+static double weigh_odd(const struct summit_integrand *f, const double *u, struct neighbours *n) {
+    const double *s = n->s;
     const struct triangle *t = &f->odd;
     double y[PAIRS_MOST] = {0}, least[PAIRS_MOST] = {0}, weight = 2;
     for (size_t a = 0; a < f->pairs; a++)
@@ -219,29 +231,135 @@ static double weigh_odd(const struct summit_integrand *f, const double *u, const
     struct interval x = {0, INFINITY}; /* the other half is its mirror image */
     narrow(&x, 0, t->root[0][0], -s[0], s[0]);
     y[0] = between(x.low, x.high, u[0], &weight);
+    n->t_x = t->root[0][0] * y[0];
     if (f->pairs == 1)
         return weight;
     for (size_t a = 2; a < f->pairs; a++)
         y[a] = gsl_cdf_ugaussian_Pinv(u[a - 1]);
     x = bounds(t, 1, 1, y, least, s);
+    for (size_t half = 0; half < 2 && f->translated != NULL; half++) {
+        double share = 1;
+        y[1] = between(x.low, x.high, HALVES[half], &share);
+        n->t_y[half] = dot(2, t->root[1], y);
+    }
     between(x.low, x.high, 0.5, &weight);
     return weight;
 }
 
 /* Fills the unit normals y[PAIRS_MOST] of the even vector of a point, whose curvature by
- * differences is lead of its deviations, and returns its weight. The mean of weights over lead,
- * evenly from 0 to LEAD_MOST, and over u, evenly in the unit cube, is the share of points that are
- * summits. u[UNIFORMS] lies inside (0, 1). */
+ * differences is lead of its deviations, and its neighbours, and returns its weight. The mean of
+ * weights over lead, evenly from 0 to LEAD_MOST, and over u, evenly in the unit cube, is the share
+ * of points that are summits. u[UNIFORMS] lies inside (0, 1). */
 static double summit_integrand_weigh(const struct summit_integrand *f, double lead, const double *u,
-                                     double *y) {
-    double s[PAIRS_MOST] = {0};
+                                     double *y, struct neighbours *neighbours) {
+    *neighbours = (struct neighbours){0};
     y[0] = lead;
     for (size_t a = 1; a < PAIRS_MOST; a++)
         y[a] = 0;
-    double weight = weigh_even(f, u, y, s);
+    double weight = weigh_even(f, u, y, neighbours->s);
     if (weight > 0)
-        weight *= weigh_odd(f, u + UNIFORMS / 2, s);
+        weight *= weigh_odd(f, u + UNIFORMS / 2, neighbours);
     return weight * LEAD_MOST * exp(-lead * lead / 2) * 0.39894228040143268;
+}
+
+/* --- curvature of translated surfaces --- */
+
+/* Returns the curvature by differences of a translated surface in sqrt(m4) of z, where its field
+ * has the height and neighbours: the mean over t along y. */
+static double translated_curvature(const struct summit_integrand *f, double height,
+                                   const struct neighbours *n) {
+    const struct translated_heights *heights = &f->translated->heights;
+    double top = translated_heights_at(heights, height).height, side = height - n->s[0];
+    double sum = f->bend[0] * (top - (translated_heights_at(heights, side + n->t_x).height +
+                                      translated_heights_at(heights, side - n->t_x).height) /
+                                         2);
+    side = height - n->s[1];
+    for (size_t half = 0; half < 2 && f->pairs > 1; half++) {
+        double across = translated_heights_at(heights, side + n->t_y[half]).height +
+                        translated_heights_at(heights, side - n->t_y[half]).height;
+        sum += f->bend[1] / 2 * (top - across / 2);
+    }
+    return sum * translated_stretch(f->translated);
+}
+
+/* Mean curvatures at levels of the height of the field: the weight of summits at each, and that
+ * times their curvature, up to a factor. All points with means of heights near a level count there,
+ * so that curvatures rise smoothly from level to level. */
+enum { LEVELS = 49 };
+static const double LEVEL_STEP = 0.5, LEVEL_FIRST = -12;
+struct levels {
+    double weight[LEVELS], moment[LEVELS];
+};
+
+/* Levels within so many deviations of a mean count. A field whose heights follow from their
+ * neighbours has some deviation, too. */
+static const double ASIDE = 5, DEVIATION_LEAST = 0.05;
+
+static void levels_add(const struct summit_integrand *f, double mean,
+                       const struct neighbours *neighbours, double weight, struct levels *levels) {
+    double deviation = fmax(sqrt(f->height.variance), DEVIATION_LEAST);
+    double from = (mean - ASIDE * deviation - LEVEL_FIRST) / LEVEL_STEP;
+    double to = (mean + ASIDE * deviation - LEVEL_FIRST) / LEVEL_STEP;
+    size_t last = (size_t)fmin(fmax(floor(to), 0), LEVELS - 1);
+    for (size_t level = (size_t)fmin(fmax(ceil(from), 0), LEVELS); level <= last; level++) {
+        double height = LEVEL_FIRST + LEVEL_STEP * (double)level, x = (height - mean) / deviation;
+        double part = weight * exp(-x * x / 2);
+        levels->weight[level] += part;
+        levels->moment[level] += part * translated_curvature(f, height, neighbours);
+    }
+}
+
+static double levels_mean(const struct levels *levels) {
+    double weight = 0, moment = 0;
+    for (size_t level = 0; level < LEVELS; level++) {
+        weight += levels->weight[level];
+        moment += levels->moment[level];
+    }
+    return moment / weight;
+}
+
+/* Near the bound of the heights f is flat to its last digit: curvatures below are of no account. */
+static const double CURVATURE_LEAST = 1e-14;
+
+/* Returns the weight and the mean curvature at a height by cubics of their logarithms at four
+ * levels; both are near to those of normal densities. Where a level has no summit the weight is 0.
+ */
+static struct level_values {
+    double weight, curvature;
+} levels_at(const struct levels *levels, double height) {
+    double at = fmin(fmax((height - LEVEL_FIRST) / LEVEL_STEP, 1), LEVELS - 2.001);
+    size_t first = (size_t)at - 1;
+    double t = at - floor(at), weight = 0, curvature = 0;
+    const double parts[4] = {-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2,
+                             -(t + 1) * t * (t - 2) / 2, (t + 1) * t * (t - 1) / 6};
+    for (size_t a = 0; a < 4; a++) {
+        double of = levels->weight[first + a];
+        if (!(of > 0))
+            return (struct level_values){0, NAN};
+        weight += parts[a] * log(of);
+        curvature += parts[a] * log(fmax(levels->moment[first + a] / of, CURVATURE_LEAST));
+    }
+    return (struct level_values){exp(weight), exp(curvature)};
+}
+
+/* Returns the mean curvature between two heights of the field; NaN where there is no summit. */
+static double levels_between(const struct levels *levels, double low, double high) {
+    double weight = 0, moment = 0;
+    low = fmax(low, LEVEL_FIRST);
+    high = fmin(high, -LEVEL_FIRST);
+    size_t panels = (size_t)fmax(ceil((high - low) / LEVEL_STEP), 1);
+    double half = (high - low) / (2 * (double)panels);
+    for (size_t panel = 0; panel < panels; panel++)
+        for (size_t q = 0; q < GAUSS_4; q++) {
+            double height = low + half * ((double)(2 * panel + 1) + GAUSS_4_NODES[q]);
+            struct level_values at = levels_at(levels, height);
+            double part = GAUSS_4_WEIGHTS[q] * at.weight;
+            if (!(part > 0))
+                continue;
+            weight += part;
+            moment += part * at.curvature;
+        }
+    return moment / weight;
 }
 
 /* --- sums over a lattice --- */
@@ -255,6 +373,11 @@ static const unsigned STEPS[UNIFORMS] = {3711, 5711, 3321, 7766, 7145, 6041};
 static size_t shift_count(size_t pairs) {
     return pairs == PAIRS_NINE_POINT ? SHIFTS_MOST : 2;
 }
+
+/* Curvatures of translated surfaces, which are dear and smooth, are summed on each so many shifts:
+ * their error is 2e-4. */
+enum { SHIFTS_A_LEVEL = 4 };
+
 /* Profiles have an integral over one line. */
 static size_t point_count(size_t pairs) {
     return pairs == PAIRS_PROFILE ? PROFILE_POINTS : LATTICE_POINTS;
@@ -264,6 +387,7 @@ struct lattice_sums {
     double weight, curvature, height[4]; /* weight times curvature, means of heights to a power */
     double shifted[SHIFTS_MOST];         /* weight of each shift */
     double *cells, *moments;             /* owned, HEIGHT_CELLS each; NULL: not wanted */
+    struct levels levels;                /* of a translated surface: its curvature */
     double *t1;                          /* of the caller; NULL: not wanted */
     double *joint;                       /* owned, HEIGHT_CELLS of each bin of t1; NULL */
 };
@@ -319,11 +443,13 @@ static void add_point(const struct summit_integrand *f, const struct bins *t1, c
     double height = regression_value(&f->height, y);
     double curvature = regression_value(&f->curvature, y), power = weight;
     sums->weight += weight;
+    if (sums->cells != NULL)
+        height_cells_add(sums->cells, height, weight);
+    if (f->translated != NULL)
+        return;
     sums->curvature += weight * curvature;
     for (size_t n = 0; n < 4; n++)
         sums->height[n] += power *= height;
-    if (sums->cells != NULL)
-        height_cells_add(sums->cells, height, weight);
     if (sums->moments != NULL)
         height_cells_add(sums->moments, height, weight * curvature);
     if (sums->t1 != NULL || sums->joint != NULL)
@@ -339,6 +465,7 @@ static void integrate(const struct summit_integrand *f, const struct bins *t1,
     const double interval = LEAD_MOST / (double)points;
     for (size_t shift = 0; shift < shift_count(f->pairs); shift++) {
         double random[UNIFORMS + 1], u[UNIFORMS], y[PAIRS_MOST] = {0};
+        struct neighbours neighbours;
         double before = sums->weight;
         random_uniform((struct random_key){LATTICE_SEED, 0, shift}, STREAM_PHASES, 0, UNIFORMS + 1,
                        random);
@@ -348,9 +475,11 @@ static void integrate(const struct summit_integrand *f, const struct bins *t1,
                 u[a] = fmin(fmax(fabs(2 * (position - floor(position)) - 1), 1e-15), 1 - 1e-15);
             }
             double lead = interval * ((double)n + random[UNIFORMS]);
-            double weight = summit_integrand_weigh(f, lead, u, y);
+            double weight = summit_integrand_weigh(f, lead, u, y, &neighbours);
             if (weight > 0)
                 add_point(f, t1, y, interval, weight, sums);
+            if (weight > 0 && f->translated != NULL && shift % SHIFTS_A_LEVEL == 0)
+                levels_add(f, regression_value(&f->height, y), &neighbours, weight, &sums->levels);
         }
         sums->shifted[shift] = sums->weight - before;
     }
@@ -424,29 +553,52 @@ static void heights_translate(const struct translated_heights *translated, doubl
 static const double SHARE_LEAST = 1e-14;
 
 static int heights_take(const struct summit_integrand *f, const struct lattice_sums *sums,
-                        const struct sampled_bins *bins,
-                        const struct translated_heights *translated, struct error *err) {
+                        const struct sampled_bins *bins, struct error *err) {
     size_t edges = bins->height->count + 1;
-    double *room = array_create(edges, 5 * sizeof *room), width = bins_width(bins->height);
+    double *room = array_create(edges, 4 * sizeof *room), width = bins_width(bins->height);
     if (room == NULL)
-        return error_memory(err, edges * 5 * sizeof *room, "bins of theory");
+        return error_memory(err, edges * 4 * sizeof *room, "bins of theory");
     struct height_edges out = {room, room + edges, room + 2 * edges, room + 3 * edges, NULL};
-    double rest = f->height.variance, *scores = room + 4 * edges;
-    for (size_t b = 0; b < edges && translated != NULL; b++)
-        scores[b] = translated_heights_inverse(translated, bins->height->low + (double)b * width);
-    out.at = translated != NULL ? scores : NULL;
+    double rest = f->height.variance;
     int status = height_cells_spread(sums->cells, sums->moments, rest,
                                      rest > 0 ? f->common / rest : 0, bins->height, &out, err);
     for (size_t b = 0; b + 1 < edges && status == 0; b++) {
         double weight = height_edges_within(out.below, out.above, b);
-        bins->pdf[b] = weight / sums->weight / width;
-        bins->cdf[b] = fmin(out.below[b + 1] / sums->weight, 1);
-        if (sums->moments == NULL)
-            continue;
         bool lower = out.below[b] < out.above[b + 1];
         double moment = lower ? out.below_moment[b + 1] - out.below_moment[b]
                               : out.above_moment[b] - out.above_moment[b + 1];
-        bins->curvature[b] = weight > SHARE_LEAST * sums->weight ? moment / weight : (double)NAN;
+        bins->pdf[b] = weight / sums->weight / width;
+        bins->cdf[b] = fmin(out.below[b + 1] / sums->weight, 1);
+        if (bins->curvature != NULL)
+            bins->curvature[b] =
+                weight > SHARE_LEAST * sums->weight ? moment / weight : (double)NAN;
+    }
+    free(room);
+    return status;
+}
+
+/* Fills the same of a translated surface, whose edges of bins are heights of the field. */
+static int translated_take(const struct summit_integrand *f, const struct lattice_sums *sums,
+                           const struct sampled_bins *bins,
+                           const struct translated_heights *heights, struct error *err) {
+    size_t edges = bins->height->count + 1;
+    double *room = array_create(edges, 3 * sizeof *room), width = bins_width(bins->height);
+    if (room == NULL)
+        return error_memory(err, edges * 3 * sizeof *room, "bins of theory");
+    double *at = room + 2 * edges;
+    const struct height_edges out = {.below = room, .above = room + edges, .at = at};
+    for (size_t b = 0; b < edges; b++)
+        at[b] = translated_heights_inverse(heights, bins->height->low + (double)b * width);
+    int status =
+        height_cells_spread(sums->cells, NULL, f->height.variance, 0, bins->height, &out, err);
+    for (size_t b = 0; b + 1 < edges && status == 0; b++) {
+        double weight = height_edges_within(out.below, out.above, b);
+        bins->pdf[b] = weight / sums->weight / width;
+        bins->cdf[b] = fmin(out.below[b + 1] / sums->weight, 1);
+        if (bins->curvature == NULL)
+            continue;
+        bool known = f->translated != NULL && weight > SHARE_LEAST * sums->weight;
+        bins->curvature[b] = known ? levels_between(&sums->levels, at[b], at[b + 1]) : (double)NAN;
     }
     free(room);
     return status;
@@ -476,38 +628,39 @@ static int take(const struct summit_integrand *f, const struct sampled_surface *
                 struct lattice_sums *sums, const struct sampled_bins *bins,
                 struct sampled_summits *out, struct error *err) {
     const struct grid *grid = &surface->modes->grid;
-    const struct translated_heights *translated = surface->translated;
+    const struct translated_surface *translated = surface->translated;
     int status = 0;
     if (bins != NULL && bins->pdf != NULL)
-        status = heights_take(f, sums, bins, translated, err);
-    if (sums->joint != NULL && status == 0)
+        status = translated != NULL ? translated_take(f, sums, bins, &translated->heights, err)
+                                    : heights_take(f, sums, bins, err);
+    if (bins != NULL && sums->joint != NULL && status == 0)
         status = joint_take(f, sums, bins, err);
     if (status != 0)
         return status;
-    for (size_t b = 0; sums->t1 != NULL && b < bins->t1->count; b++)
+    for (size_t b = 0; bins != NULL && sums->t1 != NULL && b < bins->t1->count; b++)
         sums->t1[b] /= sums->weight * bins_width(bins->t1);
     double points = (double)(shift_count(f->pairs) * point_count(f->pairs));
     double area = grid_is_profile(grid) ? grid_dx(grid) : grid_dx(grid) * grid_dy(grid);
     out->density = sums->weight / points / area;
     out->density_error = relative_error(sums, shift_count(f->pairs));
-    out->curvature = translated != NULL ? (double)NAN : sums->curvature / sums->weight;
+    out->curvature = sums->curvature / sums->weight;
+    if (translated != NULL) /* of exact derivatives there is none */
+        out->curvature = f->translated != NULL ? levels_mean(&sums->levels) : (double)NAN;
     if (translated != NULL)
-        heights_translate(translated, f->height.variance, sums);
+        heights_translate(&translated->heights, f->height.variance, sums);
     moments_take(sums, translated != NULL ? 0 : f->height.variance, out);
     return 0;
 }
 
-/* Of a translated surface heights alone are summed, in cells whether bins are wanted or not. */
-static int sums_create(struct lattice_sums *sums, const struct sampled_bins *bins, bool translated,
-                       struct error *err) {
-    *sums = (struct lattice_sums){0};
-    size_t cells = bins != NULL && bins->pdf != NULL ? 2 : 0, joint = 0;
-    if (translated)
-        cells = 1;
-    else if (bins != NULL && bins->joint != NULL)
-        joint = bins->t1->count;
+/* Of a translated surface the means of heights are counted in cells in any case, those of
+ * curvatures are not. */
+static int sums_create(struct lattice_sums *sums, const struct sampled_surface *surface,
+                       const struct sampled_bins *bins, struct error *err) {
+    bool gaussian = surface->translated == NULL && bins != NULL;
+    size_t cells = surface->translated != NULL ? 1 : gaussian && bins->pdf != NULL ? 2 : 0;
+    size_t joint = gaussian && bins->joint != NULL ? bins->t1->count : 0;
     size_t bytes = (cells + joint) * HEIGHT_CELLS * sizeof(double);
-    sums->t1 = bins != NULL && !translated ? bins->t1_pdf : NULL;
+    *sums = (struct lattice_sums){.t1 = gaussian ? bins->t1_pdf : NULL};
     if (sums->t1 != NULL)
         memset(sums->t1, 0, bins->t1->count * sizeof *sums->t1);
     if (cells != 0)
@@ -536,7 +689,9 @@ int sampled_summits(const struct sampled_surface *surface, struct sampled_summit
     if (status != 0)
         return status;
     summit_integrand_prepare(&field, surface->curvature, &f);
-    status = sums_create(&sums, bins, surface->translated != NULL, err);
+    if (surface->curvature == CURVATURE_FINITE_DIFFERENCE)
+        f.translated = surface->translated;
+    status = sums_create(&sums, surface, bins, err);
     if (status == 0) {
         integrate(&f, bins != NULL ? bins->t1 : NULL, &sums);
         status = take(&f, surface, &sums, bins, out, err);

@@ -8,14 +8,16 @@
  * of modes.
  *
  * A surface that is translated from a Gaussian field has its summits, mapped (F6.12). Its curvature
- * by differences is not that of the field times f', and there is no expectation of it here. */
+ * by differences is not that of the field times f', as differences see f'' too: it has an
+ * expectation of its own. There is none here of its exact curvature, nor of densities of
+ * curvatures. */
 #ifndef RUGO_CORE_THEORY_SAMPLED_SUMMITS_H
 #define RUGO_CORE_THEORY_SAMPLED_SUMMITS_H
 
 #include "core/statistics/heights/histogram.h"
 #include "core/statistics/summits/summits.h"
 #include "core/surface/spectrum.h"
-#include "core/theory/translated_heights.h"
+#include "core/theory/translated_summits.h"
 
 struct sampled_surface {
     const struct modes *modes;     /* borrowed */
@@ -23,19 +25,20 @@ struct sampled_surface {
     enum summit_stencil stencil;   /* not SUMMITS_REFINED */
     enum summit_curvature curvature;
     /* Of a translated surface, whose field has these modes and moments; borrowed. NULL: none. */
-    const struct translated_heights *translated;
+    const struct translated_surface *translated;
 };
 
 struct sampled_summits {
     double density;       /* per area (length) */
     double density_error; /* standard error of the integral, as a share of the density */
     double height_mean, height_variance, height_skewness, height_kurtosis; /* of z* */
-    double curvature; /* mean of kappa_m/sqrt(m4); profiles -z''/sqrt(m4). NaN: translated */
+    double curvature; /* mean of kappa_m/sqrt(m4); profiles -z''/sqrt(m4). NaN: none */
 };
 
 /* Averages over bins as in bin_averages.h, NaN where there is hardly any summit; NULL: not wanted.
- * pdf and cdf come together. The joint density is joint[height bin * t1->count + t1 bin]. Those of
- * curvatures are not written for a translated surface. The caller owns the arrays. */
+ * pdf and cdf come together, and curvature with them alone. The joint density is
+ * joint[height bin * t1->count + t1 bin]. It and t1_pdf are not written for a translated surface.
+ * The caller owns the arrays. */
 struct sampled_bins {
     const struct bins *height, *t1;
     double *pdf, *cdf, *curvature; /* of summits by height */

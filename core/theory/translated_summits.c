@@ -6,8 +6,7 @@ static bool is_surface(const struct translated_surface *surface) {
     return surface->dimension == 2;
 }
 
-/* Returns the curvature of z in sqrt(m4) of z over f' times that of g in sqrt(m4) of g. */
-static double stretch(const struct translated_surface *surface) {
+double translated_stretch(const struct translated_surface *surface) {
     const struct moments *g = &surface->gaussian, *z = &surface->reached;
     return sqrt(z->m0 / g->m0 * (g->m4 / z->m4));
 }
@@ -73,8 +72,9 @@ struct summit_sums {
 static struct summit_sums sums_between(const struct translated_surface *surface, double low,
                                        double high) {
     struct summit_sums sums = {0};
-    double factor = stretch(surface);
-    for (double at = low, end; at < high; at = end) {
+    double factor = translated_stretch(surface);
+    double at = low, end;
+    while (at < high) {
         struct rule rule;
         end = panel_end(surface, at, high);
         rule_fill(&rule, at, end, NARROW);
@@ -87,6 +87,7 @@ static struct summit_sums sums_between(const struct translated_surface *surface,
             for (size_t n = 0; n < 4; n++)
                 sums.height[n] += power *= z.height;
         }
+        at = end;
     }
     return sums;
 }
@@ -129,7 +130,7 @@ static double mean_curvature(const struct translated_surface *surface, double lo
         return NAN;
     if (sums->share > SHARE_LEAST)
         return sums->curvature / sums->share;
-    return stretch(surface) * translated_heights_at(&surface->heights, middle).slope *
+    return translated_stretch(surface) * translated_heights_at(&surface->heights, middle).slope *
            summit_at(surface, middle).curvature;
 }
 
@@ -140,7 +141,8 @@ void translated_summits_heights(const struct translated_surface *surface, const 
         double high = score_of(surface, upper_edge(bins, b));
         struct summit_sums sums = sums_between(surface, low, high);
         pdf[b] = sums.share / bins_width(bins);
-        cdf[b] = is_surface(surface) ? nayak_summit_cdf(high, alpha) : profile_peak_cdf(high, alpha);
+        cdf[b] =
+            is_surface(surface) ? nayak_summit_cdf(high, alpha) : profile_peak_cdf(high, alpha);
         curvature[b] = mean_curvature(surface, low, high, &sums);
         low = high;
     }
@@ -171,7 +173,8 @@ static double joint_between(const struct translated_surface *surface, double sco
     double alpha = surface->gaussian.nayak_alpha, whole = range.high - range.low, sum = 0;
     low = fmax(low, range.low);
     high = fmin(high, range.high);
-    for (double at = low, end; at < high; at = end) {
+    double at = low, end;
+    while (at < high) {
         struct rule rule;
         end = fmin(at + whole / 8, high);
         rule_fill(&rule, at, end, whole / 64);
@@ -179,6 +182,7 @@ static double joint_between(const struct translated_surface *surface, double sco
             sum += rule.weight[q] * (is_surface(surface)
                                          ? nayak_joint_pdf(score, -rule.node[q], alpha)
                                          : profile_peak_joint_pdf(score, -rule.node[q], alpha));
+        at = end;
     }
     return sum;
 }
@@ -187,7 +191,8 @@ static double joint_between(const struct translated_surface *surface, double sco
 static void curvatures_add(const struct translated_surface *surface, double score, double weight,
                            const struct bins *t1, double *pdf) {
     struct curvature_range range = range_at(surface, score);
-    double unit = stretch(surface) * translated_heights_at(&surface->heights, score).slope;
+    double unit =
+        translated_stretch(surface) * translated_heights_at(&surface->heights, score).slope;
     double width = bins_width(t1);
     if (!(unit > 0))
         return;
@@ -203,12 +208,14 @@ static void curvatures_between(const struct translated_surface *surface, double 
     bool in_domain = surface->gaussian.nayak_alpha > alpha_least(surface);
     for (size_t b = 0; b < t1->count; b++)
         pdf[b] = in_domain ? 0 : NAN;
-    for (double at = low, end; at < high; at = end) {
+    double at = low, end;
+    while (at < high) {
         struct rule rule;
         end = panel_end(surface, at, high);
         rule_fill(&rule, at, end, NARROW);
         for (size_t q = 0; q < rule.n; q++)
             curvatures_add(surface, rule.node[q], weight * rule.weight[q], t1, pdf);
+        at = end;
     }
 }
 

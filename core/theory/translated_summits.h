@@ -3,7 +3,8 @@
  * f rises, so that summits of z are those of g: their density is Nayak's (of peaks of profiles,
  * that of Rice 1945) with the moments of g, and f maps their heights and curvatures. Heights are
  * z* = z/sqrt(m0), and t1 is that of nayak.h with the m4 of z. Integrals are over values of g, in
- * which everything is smooth where f is. Results are NaN for a field out of the domain of nayak.h. */
+ * which everything is smooth where f is. Results are NaN for a field out of the domain of nayak.h.
+ */
 #ifndef RUGO_CORE_THEORY_TRANSLATED_SUMMITS_H
 #define RUGO_CORE_THEORY_TRANSLATED_SUMMITS_H
 
@@ -19,6 +20,8 @@ struct translated_surface {
     struct moments reached;  /* of z */
 };
 
+/* Returns the curvature of z in sqrt(m4) of z over f' times that of g in sqrt(m4) of g. */
+double translated_stretch(const struct translated_surface *surface);
 struct summit_expectation translated_summits_expectation(const struct translated_surface *surface);
 
 /* Averages over bins as in bin_averages.h. Heights that the law does not have have no mean

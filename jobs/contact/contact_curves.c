@@ -22,7 +22,8 @@ static bool is_one_wave(const struct contact_case *one_case, const struct modes 
     return one_case->surface.dimension == 1 && modes->count <= 2;
 }
 
-/* Returns whether theories of Gaussian isotropic asperities apply. */
+/* Returns whether theories of Gaussian isotropic asperities apply. Translated surfaces have other
+ * heights and curvatures of summits (F6.12). */
 static bool has_asperities(const struct contact_case *one_case, const struct moments *moments) {
     return one_case->surface.dimension == 2 && moments->nayak_alpha > 1.5 &&
            one_case->surface.options.heights.type == HEIGHTS_GAUSSIAN &&

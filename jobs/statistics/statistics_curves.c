@@ -6,7 +6,14 @@
 #include <string.h>
 
 /* Theories of summits by bin, of a side. That of both height and t1 is made on demand. */
-enum summit_values { OF_HEIGHTS, OF_HEIGHTS_BELOW, OF_MEAN_CURVATURE, OF_T1, OF_BOTH, SUMMIT_VALUES };
+enum summit_values {
+    OF_HEIGHTS,
+    OF_HEIGHTS_BELOW,
+    OF_MEAN_CURVATURE,
+    OF_T1,
+    OF_BOTH,
+    SUMMIT_VALUES
+};
 
 /* What all curves of a case are made from. */
 struct statistics_curve_maker {

@@ -245,8 +245,10 @@ static int add_of_grid(struct expectation *e, bool joint, bool pits, struct samp
                                       curves.cdf,        curves.curvature,      curves.t1_pdf,
                                       curves.joint};
     status = statistics_grid_theory_summits(one_case, &e->basis, pits, out, &bins, err);
+    if (isnan(out->curvature))
+        curves.curvature = NULL;
     if (translated)
-        curves.curvature = curves.t1_pdf = NULL;
+        curves.t1_pdf = NULL;
     return status != 0
                ? status
                : add_summit_curves(e, pits ? "grid_pits" : STATISTICS_GRID_THEORY, &curves, err);

@@ -21,14 +21,15 @@ int statistics_grid_theory_summits(const struct statistics_case *one_case,
                                    struct sampled_summits *out, const struct sampled_bins *bins,
                                    struct error *err) {
     const struct translation *law = basis->modes->translation;
-    struct translated_heights heights = {.mirrored = pits};
-    struct moments moments = basis->moments;
-    struct sampled_surface surface = {basis->modes, &moments, one_case->stencil,
+    struct translated_surface translated = {.dimension = one_case->surface.dimension,
+                                            .reached = basis->moments};
+    struct sampled_surface surface = {basis->modes, &basis->moments, one_case->stencil,
                                       one_case->curvature, NULL};
     if (law != NULL) {
-        heights.function = translation_function(law);
-        modes_gaussian_moments(basis->modes, &moments);
-        surface.translated = &heights;
+        translated.heights = (struct translated_heights){translation_function(law), pits};
+        modes_gaussian_moments(basis->modes, &translated.gaussian);
+        surface.moments = &translated.gaussian;
+        surface.translated = &translated;
     }
     return sampled_summits(&surface, out, bins, err);
 }
@@ -57,9 +58,10 @@ static int add_curves(const struct statistics_case *one_case, const struct surfa
         return status;
     add_series(out, "summit_height_pdf", pits, bins.pdf);
     add_series(out, "summit_height_cdf", pits, bins.cdf);
+    if (!isnan(summits->curvature))
+        add_series(out, "summit_mean_curvature", pits, bins.curvature);
     if (basis->modes->translation != NULL)
         return 0;
-    add_series(out, "summit_mean_curvature", pits, bins.curvature);
     add_series(out, "summit_curvature_pdf", pits, bins.t1_pdf);
     add_series(out, "summit_joint_pdf", pits, NULL);
     return 0;

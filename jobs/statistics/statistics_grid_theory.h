@@ -1,7 +1,8 @@
 /* Theory of the grid in use (F8.4, F8.5) beside theory without a grid: the series "grid" of curves
  * of summits, and `grid` of scalars. Among these, `isotropy` (3 m22/m40) and `spectrum_clipped`
- * depend on the spectrum alone. Theory of summits exists for Gaussian surfaces, and but for
- * curvature for translated ones; refined summits need none. */
+ * depend on the spectrum alone. Theory of summits exists for Gaussian surfaces and for
+ * translated ones, of these but for densities of curvatures and for exact curvatures; refined
+ * summits need none. */
 #ifndef RUGO_JOBS_STATISTICS_STATISTICS_GRID_THEORY_H
 #define RUGO_JOBS_STATISTICS_STATISTICS_GRID_THEORY_H
 

@@ -6,8 +6,8 @@
 #include "core/statistics/patch.h"
 #include "jobs/kind.h"
 #include "jobs/realisations.h"
-#include "jobs/statistics/statistics_theory.h"
 #include "jobs/statistics/statistics_tally.h"
+#include "jobs/statistics/statistics_theory.h"
 #include "schema/result/result.h"
 
 /* Scalars that are measured again on some realisations: of a surface by another iteration

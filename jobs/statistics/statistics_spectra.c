@@ -306,9 +306,9 @@ static void correlation_changes(const struct statistics_case *one_case,
 
 /* --- curves --- */
 
-/* Of a translated surface, whose modes are those of its Gaussian field, makes the case and the modes
- * of the spectrum that is asked for, at its RMS height; *asked is NULL for others. The case borrows
- * what it points to. */
+/* Of a translated surface, whose modes are those of its Gaussian field, makes the case and the
+ * modes of the spectrum that is asked for, at its RMS height; *asked is NULL for others. The case
+ * borrows what it points to. */
 static int asked_create(const struct statistics_case *one_case, const struct modes *modes,
                         struct statistics_case *out, struct modes **asked, struct error *err) {
     struct spectrum *spectrum = &out->surface.spectrum;

@@ -101,9 +101,8 @@ static struct translated_surface side_of(const struct summit_theory *theory, boo
 struct summit_expectation summit_theory_expectation(const struct summit_theory *theory, bool pits) {
     const struct translated_surface surface = side_of(theory, pits);
     const struct moments *m = &surface.reached;
-    return theory->translated
-               ? translated_summits_expectation(&surface)
-               : summit_expectation(surface.dimension, m->m2, m->m4, m->nayak_alpha);
+    return theory->translated ? translated_summits_expectation(&surface)
+                              : summit_expectation(surface.dimension, m->m2, m->m4, m->nayak_alpha);
 }
 
 void summit_theory_heights(const struct summit_theory *theory,
@@ -128,8 +127,8 @@ void summit_theory_equivalent(const struct summit_theory *theory,
         bin_averages_curvatures(surface.dimension, bins, pdf);
 }
 
-void summit_theory_joint(const struct summit_theory *theory,
-                         const struct statistics_case *one_case, bool pits, double *pdf) {
+void summit_theory_joint(const struct summit_theory *theory, const struct statistics_case *one_case,
+                         bool pits, double *pdf) {
     const struct translated_surface surface = side_of(theory, pits);
     const struct bins *height = &one_case->height, *t1 = &one_case->equivalent;
     if (theory->translated)

@@ -16,7 +16,7 @@ int statistics_theory_heights(const struct statistics_case *one_case, double *pd
  * a Gaussian field "translation". */
 struct summit_theory {
     const char *name;
-    bool translated; /* else of a Gaussian surface with the reached moments */
+    bool translated;                   /* else of a Gaussian surface with the reached moments */
     struct translated_surface surface; /* of a Gaussian one: the dimension and those moments */
 };
 extern const char STATISTICS_TRANSLATION[]; /* "translation" */
@@ -31,7 +31,8 @@ struct summit_theories {
     struct summit_theory of[SUMMIT_THEORIES_MOST];
     struct translation *translation; /* owned: beside an iterated surface; NULL: none */
 };
-/* Borrows the case. Takes some tens of milliseconds beside iterated surfaces. ERROR_MEMORY alone. */
+/* Borrows the case. Takes some tens of milliseconds beside iterated surfaces. ERROR_MEMORY alone.
+ */
 int summit_theories_create(struct summit_theories *out, const struct statistics_case *one_case,
                            const struct surface_basis *basis, struct error *err);
 void summit_theories_clear(struct summit_theories *theories);
@@ -45,7 +46,7 @@ void summit_theory_heights(const struct summit_theory *theory,
                            double *cdf, double *curvature);
 void summit_theory_equivalent(const struct summit_theory *theory,
                               const struct statistics_case *one_case, bool pits, double *pdf);
-void summit_theory_joint(const struct summit_theory *theory,
-                         const struct statistics_case *one_case, bool pits, double *pdf);
+void summit_theory_joint(const struct summit_theory *theory, const struct statistics_case *one_case,
+                         bool pits, double *pdf);
 
 #endif

@@ -173,20 +173,23 @@ static void check_side(const struct case_result *result, const char *side, const
             assert_true(curve == NULL && theory == NULL);
             continue;
         }
-        assert_true(curve != NULL && theory != NULL);
-        check_same(curve->n, theory, curve->y);
+        assert_non_null(curve);
+        assert_non_null(theory);
+        if (curve != NULL && theory != NULL)
+            check_same(curve->n, theory, curve->y);
     }
 }
 
-/* Summits and pits differ, and have one density. A grid has no theory of their curvature. */
+/* Summits and pits differ, and have one density. A grid has no theory of the density of
+ * their curvatures. */
 static void translated_surfaces_have_summits_and_pits(void **state) {
     (void)state;
     struct case_result expected = expect(TRANSLATED, true), result = {0};
     result_of(TRANSLATED, &result);
     check_side(&result, "", "translation", &expected, "translation", 4);
     check_side(&result, "pits", "translation", &expected, "pits", 4);
-    check_side(&result, "", "grid", &expected, "grid", 2);
-    check_side(&result, "pits", "grid", &expected, "grid_pits", 2);
+    check_side(&result, "", "grid", &expected, "grid", 3);
+    check_side(&result, "pits", "grid", &expected, "grid_pits", 3);
     const struct scalar *top = scalar_of(&result, "summit_height_mean");
     const struct scalar *bottom = scalar_of(&result, "pit_height_mean");
     assert_true(top->theory == scalar_of(&expected, "summit_height_mean")->value);
@@ -194,7 +197,9 @@ static void translated_surfaces_have_summits_and_pits(void **state) {
     assert_true(top->theory < 0.8 && bottom->theory > 1);
     assert_true(scalar_of(&result, "summit_density")->theory ==
                 scalar_of(&result, "pit_density")->theory);
-    assert_true(isnan(scalar_of(&result, "summit_curvature_mean")->grid));
+    const struct scalar *bend = scalar_of(&result, "summit_curvature_mean");
+    assert_true(bend->grid != bend->theory);
+    check_relative(bend->grid, bend->theory, 0.1);
     double asked = scalar_of(&expected, "nayak_alpha_asked")->value;
     struct case_result iterated = expect(WEIBULL, false);
     check_relative(scalar_of(&iterated, "nayak_alpha")->value, asked, 1e-12);

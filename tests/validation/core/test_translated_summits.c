@@ -1,6 +1,6 @@
-/* Protects: the theory of summits of translated surfaces on a grid. Nine-point summits and pits, and
- * peaks and valleys of profiles, have the density and the heights that the theory expects of the
- * grid, in both tails, and the surfaces the moments by differences. */
+/* Protects: the theory of summits of translated surfaces on a grid. Nine-point summits and pits,
+ * and peaks and valleys of profiles, have the density, the heights and the mean curvatures that the
+ * theory expects of the grid, in both tails, and the surfaces the moments by differences. */
 #include "core/statistics/heights/roughness.h"
 #include "core/statistics/summits/summits.h"
 #include "core/surface/surface.h"
@@ -14,7 +14,7 @@
 #include <string.h>
 
 /* Bins of heights over the whole range, to either bound. */
-enum { BINS = 24, DENSITY = BINS, MEAN, SQUARE, M2, M4, MEASURES };
+enum { BINS = 24, DENSITY = 2 * BINS, MEAN, SQUARE, CURVATURE, M2, M4, MEASURES };
 static const struct bins HEIGHT = {-6, 6, BINS};
 
 struct scene {
@@ -62,10 +62,11 @@ static void scene_close(struct scene *s) {
     free(s->values);
 }
 
-/* Measures the summits of a surface, or of its mirror image: their numbers by height, their number,
- * and sums of heights and of their squares; and its moments by differences. */
-static void measure(struct scene *s, struct random_key key, bool mirrored, double height,
-                    double *out) {
+/* Measures the summits of a surface, or of its mirror image: their numbers by height, sums of their
+ * curvatures by height, their number, sums of heights, of their squares and of curvatures; and its
+ * moments by differences. */
+static void measure(struct scene *s, struct random_key key, bool mirrored,
+                    const struct moments *moments, double *out) {
     struct summit_list list = {0};
     struct roughness roughness;
     assert_int_equal(generator_run(s->generator, key, s->z, NULL, NULL), 0);
@@ -73,10 +74,14 @@ static void measure(struct scene *s, struct random_key key, bool mirrored, doubl
         s->z[i] = -s->z[i];
     assert_int_equal(summits_find(s->finder, s->z, &list, NULL), 0);
     for (size_t a = 0; a < list.count; a++) {
-        double z = list.summits[a].height / height;
+        double z = list.summits[a].height / moments->rms_height;
+        double curvature = list.summits[a].curvature / sqrt(moments->m4);
         size_t bin = bins_find(&HEIGHT, z);
-        if (bin >= 1 && bin <= BINS)
+        if (bin >= 1 && bin <= BINS) {
             out[bin - 1]++;
+            out[BINS + bin - 1] += curvature;
+        }
+        out[CURVATURE] += curvature;
         out[MEAN] += z;
         out[SQUARE] += z * z;
     }
@@ -87,18 +92,19 @@ static void measure(struct scene *s, struct random_key key, bool mirrored, doubl
     summit_list_clear(&list);
 }
 
-/* Checks the mean of a measure, over the number of summits or over surfaces, within four of its
- * standard errors, by linearisation. */
-static double check_mean(const struct scene *s, int measure, bool of_summits, double expected) {
+/* Checks the sum of a measure over that of another one, or its mean over surfaces (NONE), within
+ * four of its standard errors, by linearisation. */
+enum { NONE = -1 };
+static double check_mean(const struct scene *s, int measure, int over, double expected) {
     double sum = 0, number = 0, squares = 0, n = (double)s->surfaces;
     for (size_t r = 0; r < s->surfaces; r++) {
         sum += s->values[r * MEASURES + (size_t)measure];
-        number += of_summits ? s->values[r * MEASURES + DENSITY] : 1;
+        number += over == NONE ? 1 : s->values[r * MEASURES + (size_t)over];
     }
     double mean = sum / number;
     for (size_t r = 0; r < s->surfaces; r++) {
         const double *values = s->values + r * MEASURES;
-        double rest = values[measure] - mean * (of_summits ? values[DENSITY] : 1);
+        double rest = values[measure] - mean * (over == NONE ? 1 : values[over]);
         squares += rest * rest;
     }
     double error = sqrt(squares * n / (n - 1)) / number;
@@ -113,39 +119,43 @@ static void check_law(int dimension, enum heights_type type, double shape, bool 
                       uint64_t seed) {
     struct scene s;
     const struct heights heights = {.type = type, .shape = shape};
-    double pdf[BINS], cdf[BINS], worst = 0, covered = 0;
-    struct moments gaussian, moments;
+    double pdf[BINS], cdf[BINS], curvature[BINS], worst = 0, bent = 0, covered = 0;
     struct sampled_summits expected;
     struct sampled_moments differences;
     scene_open(&s, dimension, &heights);
     const struct modes *modes = generator_modes(s.generator);
-    const struct translated_heights translated = {translation_function(s.law), mirrored};
-    modes_gaussian_moments(modes, &gaussian);
-    modes_moments(modes, &moments);
-    const struct sampled_surface surface = {modes, &gaussian, SUMMITS_NINE_POINT,
+    struct translated_surface translated = {.dimension = dimension,
+                                            .heights = {translation_function(s.law), mirrored}};
+    modes_gaussian_moments(modes, &translated.gaussian);
+    modes_moments(modes, &translated.reached);
+    const struct sampled_surface surface = {modes, &translated.gaussian, SUMMITS_NINE_POINT,
                                             CURVATURE_FINITE_DIFFERENCE, &translated};
-    const struct sampled_bins bins = {.height = &HEIGHT, .t1 = &HEIGHT, .pdf = pdf, .cdf = cdf};
+    const struct sampled_bins bins = {
+        .height = &HEIGHT, .t1 = &HEIGHT, .pdf = pdf, .cdf = cdf, .curvature = curvature};
     assert_int_equal(sampled_summits(&surface, &expected, &bins, NULL), 0);
     sampled_moments(modes, &differences);
     for (size_t r = 0; r < s.surfaces; r++)
-        measure(&s, (struct random_key){seed, 0, r}, mirrored, moments.rms_height,
+        measure(&s, (struct random_key){seed, 0, r}, mirrored, &translated.reached,
                 s.values + r * MEASURES);
     double cell = s.grid.lx * (dimension == 1 ? 1 : s.grid.ly);
-    double density = check_mean(&s, DENSITY, false, expected.density * cell);
-    double mean = check_mean(&s, MEAN, true, expected.height_mean);
-    check_mean(&s, SQUARE, true,
+    double density = check_mean(&s, DENSITY, NONE, expected.density * cell);
+    double mean = check_mean(&s, MEAN, DENSITY, expected.height_mean);
+    check_mean(&s, SQUARE, DENSITY,
                expected.height_variance + expected.height_mean * expected.height_mean);
-    check_mean(&s, M2, false, differences.m2);
-    check_mean(&s, M4, false, differences.m4);
+    check_mean(&s, CURVATURE, DENSITY, expected.curvature);
+    check_mean(&s, M2, NONE, differences.m2);
+    check_mean(&s, M4, NONE, differences.m4);
     for (int b = 0; b < BINS; b++) {
         double share = pdf[b] * bins_width(&HEIGHT);
         if (share < SHARE_LEAST)
             continue;
-        worst = fmax(worst, check_mean(&s, b, true, share));
+        worst = fmax(worst, check_mean(&s, b, DENSITY, share));
+        bent = fmax(bent, check_mean(&s, BINS + b, b, curvature[b]));
         covered += share;
     }
-    print_message("%zu surfaces: density %.1f, mean height %.1f, worst bin %.1f standard errors\n",
-                  s.surfaces, density, mean, worst);
+    print_message("%zu surfaces: density %.1f, mean height %.1f, worst bins %.1f and, of "
+                  "curvature, %.1f standard errors\n",
+                  s.surfaces, density, mean, worst, bent);
     assert_true(covered > 0.98);
     scene_close(&s);
 }
