@@ -2,8 +2,9 @@
 #ifndef RUGO_JOBS_CONTACT_CONTACT_ERROR_H
 #define RUGO_JOBS_CONTACT_CONTACT_ERROR_H
 
-#include "jobs/contact/contact_tally.h"
 #include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
 
 struct contact_error {
     double value; /* (reported - true) lies within value +- bound; NaN: not known at this load */
@@ -20,10 +21,9 @@ static inline double contact_error_left(double length, double left) {
 
 /* Returns whether two loads are within a factor of two. As a change vanishes at a load where its
  * sign changes, loads so near each other share the largest of their changes. */
-static inline bool contact_error_near(const struct contact_case *one_case, size_t load,
-                                      size_t other) {
+static inline bool contact_error_near(const double *loads, size_t load, size_t other) {
     static const double ROUNDING = 1e-9; /* of ratios that should be round numbers */
-    double ratio = one_case->loads[load] / one_case->loads[other];
+    double ratio = loads[load] / loads[other];
     return fmax(ratio, 1 / ratio) <= 2 * (1 + ROUNDING);
 }
 

@@ -5,6 +5,7 @@
 #define RUGO_JOBS_CONTACT_CONTACT_ERRORS_H
 
 #include "jobs/contact/contact_error.h"
+#include "jobs/contact/contact_tally.h"
 #include "schema/result/result.h"
 
 /* Estimates the error of a measure below MEASURE_PAIRED at every load, into out[load_count]. False,

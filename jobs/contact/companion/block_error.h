@@ -4,6 +4,7 @@
 #define RUGO_JOBS_CONTACT_COMPANION_BLOCK_ERROR_H
 
 #include "jobs/contact/contact_error.h"
+#include "jobs/estimate.h"
 
 /* Returns a bound of the relative change of a measure by the height, several times the relative
  * difference of compliance from a half-space at the longest wave of the cell. */

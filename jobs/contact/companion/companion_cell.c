@@ -209,7 +209,7 @@ static double change_around(const struct contact_case *one_case, struct contact_
     for (size_t k = 0; k < one_case->load_count; k++) {
         double change = *change_at(&errors[k], length);
         bool next = k + 1 >= load && k <= load + 1;
-        if ((next && change * own < 0) || contact_error_near(one_case, k, load))
+        if ((next && change * own < 0) || contact_error_near(one_case->loads, k, load))
             most = fmax(most, fabs(change));
     }
     return isnan(own) ? own : most;

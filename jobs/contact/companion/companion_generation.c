@@ -177,7 +177,7 @@ static bool generation_errors(const struct contact_tally *tally, enum contact_me
     }
     for (size_t k = 0; k < n; k++)
         for (size_t other = 0; other < n; other++)
-            if (contact_error_near(one_case, k, other))
+            if (contact_error_near(one_case->loads, k, other))
                 out[k].bound = fmax(out[k].bound, out[other].value);
     for (size_t k = 0; k < n; k++) {
         double y = fabs(contact_mean(tally, measure, model, finest, k).value);
