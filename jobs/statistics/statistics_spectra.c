@@ -306,13 +306,12 @@ static void correlation_changes(const struct statistics_case *one_case,
 
 /* --- curves --- */
 
-/* Of a translated surface, whose modes are those of its Gaussian field, makes the case and the
- * modes of the spectrum that is asked for, at its RMS height; *asked is NULL for others. The case
- * borrows what it points to. */
+/* Makes the spectrum that is asked for without a translation, and of a translated surface its modes
+ * at the RMS height of the surface: the modes of the case are those of the Gaussian field. *asked
+ * is NULL for other surfaces. The spectrum borrows what it points to. */
 static int asked_create(const struct statistics_case *one_case, const struct modes *modes,
-                        struct statistics_case *out, struct modes **asked, struct error *err) {
-    struct spectrum *spectrum = &out->surface.spectrum;
-    *out = *one_case;
+                        struct spectrum *spectrum, struct modes **asked, struct error *err) {
+    *spectrum = one_case->surface.spectrum;
     *asked = NULL;
     if (modes->translation == NULL)
         return 0;
@@ -325,12 +324,11 @@ static int asked_create(const struct statistics_case *one_case, const struct mod
 /* Computes the prescribed density of the rings. */
 static int prescribed_density(const struct statistics_case *one_case, const struct modes *modes,
                               struct spectrum_columns *out, struct error *err) {
-    struct statistics_case prescribed;
+    struct spectrum spectrum;
     struct modes *asked;
-    int status = asked_create(one_case, modes, &prescribed, &asked, err);
+    int status = asked_create(one_case, modes, &spectrum, &asked, err);
     if (status == 0)
-        status = psd_prescribed(&prescribed.surface.spectrum, asked != NULL ? asked : modes, out->x,
-                                out->theory, err);
+        status = psd_prescribed(&spectrum, asked != NULL ? asked : modes, out->x, out->theory, err);
     modes_destroy(&asked);
     return status;
 }
@@ -417,12 +415,12 @@ static int prescribed_correlation(const struct statistics_case *one_case, const 
                                   struct case_result *result, struct spectrum_columns *out,
                                   size_t *n, struct error *err) {
     struct modes *coarse = NULL;
-    struct statistics_case prescribed;
+    struct spectrum spectrum;
     struct grid grid = correlation_grid(&one_case->surface);
-    int status = asked_create(one_case, modes, &prescribed, &coarse, err);
+    int status = asked_create(one_case, modes, &spectrum, &coarse, err);
     *n = acf_lags(&grid);
     if (status == 0 && coarse == NULL && grid.nx != modes->grid.nx)
-        status = modes_create(&coarse, &one_case->surface.spectrum, &grid, err);
+        status = modes_create(&coarse, &spectrum, &grid, err);
     if (coarse != NULL)
         modes = coarse;
     if (status == 0)
@@ -430,7 +428,7 @@ static int prescribed_correlation(const struct statistics_case *one_case, const 
     if (status == 0)
         status = acf_of_modes_changes(modes, out->x, out->y, out->change, err);
     if (status == 0)
-        status = acf_prescribed(&prescribed.surface.spectrum, modes, out->x, out->theory, err);
+        status = acf_prescribed(&spectrum, modes, out->x, out->theory, err);
     modes_destroy(&coarse);
     return status;
 }
@@ -469,9 +467,10 @@ int spectra_curves(const struct statistics_case *one_case, const struct modes *m
 
 int spectra_prescribed(const struct statistics_case *one_case, const struct modes *modes,
                        struct case_result *result, struct error *err) {
-    struct statistics_case exact;
+    struct statistics_case exact = *one_case; /* borrows what it points to */
     struct modes *asked;
-    int status = asked_create(one_case, modes, &exact, &asked, err);
+    int status = asked_create(one_case, modes, &exact.surface.spectrum, &asked, err);
+    exact.surface.spectrum.translation = NULL;
     exact.surface.options.keep = KEEP_SPECTRUM;
     exact.surface.options.amplitudes = AMPLITUDES_FIXED;
     if (status == 0)
