@@ -2,7 +2,6 @@
 #include "schema/json/field.h"
 #include "schema/json/json.h"
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 static const char LAW[] = "/surface/heights/law", AMPLITUDES[] = "/surface/amplitudes";
@@ -25,23 +24,22 @@ int surface_law_complete(const cJSON *document, cJSON *parameters, struct error 
 static void refuse_iteration(const struct surface_options *of, struct values *values) {
     const struct surface_options *usual = &SURFACE_DEFAULTS;
     const struct {
-        const char *name;
+        const char *path;
         bool given;
     } values_of[] = {
-        {"tolerance", of->tolerance != usual->tolerance},
-        {"keep", of->keep != usual->keep},
-        {"iteration", of->iteration != usual->iteration},
-        {"draw", of->draw != usual->draw},
-        {"stall_gain", of->stall_gain != usual->stall_gain},
-        {"stall_iterations", of->stall_iterations != usual->stall_iterations},
-        {"max_iterations", of->max_iterations != usual->max_iterations},
-        {"relaxed_iterations", of->relaxed_iterations != usual->relaxed_iterations},
+        {"/surface/heights/tolerance", of->tolerance != usual->tolerance},
+        {"/surface/heights/keep", of->keep != usual->keep},
+        {"/surface/heights/iteration", of->iteration != usual->iteration},
+        {"/surface/heights/draw", of->draw != usual->draw},
+        {"/surface/heights/stall_gain", of->stall_gain != usual->stall_gain},
+        {"/surface/heights/stall_iterations", of->stall_iterations != usual->stall_iterations},
+        {"/surface/heights/max_iterations", of->max_iterations != usual->max_iterations},
+        {"/surface/heights/relaxed_iterations",
+         of->relaxed_iterations != usual->relaxed_iterations},
     };
     for (size_t a = 0; a < sizeof values_of / sizeof *values_of; a++) {
-        char path[64];
-        snprintf(path, sizeof path, "/surface/heights/%s", values_of[a].name);
         if (values_of[a].given)
-            values_fault(values, path,
+            values_fault(values, values_of[a].path,
                          "is of the law \"iterated\": surfaces of the law \"translation\" are not "
                          "iterated; leave it out");
     }
@@ -51,10 +49,9 @@ static void refuse_iteration(const struct surface_options *of, struct values *va
                      "needs; allowed: random");
 }
 
-static void judge(const struct translation *translation, struct values *values) {
+static void judge(const struct translation *translation, double most, struct values *values) {
     static const double TWO_PI = 6.283185307179586;
     const struct translation_fit *fit = translation_fit(translation);
-    double most = values_number(values, "/surface/heights/misfit");
     if (fit->misfit > most)
         values_fault(values, LAW,
                      "these heights and this spectrum go together only so far: %.3g %% of the "
@@ -68,6 +65,7 @@ static void judge(const struct translation *translation, struct values *values) 
 int surface_law_fill(struct translation **out, struct spectrum *spectrum, int dimension,
                      const struct surface_options *options, struct values *values,
                      struct error *err) {
+    double misfit = values_number(values, "/surface/heights/misfit");
     struct error reason = {0};
     *out = NULL;
     if (options->law != LAW_TRANSLATION || options->heights.type == HEIGHTS_GAUSSIAN)
@@ -83,7 +81,7 @@ int surface_law_fill(struct translation **out, struct spectrum *spectrum, int di
     }
     if (status != 0)
         return error_set(err, status, "%s", reason.text);
-    judge(*out, values);
+    judge(*out, misfit, values);
     spectrum->translation = *out;
     return 0;
 }
