@@ -234,6 +234,14 @@ static int own_points(const struct errors *errors, struct sides *sides,
     return side_of(sides, block, out, err);
 }
 
+/* Returns the first model of the table that presses exact layers; NULL: it has none. */
+static const struct contact_model *exact_model(void) {
+    size_t m = 0;
+    while (CONTACT_MODELS[m] != NULL && !linear_is_exact(CONTACT_MODELS[m]))
+        m++;
+    return CONTACT_MODELS[m];
+}
+
 static int block_errors(const struct errors *errors, struct sides *sides, size_t m,
                         struct error *err) {
     const struct press_series *series = &errors->series[m];
@@ -241,7 +249,7 @@ static int block_errors(const struct errors *errors, struct sides *sides, size_t
     const struct press_row *layer = NULL, *half_space = NULL;
     bool low = block_is_low(bound);
     struct press_block exact = series->block;
-    exact.model = linear_exact();
+    exact.model = exact_model();
     exact.lengths = exact.lengths > 0 ? exact.lengths : series->block.model->default_height;
     if (low && exact.model == NULL)
         return 0;

@@ -62,10 +62,3 @@ double linear_full_pressure(const struct contact_solver *solver) {
 bool linear_is_exact(const struct contact_model *model) {
     return model->press == linear_press && model->block == MODEL_HALFSPACE;
 }
-
-const struct contact_model *linear_exact(void) {
-    size_t m = 0;
-    while (CONTACT_MODELS[m] != NULL && !linear_is_exact(CONTACT_MODELS[m]))
-        m++;
-    return CONTACT_MODELS[m];
-}

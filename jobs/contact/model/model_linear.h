@@ -18,7 +18,5 @@ double linear_full_pressure(const struct contact_solver *solver);
 
 /* Returns whether a model is linear and presses a half-space or an exact layer. */
 bool linear_is_exact(const struct contact_model *model);
-/* Returns the first such model of the table; NULL: it has none. */
-const struct contact_model *linear_exact(void);
 
 #endif

@@ -162,7 +162,8 @@ static void finer_grid_is_the_same_surface(void **state) {
     options.amplitudes = AMPLITUDES_RANDOM;
     double *z[2];
     for (size_t a = 0; a < 2; a++) {
-        const struct grid grid = {64 << a, 64 << a, 16, 16};
+        const size_t side = (size_t)64 << a;
+        const struct grid grid = {side, side, 16, 16};
         struct generator *generator = NULL;
         z[a] = malloc(grid_points(&grid) * sizeof *z[a]);
         assert_non_null(z[a]);
