@@ -17,7 +17,7 @@ struct translation {
 /* --- the nodes of the band --- */
 
 /* Evenly in log |k|; a roll-off, where the density bends, lies on a node. */
-enum { NODES = 193, NODES_LEAST = 17 };
+enum { NODES = 97, NODES_LEAST = 9 };
 
 static void nodes_between(double low, double high, size_t n, double *k) {
     for (size_t a = 0; a < n; a++)
@@ -114,7 +114,7 @@ static void reach(struct solver *s) {
 
 /* Steps of the logarithm of the density towards the asked one. Larger powers overshoot where most
  * of a density comes from the other terms. */
-static const double STEP_POWER = 0.7, CHANGE_LEAST = 1e-9;
+static const double STEP_POWER = 0.7, CHANGE_LEAST = 1e-7;
 enum { STEPS_MOST = 200 };
 
 /* Makes one step; returns the largest change of a logarithm. What z has too much of where g has
