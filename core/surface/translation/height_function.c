@@ -65,12 +65,15 @@ static int nodes_fill(struct height_function *function, const struct heights *he
 
 /* Adds the nodes' shares of c_n, n from 0. He_n/sqrt(n!) by its recurrence. */
 static void coefficients_sum(const struct height_function *function, double c[HERMITE_TERMS + 1]) {
+    double root[HERMITE_TERMS + 2];
+    for (int n = 0; n < HERMITE_TERMS + 2; n++)
+        root[n] = sqrt(n);
     for (size_t node = 0; node < NODES; node++) {
         double g = node_score(node), last = 0, now = 1;
         double weight = SCORE_STEP * exp(-g * g / 2) / sqrt(2 * M_PI) * function->height[node];
         for (int n = 0; n <= HERMITE_TERMS; n++) {
             c[n] += weight * now;
-            double next = (g * now - sqrt(n) * last) / sqrt(n + 1);
+            double next = (g * now - root[n] * last) / root[n + 1];
             last = now;
             now = next;
         }
