@@ -300,8 +300,7 @@ static const struct quantity_table TABLE = {
         "load: p/(E* h'_rms); area: A/A0, +- one standard error; errors (reported - true) in "
         "percent "
         "of it: mesh, from the limit of the levels; cell, from a very long one; block, from an "
-        "infinitely high one; model, from the limit of the most complete one; generation, from "
-        "surfaces of alternative generators",
+        "infinitely high one; model, from the limit of the most complete one",
     .scalars = SCALARS,
     .left_out = LEFT_OUT,
 };
@@ -340,7 +339,7 @@ const struct job_kind CONTACT_KIND = {
     .realise = realise,
     .merge = merge,
     .format = 0x434f, /* "CO" */
-    .format_version = 14,
+    .format_version = 15,
     .put = put,
     .get = get,
     .adds_up = adds_up,

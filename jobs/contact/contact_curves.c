@@ -1,6 +1,7 @@
 #include "jobs/contact/contact_curves.h"
 #include "core/theory/bin_averages.h"
 #include "core/theory/contact.h"
+#include "jobs/contact/companion/companion_law.h"
 #include "jobs/contact/contact_errors.h"
 #include "jobs/contact/contact_measure.h"
 #include <math.h>
@@ -129,7 +130,8 @@ struct contact_curve_maker {
     const struct contact_tally *tally;
     struct theories theories;
     struct case_result *result;   /* its arena owns all arrays */
-    struct contact_error *errors; /* scratch: one for each load */
+    struct contact_error *errors; /* scratch: one for each load, as the next */
+    struct estimate *differences;
 };
 
 static int no_room(struct error *err) {
@@ -210,6 +212,25 @@ static int add_errors(struct contact_curve_maker *maker, const struct row *row, 
     return status;
 }
 
+/* Adds the law difference, which is known on the finest level. */
+static int add_law(struct contact_curve_maker *maker, const struct row *row, size_t model,
+                   struct curve *curve, struct error *err) {
+    size_t n = maker->one_case->load_count;
+    if (!companion_law_difference(maker->tally, row->measure, model, maker->differences))
+        return 0;
+    double *difference = result_numbers(maker->result, 2 * n);
+    if (difference == NULL)
+        return no_room(err);
+    double *standard_error = difference + n;
+    for (size_t k = 0; k < n; k++) {
+        difference[k] = row->factor * maker->differences[k].value;
+        standard_error[k] = row->factor * maker->differences[k].standard_error;
+    }
+    curve->law_difference = difference;
+    curve->law_standard_error = standard_error;
+    return 0;
+}
+
 static int append(struct contact_curve_maker *maker, const struct row *row, size_t model,
                   size_t level, struct error *err) {
     const struct contact_case *one_case = maker->one_case;
@@ -239,6 +260,8 @@ static int append(struct contact_curve_maker *maker, const struct row *row, size
     curve.theory_count = theories->count[of->theories];
     memcpy(curve.theories, theories->of[of->theories], sizeof curve.theories);
     int status = add_errors(maker, row, model, level, &curve, err);
+    if (status == 0 && level + 1 == one_case->level_count)
+        status = add_law(maker, row, model, &curve, err);
     return status != 0 ? status : result_add_curve(maker->result, &curve, err);
 }
 
@@ -292,20 +315,28 @@ static int append_own(struct contact_curve_maker *maker, size_t m, struct error 
     return status;
 }
 
-/* Adds the error of generation to the density of pressures, which is x and y of the curve. */
-static int put_generation(struct contact_curve_maker *maker, size_t model, size_t at,
-                          struct curve *curve, struct error *err) {
-    size_t n = curve->n;
-    double *none = result_numbers(maker->result, 3 * n);
-    if (none == NULL)
+/* Adds the law difference of the density of pressures, which is x and y of the curve: that by the
+ * change of the area. */
+static int put_law(struct contact_curve_maker *maker, size_t model, size_t at, struct curve *curve,
+                   struct error *err) {
+    const struct contact_case *one_case = maker->one_case;
+    size_t n = curve->n, load = one_case->pdf_loads[at];
+    if (!companion_law_difference(maker->tally, MEASURE_EDGES, model, maker->differences) ||
+        isnan(maker->differences[load].value))
+        return 0;
+    double *difference = result_numbers(maker->result, 2 * n);
+    if (difference == NULL)
         return no_room(err);
-    if (contact_errors_generation(maker->tally, model, at, curve->x, curve->y, maker->errors,
-                                  none + n, none + 2 * n))
-        curve->errors[ERROR_GENERATION] = (struct curve_error){.applies = true,
-                                                               .value = none,
-                                                               .bound = none + n,
-                                                               .standard_error = none + 2 * n,
-                                                               .order = NAN};
+    const struct estimate *of_area = &maker->differences[load];
+    double area =
+        contact_mean(maker->tally, MEASURE_EDGES, model, one_case->level_count - 1, load).value;
+    for (size_t b = 0; b < n; b++) {
+        double by = contact_errors_stretch(n, curve->x, curve->y, b) / area;
+        difference[b] = by * of_area->value;
+        difference[n + b] = fabs(by) * of_area->standard_error;
+    }
+    curve->law_difference = difference;
+    curve->law_standard_error = difference + n;
     return 0;
 }
 
@@ -360,7 +391,7 @@ static int append_pressures(struct contact_curve_maker *maker, size_t model, siz
     curve.counted = true;
     curve.underflow = (double)count[0] / parts;
     curve.overflow = (double)count[n + 1] / parts;
-    int status = put_generation(maker, model, at, &curve, err);
+    int status = put_law(maker, model, at, &curve, err);
     return status != 0 ? status : result_add_curve(maker->result, &curve, err);
 }
 
@@ -370,7 +401,8 @@ int contact_curves(const struct contact_case *one_case, const struct modes *mode
     struct contact_curve_maker maker = {
         .one_case = one_case, .modes = modes, .tally = tally, .result = out};
     maker.errors = result_room(out, one_case->load_count, sizeof *maker.errors);
-    if (maker.errors == NULL)
+    maker.differences = result_room(out, one_case->load_count, sizeof *maker.differences);
+    if (maker.errors == NULL || maker.differences == NULL)
         return no_room(err);
     int status = theories_make(&maker.theories, one_case, modes, moments, out, err);
     for (size_t a = 0; a < MEASURE_OWN && status == 0; a++)

@@ -361,25 +361,16 @@ bool contact_errors_density_model(const struct contact_tally *tally, size_t mode
     return true;
 }
 
-double contact_errors_sensitivity(size_t n, const double *x, const double *y, size_t b) {
+/* Returns x times the derivative of y. */
+static double steepness(size_t n, const double *x, const double *y, size_t b) {
     size_t left = b > 0 ? b - 1 : b, right = b + 1 < n ? b + 1 : b;
-    double slope = right > left ? (y[right] - y[left]) / (x[right] - x[left]) : 0;
-    return 2 * fabs(y[b]) + fabs(x[b] * slope);
+    return right > left ? x[b] * (y[right] - y[left]) / (x[right] - x[left]) : 0;
 }
 
-bool contact_errors_generation(const struct contact_tally *tally, size_t model, size_t at,
-                               const double *x, const double *y, struct contact_error *room,
-                               double *bound, double *standard_error) {
-    const struct contact_case *one_case = tally->one_case;
-    size_t load = one_case->pdf_loads[at], n = one_case->pressure.count;
-    if (!contact_errors(tally, MEASURE_EDGES, model, ERROR_GENERATION, room) ||
-        isnan(room[load].value))
-        return false;
-    double area = contact_mean(tally, MEASURE_EDGES, model, one_case->level_count - 1, load).value;
-    for (size_t b = 0; b < n; b++) {
-        double by = contact_errors_sensitivity(n, x, y, b) / area;
-        bound[b] = by * room[load].bound;
-        standard_error[b] = by * room[load].standard_error;
-    }
-    return true;
+double contact_errors_stretch(size_t n, const double *x, const double *y, size_t b) {
+    return 2 * y[b] + steepness(n, x, y, b);
+}
+
+double contact_errors_sensitivity(size_t n, const double *x, const double *y, size_t b) {
+    return 2 * fabs(y[b]) + fabs(steepness(n, x, y, b));
 }

@@ -43,6 +43,8 @@ double contact_errors_mesh_floor(const struct contact_case *one_case, enum conta
                                  size_t model);
 /* Returns the change of a density y at x in bin b of n over the relative change of the area. At one
  * load the mean pressure is inverse to the area: q(x) becomes c^2 q(c x). */
+double contact_errors_stretch(size_t n, const double *x, const double *y, size_t b);
+/* Returns a bound of the same, for an error of either sign. */
 double contact_errors_sensitivity(size_t n, const double *x, const double *y, size_t b);
 /* Estimates the error of the model of the density of pressures at position `at` of pdf_loads, by
  * bin: the difference on the finest level, within what finer ones may change. shares: as above;
@@ -51,12 +53,5 @@ double contact_errors_sensitivity(size_t n, const double *x, const double *y, si
 bool contact_errors_density_model(const struct contact_tally *tally, size_t model, size_t at,
                                   const struct estimate *shares, struct estimate *room,
                                   double *value, double *bound, double *standard_error);
-/* Estimates the error of generation of the density of pressures at position `at` of pdf_loads, n
- * bins of density y at x: that by the change of the area (contact_errors_sensitivity). False, and
- * nothing in bound and standard_error (n each), where it is not known. room: an entry for each
- * load. */
-bool contact_errors_generation(const struct contact_tally *tally, size_t model, size_t at,
-                               const double *x, const double *y, struct contact_error *room,
-                               double *bound, double *standard_error);
 
 #endif

@@ -161,14 +161,20 @@ static const struct parameter ROWS[] = {
      .help =
          "what the length of the cell changes: probed (unless given) on some longer and shorter "
          "surfaces, for about a tenth of the time; or none, and it is not known"},
+    {.path = "/contact/law_difference",
+     .type = PARAMETER_CHOICE,
+     .choices = COMPANION_CHOICES,
+     .later = true,
+     .example_json = "\"none\"",
+     .help = "what the other law of heights that are not Gaussian would give: probed (unless "
+             "given) on some surfaces, for less than a tenth of the time; or none, and it is not "
+             "known"},
     {.path = "/contact/generation_error",
      .type = PARAMETER_CHOICE,
      .choices = COMPANION_CHOICES,
      .later = true,
      .example_json = "\"none\"",
-     .help = "the error of the generator of surfaces with other than Gaussian heights: probed "
-             "(unless given) on some surfaces of alternative generators, for less than a tenth of "
-             "the time; or none, and it is not known"},
+     .help = "of older studies, and without effect: law_difference took its place"},
     {.path = "/contact/pressure_pdf/at",
      .type = PARAMETER_NUMBERS,
      .minimum = 0,

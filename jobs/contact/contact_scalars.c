@@ -1,6 +1,7 @@
 #include "jobs/contact/contact_scalars.h"
 #include "core/statistics/fit.h"
 #include "core/theory/contact.h"
+#include "jobs/contact/companion/companion_law.h"
 #include "jobs/contact/contact_errors.h"
 #include "jobs/estimate.h"
 #include <math.h>
@@ -223,6 +224,21 @@ static int put_measure(const struct contact_tally *tally, enum contact_measure m
     return 0;
 }
 
+/* Sets the law difference of the same. */
+static int put_law(const struct contact_tally *tally, enum contact_measure measure, size_t loads,
+                   struct scalar *out, struct error *err) {
+    size_t count = tally->one_case->load_count;
+    struct estimate *differences = array_create(count, sizeof *differences);
+    if (differences == NULL)
+        return error_memory(err, count * sizeof *differences, "differences of a scalar");
+    if (loads > 0 && companion_law_difference(tally, measure, 0, differences)) {
+        out->law_difference = differences[loads - 1].value;
+        out->law_standard_error = differences[loads - 1].standard_error;
+    }
+    free(differences);
+    return 0;
+}
+
 bool contact_scalar_fit(const struct contact_tally *tally, size_t scalar, enum contact_measure *fit,
                         size_t *loads) {
     if (scalar >= CONTACT_SCALARS_OF_MODELS || OWN[scalar].fit == NULL)
@@ -240,7 +256,8 @@ static int put_tallied(const struct contact_tally *tally, size_t scalar, struct 
         return 0;
     size_t loads =
         own->fit != NULL ? loads_within(tally, own->fit->area_most) : tally->one_case->load_count;
-    return put_measure(tally, own->measure, loads, out, err);
+    int status = put_measure(tally, own->measure, loads, out, err);
+    return status != 0 ? status : put_law(tally, own->measure, loads, out, err);
 }
 
 int contact_scalars_put_range(const struct contact_fit *fit, const struct contact_case *one_case,

@@ -4,8 +4,8 @@
 #include "jobs/merger.h"
 #include "jobs/statistics/statistics_case.h"
 #include "jobs/statistics/statistics_curves.h"
-#include "jobs/statistics/statistics_generation.h"
 #include "jobs/statistics/statistics_grid_theory.h"
+#include "jobs/statistics/statistics_law.h"
 #include "jobs/statistics/statistics_levels.h"
 #include "jobs/statistics/statistics_scalars.h"
 #include "jobs/statistics/statistics_spectra.h"
@@ -149,9 +149,9 @@ struct statistics_workspace {
     struct summit_finder *finder;
     struct levels_workspace *levels; /* NULL without levels */
     struct spectra spectra;
-    struct statistics_generation *generation; /* NULL for Gaussian heights */
-    struct like_patch *patch;                 /* NULL: no sub-maps are measured */
-    struct summit_list summits[SIDES];        /* of a symmetric case the first holds all */
+    struct statistics_law *law;        /* NULL for Gaussian heights */
+    struct like_patch *patch;          /* NULL: no sub-maps are measured */
+    struct summit_list summits[SIDES]; /* of a symmetric case the first holds all */
 };
 
 static int workspace_create(void *workspace, const void *one_case,
@@ -181,13 +181,12 @@ static int workspace_create(void *workspace, const void *one_case,
         status = like_patch_create(&work->patch, &statistics->like, grid, err);
     if (status != 0)
         return status;
-    return statistics_generation_create(&work->generation, statistics, &work->moments, work->finder,
-                                        err);
+    return statistics_law_create(&work->law, statistics, work->finder, err);
 }
 
 static void workspace_clear(void *workspace) {
     struct statistics_workspace *work = workspace;
-    statistics_generation_destroy(&work->generation);
+    statistics_law_destroy(&work->law);
     like_patch_destroy(&work->patch);
     summit_finder_destroy(&work->finder);
     levels_workspace_destroy(&work->levels);
@@ -271,8 +270,7 @@ static int realise(void *workspace, const struct realisation *realisation, void 
         status = like_patch_measure(work->patch, realisation->z, scalars + SCALAR_PATCH, err);
     if (status != 0)
         return status;
-    return statistics_generation_measure(work->generation, realisation->key, &realisation->report,
-                                         scalars, err);
+    return statistics_law_measure(work->law, realisation->key, scalars, err);
 }
 
 /* --- the tally --- */
@@ -332,7 +330,7 @@ static int result(const void *one_case, const struct surface_basis *basis, const
     if (status == 0)
         status = statistics_grid_theory(one_case, basis, out, err);
     if (status == 0)
-        status = statistics_generation_errors(one_case, realisations, out, err);
+        status = statistics_law_differences(one_case, realisations, out, err);
     return status != 0 ? status : statistics_levels_errors(tally, out, err);
 }
 
@@ -376,7 +374,7 @@ const struct job_kind STATISTICS_KIND = {
     .realise = realise,
     .merge = merge,
     .format = 0x5354, /* "ST" */
-    .format_version = 6,
+    .format_version = 7,
     .put = put,
     .get = get,
     .adds_up = adds_up,

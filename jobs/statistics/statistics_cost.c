@@ -3,7 +3,7 @@
 #include "core/surface/spectrum.h"
 #include "jobs/publishing_cost.h"
 #include "jobs/statistics/statistics_case.h"
-#include "jobs/statistics/statistics_generation.h"
+#include "jobs/statistics/statistics_law.h"
 #include "jobs/statistics/statistics_levels.h"
 #include "jobs/statistics/statistics_spectra.h"
 #include <math.h>
@@ -36,8 +36,8 @@ static double expected_seconds(const struct statistics_case *one_case) {
         nanoseconds += summits / (one_case->surface.dimension == 2 ? part * part : part);
     }
     nanoseconds = nanoseconds * points + expected_of_waves(&one_case->surface);
-    return 1e-4 + 1e-9 * nanoseconds * cost_caches(points) +
-           statistics_generation_seconds(one_case) + like_patch_seconds(&one_case->like);
+    return 1e-4 + 1e-9 * nanoseconds * cost_caches(points) + statistics_law_seconds(one_case) +
+           like_patch_seconds(&one_case->like);
 }
 
 /* CPU seconds of the theories of a bin of summit heights, as in publishing_cost.h. */
@@ -79,7 +79,7 @@ void statistics_case_estimate(const struct statistics_case *one_case, struct stu
     out->ny = grid->ny;
     /* a list of summits doubles as it grows */
     out->memory_bytes =
-        surface_case_bytes(surface) + statistics_generation_bytes(one_case) +
+        surface_case_bytes(surface) + statistics_law_bytes(one_case) +
         summit_finder_bytes(grid, one_case->stencil, one_case->curvature, own.x, own.y) +
         statistics_tally_bytes(one_case) + statistics_levels_bytes(one_case) +
         like_patch_bytes(&one_case->like) + 6 * summits * sizeof(struct summit) +

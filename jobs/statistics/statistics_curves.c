@@ -392,7 +392,7 @@ static int add_equivalent(struct statistics_curve_maker *maker, struct error *er
     return add_density(maker, &curvatures, err);
 }
 
-/* The first is the main curve of reports: errors of grids and generation bear on summits. */
+/* The first is the main curve of reports: errors of grids bear on summits. */
 static add_curve_function *const OF_SUMMITS[] = {add_summit_density, add_summit_cumulative,
                                                  add_curvature, add_equivalent, add_joint};
 

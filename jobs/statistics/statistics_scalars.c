@@ -45,13 +45,12 @@ static const char *const NAMES[SCALAR_COUNT] = {
     [SCALAR_EPS_S0] = "eps_s0",
     [SCALAR_EPS_S_AMPLITUDE] = "eps_s_amplitude",
     [SCALAR_EPS_S0_AMPLITUDE] = "eps_s0_amplitude",
-#define OTHER_NAME(scalar, name) [SCALAR_OTHER_##scalar] = "other_" name,
-#define LONGER_NAME(scalar, name) [SCALAR_LONGER_##scalar] = "longer_" name,
+#define LAW_NAME(scalar, name) [SCALAR_LAW_##scalar] = "law_" name,
 #define PIECE_NAME(quantity, name, power) [SCALAR_PATCH + PATCH_##quantity] = "piece_" name,
-    GENERATION_SCALARS(OTHER_NAME) GENERATION_SCALARS(LONGER_NAME) PATCH_QUANTITIES(PIECE_NAME)};
+    LAW_SCALARS(LAW_NAME) PATCH_QUANTITIES(PIECE_NAME)};
 
 #define OWN_SCALAR(scalar, name) SCALAR_##scalar,
-const unsigned char GENERATION_OWN[GENERATION_COUNT] = {GENERATION_SCALARS(OWN_SCALAR)};
+const unsigned char LAW_OWN[LAW_COUNT] = {LAW_SCALARS(OWN_SCALAR)};
 
 const char *statistics_scalar_name(size_t at) {
     return at < SCALAR_COUNT ? NAMES[at] : NULL;

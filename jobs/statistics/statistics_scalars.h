@@ -10,10 +10,9 @@
 #include "jobs/statistics/statistics_theory.h"
 #include "schema/result/result.h"
 
-/* Scalars that are measured again on some realisations: of a surface by another iteration
- * ("other_...") and of one after longer iterations ("longer_..."); NaN on all others
- * (statistics_generation.h). ENTRY(scalar, name). */
-#define GENERATION_SCALARS(ENTRY)                                                                  \
+/* Scalars that are measured again on some realisations, of a surface of the other law of heights
+ * ("law_..."); NaN on all others (statistics_law.h). ENTRY(scalar, name). */
+#define LAW_SCALARS(ENTRY)                                                                         \
     ENTRY(SKEWNESS, "skewness")                                                                    \
     ENTRY(KURTOSIS, "kurtosis")                                                                    \
     ENTRY(LOWEST, "lowest")                                                                        \
@@ -29,12 +28,10 @@
     ENTRY(PIT_HEIGHT_VARIANCE, "pit_height_variance")                                              \
     ENTRY(PIT_HEIGHT_SKEWNESS, "pit_height_skewness")                                              \
     ENTRY(PIT_HEIGHT_KURTOSIS, "pit_height_kurtosis")                                              \
-    ENTRY(PIT_CURVATURE_MEAN, "pit_curvature_mean")                                                \
-    ENTRY(EPS_H, "eps_h")
-#define GENERATION_NUMBER(scalar, name) GENERATION_##scalar,
-enum { GENERATION_SCALARS(GENERATION_NUMBER) GENERATION_COUNT };
-#define GENERATION_OTHER(scalar, name) SCALAR_OTHER_##scalar,
-#define GENERATION_LONGER(scalar, name) SCALAR_LONGER_##scalar,
+    ENTRY(PIT_CURVATURE_MEAN, "pit_curvature_mean")
+#define LAW_NUMBER(scalar, name) LAW_##scalar,
+enum { LAW_SCALARS(LAW_NUMBER) LAW_COUNT };
+#define LAW_SCALAR(scalar, name) SCALAR_LAW_##scalar,
 
 /* Lengths are in lambda_s. m0 to nayak_alpha are spectral; the names of finite-difference values
  * say so. */
@@ -77,16 +74,16 @@ enum statistics_scalar {
     SCALAR_EPS_S_AMPLITUDE,
     SCALAR_EPS_S0_AMPLITUDE,
     SCALAR_OWN, /* number of those of the surface itself */
-    SCALAR_BEFORE_OTHER = SCALAR_OWN - 1,
-    GENERATION_SCALARS(GENERATION_OTHER) GENERATION_SCALARS(GENERATION_LONGER) SCALAR_PATCH,
+    SCALAR_BEFORE_LAW = SCALAR_OWN - 1,
+    LAW_SCALARS(LAW_SCALAR) SCALAR_PATCH,
     SCALAR_COUNT = SCALAR_PATCH + PATCH_QUANTITY_COUNT /* of a sub-map as large as a measured map */
 };
-enum { SCALAR_OTHER = SCALAR_OWN, SCALAR_LONGER = SCALAR_OTHER + GENERATION_COUNT };
+enum { SCALAR_LAW = SCALAR_OWN };
 /* Offset from the scalars of summits to those of pits, which have the same order. */
 enum { SIDE_SCALARS = SCALAR_PITS - SCALAR_SUMMITS };
 const char *statistics_scalar_name(size_t at); /* NULL behind the last */
-/* The own scalar that corresponds to each of GENERATION_SCALARS. */
-extern const unsigned char GENERATION_OWN[GENERATION_COUNT];
+/* The own scalar that corresponds to each of LAW_SCALARS. */
+extern const unsigned char LAW_OWN[LAW_COUNT];
 
 /* Measurements of one realisation. */
 struct realisation_measures {

@@ -103,6 +103,8 @@ static void print_line(FILE *file, const struct case_result *one, const struct c
         print_field(file, bound != NULL ? bound[n] : (double)NAN);
     }
     print_field(file, curve->valueless != NULL && !matrix ? curve->valueless[n] : (double)NAN);
+    print_field(file, curve->law_difference != NULL ? curve->law_difference[n] : (double)NAN);
+    print_field(file, curve->law_difference != NULL ? curve->law_standard_error[n] : (double)NAN);
     if (columns->difference)
         print_difference(file, one, curve, n);
     for (size_t t = 0; t < columns->count; t++)
@@ -136,7 +138,7 @@ static void print_heading(FILE *file, const struct columns *columns) {
     fputs(",x,x2,y,standard_error", file);
     for (size_t s = 0; s < ERROR_SOURCES; s++)
         fprintf(file, ",%s,%s", ERROR_SOURCE_ROWS[s].key, ERROR_SOURCE_ROWS[s].bound_key);
-    fputs(",valueless", file);
+    fputs(",valueless,law_difference,law_standard_error", file);
     if (columns->difference)
         fputs(",less,minuend,subtrahend,paired", file);
     for (size_t t = 0; t < columns->count; t++)

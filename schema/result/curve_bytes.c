@@ -16,6 +16,7 @@ enum part {
     PART_THEORY,
     PART_BOUND,   /* of the error before it */
     PART_UNKNOWN, /* a source that applies, and of which nothing is known */
+    PART_LAW,     /* the other law of heights */
 };
 
 static void put_text(struct bytes *bytes, const char *text) {
@@ -90,6 +91,11 @@ static void put_parts(struct bytes *bytes, const struct curve *curve) {
         bytes_put_unsigned(bytes, PART_BOUND);
         put_text(bytes, ERROR_SOURCE_ROWS[s].name);
         put_numbers(bytes, curve_value_count(curve), error->bound);
+    }
+    if (curve->law_difference != NULL) {
+        bytes_put_unsigned(bytes, PART_LAW);
+        put_numbers(bytes, curve_value_count(curve), curve->law_difference);
+        put_numbers(bytes, curve_value_count(curve), curve->law_standard_error);
     }
     for (size_t t = 0; t < curve->theory_count; t++) {
         const struct theory *theory = &curve->theories[t];
@@ -258,6 +264,11 @@ static void get_theory(struct decoding *decoding, struct curve *curve) {
             get_numbers(decoding, (uint64_t)curve->n * (curve->columns > 0 ? curve->columns : 1));
 }
 
+static void get_law(struct decoding *decoding, struct curve *curve) {
+    curve->law_difference = get_numbers(decoding, curve_value_count(curve));
+    curve->law_standard_error = get_numbers(decoding, curve_value_count(curve));
+}
+
 static void get_parts(struct decoding *decoding, struct curve *curve) {
     for (;;) {
         uint64_t part = bytes_get_unsigned(&decoding->reader);
@@ -267,6 +278,8 @@ static void get_parts(struct decoding *decoding, struct curve *curve) {
             get_error(decoding, curve, (enum part)part);
         else if (part == PART_THEORY)
             get_theory(decoding, curve);
+        else if (part == PART_LAW)
+            get_law(decoding, curve);
         else
             decoding->reader.failed = true;
     }

@@ -440,7 +440,10 @@ static void set_scalar(const struct maker *maker, const struct scalar *a, const 
 
 static int add_scalar(struct maker *maker, const struct scalar *a, struct error *err) {
     const struct scalar *b = result_scalar(maker->subtrahend, a->name);
-    struct scalar out = {.name = result_text(maker->out, a->name), .difference = true};
+    struct scalar out = {.name = result_text(maker->out, a->name),
+                         .difference = true,
+                         .law_difference = NAN,
+                         .law_standard_error = NAN};
     if (out.name == NULL)
         return no_room(err);
     if (b == NULL)

@@ -172,6 +172,9 @@ static int curve_report_make(struct case_report *report, const struct case_resul
         out->applies[s] = curve->errors[s].applies || !isnan(out->errors[s]);
     }
     out->total = total_of(out);
+    out->law = curve->law_difference != NULL
+                   ? relative_size(curve_value_count(curve), curve->law_difference, NULL, curve->y)
+                   : (double)NAN;
     out->valueless = most_valueless(curve);
     for (size_t t = 0; t < curve->theory_count && status == 0; t++) {
         const struct theory *theory = &curve->theories[t];

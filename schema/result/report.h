@@ -21,6 +21,7 @@ struct curve_report {
     bool applies[ERROR_SOURCES]; /* the source bears on the curve */
     double total;     /* statistical error and sum of the others, in quadrature; NaN where one that
                        * bears on the curve is not known */
+    double law;       /* size of law_difference, no error and in no total; NaN: not known */
     double valueless; /* most realisations without a value at a point; NaN: not reported */
     size_t theory_count;
     struct {

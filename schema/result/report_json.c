@@ -26,6 +26,8 @@ static bool put_errors(FILE *file, const struct curve_report *report) {
         if (report->applies[s])
             put_number(file, ERROR_SOURCE_ROWS[s].key, report->errors[s]);
     put_number(file, "total_error", report->total);
+    if (!isnan(report->law))
+        put_number(file, "law_difference", report->law);
     fputs(",\"theory_deviation\":{", file);
     for (size_t t = 0; t < report->theory_count && done; t++) {
         fputs(t > 0 ? "," : "", file);
@@ -161,6 +163,7 @@ static int read_curve(struct case_result *about, const cJSON *object, struct cur
         out->errors[s] = field_number(object, ERROR_SOURCE_ROWS[s].key);
     }
     out->total = field_number(object, "total_error");
+    out->law = field_number(object, "law_difference");
     out->valueless = field_number(object, "valueless");
     const cJSON *deviations = field_at(object, "theory_deviation");
     for (const cJSON *item = deviations != NULL ? deviations->child : NULL;

@@ -18,7 +18,6 @@ const struct error_source_row ERROR_SOURCE_ROWS[ERROR_SOURCES] = {
                      .bound_key = "model_bound",
                      .standard_error_key = "model_error_standard_error"},
     [ERROR_SOLVER] = {SOURCE_KEYS("solver")},
-    [ERROR_GENERATION] = {SOURCE_KEYS("generation")},
     [ERROR_MISSING] = {SOURCE_KEYS("missing")},
 };
 
@@ -43,7 +42,9 @@ struct scalar scalar_named(const char *name, double value, double standard_error
                            .value = value,
                            .standard_error = standard_error,
                            .theory = theory,
-                           .grid = NAN};
+                           .grid = NAN,
+                           .law_difference = NAN,
+                           .law_standard_error = NAN};
 }
 
 struct curve curve_named(const char *quantity, const char *x_label, const char *y_label) {

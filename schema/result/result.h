@@ -24,7 +24,6 @@ enum error_source {
     ERROR_BLOCK,          /* this block less an infinitely high one */
     ERROR_MODEL,          /* this model less the most complete one */
     ERROR_SOLVER,         /* an answer to a tolerance less the exact one */
-    ERROR_GENERATION,     /* surfaces of this generator less those of an alternative one */
     ERROR_MISSING,        /* a mean over the realisations that have a value less one over all */
     ERROR_SOURCES
 };
@@ -92,6 +91,10 @@ struct curve {
     size_t theory_count;
     struct theory theories[THEORIES_MOST]; /* of a matrix: dense, n x columns */
     struct curve_error errors[ERROR_SOURCES];
+    /* Of heights that are not Gaussian, as long as an error: the curve under the other law of
+     * heights less this one, and its standard error; NULL: not known. No error: the law is part of
+     * the question. */
+    const double *law_difference, *law_standard_error;
     const double *valueless; /* realisations without a value, or without a thing in the bin; NULL:
                               * not known */
     /* Of a difference of two cases: their values, n each; NULL: none. */
@@ -147,8 +150,9 @@ struct scalar {
     bool difference, paired;    /* as of curves */
     double minuend, subtrahend; /* of a difference */
     struct scalar_error errors[ERROR_SOURCES];
+    double law_difference, law_standard_error; /* as of curves; NaN: not known */
 };
-/* Returns a scalar without sources of error and without a theory of the grid. */
+/* Returns a scalar without sources of error, a theory of the grid and another law. */
 struct scalar scalar_named(const char *name, double value, double standard_error, double theory);
 
 struct result_note {

@@ -150,6 +150,10 @@ static bool print_curve(FILE *file, const struct curve *curve) {
                    curve->empty_standard_error);
     for (size_t s = 0; s < ERROR_SOURCES && done; s++)
         done = put_error(file, &first, curve, (enum error_source)s);
+    if (done && curve->law_difference != NULL)
+        done =
+            put_values(file, &first, "law_difference", curve, curve->law_difference, NAN) &&
+            put_values(file, &first, "law_standard_error", curve, curve->law_standard_error, NAN);
     done = done && put_theories(file, &first, curve) &&
            put_text(file, &first, "x_label", curve->x_label) &&
            (curve->columns == 0 || put_text(file, &first, "x2_label", curve->x2_label));
@@ -220,6 +224,9 @@ static bool print_scalar(FILE *file, const struct scalar *scalar) {
                 (isnan(scalar->grid) || put_number(file, &first, "grid_theory", scalar->grid));
     for (size_t s = 0; s < ERROR_SOURCES && done; s++)
         done = put_scalar_error(file, &first, &scalar->errors[s], &ERROR_SOURCE_ROWS[s]);
+    if (done && !isnan(scalar->law_difference))
+        done = put_number(file, &first, "law_difference", scalar->law_difference) &&
+               put_number(file, &first, "law_standard_error", scalar->law_standard_error);
     if (done && scalar->difference)
         done = put_number(file, &first, "minuend", scalar->minuend) &&
                put_number(file, &first, "subtrahend", scalar->subtrahend) &&

@@ -149,6 +149,15 @@ static int read_error(const struct reading *reading, const cJSON *object, enum e
     return status;
 }
 
+static int read_law(const struct reading *reading, const cJSON *object, struct curve *curve) {
+    if (!cJSON_IsArray(field_at(object, "law_difference")))
+        return 0;
+    int status = read_values(reading, object, "law_difference", curve, &curve->law_difference);
+    return status != 0 ? status
+                       : read_values(reading, object, "law_standard_error", curve,
+                                     &curve->law_standard_error);
+}
+
 static int read_theories(const struct reading *reading, const cJSON *object, struct curve *curve) {
     const cJSON *theories = field_at(object, "theory");
     for (const cJSON *item = theories != NULL ? theories->child : NULL; item != NULL;
@@ -216,6 +225,8 @@ static int read_curve(const struct reading *reading, const cJSON *object) {
     for (size_t s = 0; s < ERROR_SOURCES && status == 0; s++)
         status = read_error(reading, object, (enum error_source)s, &curve);
     if (status == 0)
+        status = read_law(reading, object, &curve);
+    if (status == 0)
         status = read_theories(reading, object, &curve);
     if (status == 0 && field_at(object, "valueless") != NULL)
         status = read_numbers(reading, object, "valueless", curve.n, &curve.valueless);
@@ -251,6 +262,8 @@ static int read_scalars(const struct reading *reading, const cJSON *scalars) {
                                 .standard_error = field_number(item, "standard_error"),
                                 .theory = field_number(item, "theory"),
                                 .grid = field_number(item, "grid_theory"),
+                                .law_difference = field_number(item, "law_difference"),
+                                .law_standard_error = field_number(item, "law_standard_error"),
                                 .difference = field_at(item, "minuend") != NULL,
                                 .paired = cJSON_IsTrue(field_at(item, "paired")),
                                 .minuend = field_number(item, "minuend"),

@@ -28,9 +28,11 @@ static int insert_scalar(const struct target *target, const struct scalar *scala
     sqlite3_stmt *statement = NULL;
     int status = store_query(target->store, &statement, err,
                              "INSERT INTO scalar (study_id, case_number, name, value, "
-                             "standard_error, theory, grid_theory) VALUES (?, ?, ?, ?, ?, ?, ?)",
-                             "iitdddd", target->study, target->case_number, scalar->name,
-                             scalar->value, scalar->standard_error, scalar->theory, scalar->grid);
+                             "standard_error, theory, grid_theory, law_difference, "
+                             "law_standard_error) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                             "iitdddddd", target->study, target->case_number, scalar->name,
+                             scalar->value, scalar->standard_error, scalar->theory, scalar->grid,
+                             scalar->law_difference, scalar->law_standard_error);
     if (status == 0)
         status = run_bound(target->store, statement, err);
     for (size_t s = 0; s < ERROR_SOURCES && status == 0; s++)
@@ -49,12 +51,16 @@ static int insert_point(struct store *store, int64_t curve, size_t number, doubl
                         const struct curve *from, struct error *err) {
     sqlite3_stmt *statement = NULL;
     bool has_valueless = from->valueless != NULL && from->columns == 0;
+    bool has_law = from->law_difference != NULL;
     int status = store_query(store, &statement, err,
                              "INSERT INTO point (curve_id, number, x, x2, y, standard_error, "
-                             "valueless) VALUES (?, ?, ?, ?, ?, ?, ?)",
-                             "iiddddd", curve, (int64_t)number, x, x2, from->y[number],
+                             "valueless, law_difference, law_standard_error) VALUES (?, ?, ?, ?, "
+                             "?, ?, ?, ?, ?)",
+                             "iiddddddd", curve, (int64_t)number, x, x2, from->y[number],
                              from->standard_error[number],
-                             has_valueless ? from->valueless[number] : (double)NAN);
+                             has_valueless ? from->valueless[number] : (double)NAN,
+                             has_law ? from->law_difference[number] : (double)NAN,
+                             has_law ? from->law_standard_error[number] : (double)NAN);
     return status != 0 ? status : run_bound(store, statement, err);
 }
 

@@ -17,8 +17,8 @@ export function showTable(root, signal, study, contents) {
   }
 
   function cell(table, row, at) {
-    const value = row.values[at], error = row.standard_errors[at], theory = row.theory?.[at], other = row.errors?.[at];
-    const notes = [theory !== null && theory !== undefined ? `theory ${number(theory)}` : "", other ? `errors other than statistical up to ${number(other, 2)}` : ""].filter(Boolean).join("; ");
+    const value = row.values[at], error = row.standard_errors[at], theory = row.theory?.[at], other = row.errors?.[at], law = row.law_differences?.[at];
+    const notes = [theory !== null && theory !== undefined ? `theory ${number(theory)}` : "", other ? `errors other than statistical up to ${number(other, 2)}` : "", law !== null && law !== undefined ? `the other law of heights: ${law > 0 ? "+" : ""}${measured(law, row.law_standard_errors[at])}` : ""].filter(Boolean).join("; ");
     if (value === null || value === undefined) return make("td", { class: "number" }, "–");
     return make("td", { class: typeof value === "number" ? "number" : null, title: notes || null }, Array.isArray(value) ? value.join(", ") : typeof value === "number" ? measured(value, error) : words(String(value)));
   }

@@ -82,11 +82,7 @@ static inline void built_curve(struct case_result *one, const struct curve *curv
 static inline void built_scalar(struct case_result *one, const char *name, double value,
                                 double standard_error, double theory) {
     struct error err = {0};
-    struct scalar scalar = {.name = name,
-                            .value = value,
-                            .standard_error = standard_error,
-                            .theory = theory,
-                            .grid = NAN};
+    const struct scalar scalar = scalar_named(name, value, standard_error, theory);
     assert_int_equal(result_add_scalar(one, &scalar, &err), 0);
 }
 

@@ -14,9 +14,9 @@
  * LONGER, SHORTER: a surface on a cell of another length; one series.
  * PROBE: the half-space, series 0, and where blocks are low the block of each model; on the surface
  * of the case.
- * GENERATION: the surface of the case, series 0, and that of each alternative generator.
+ * LAW: the surface of the case, series 0, and that of the other law of heights.
  * LIKE: the mirrored sub-map of a surface like a measured one; one series. */
-#define COMPANION_NAMES(NAME) NAME(LONGER) NAME(SHORTER) NAME(PROBE) NAME(GENERATION) NAME(LIKE)
+#define COMPANION_NAMES(NAME) NAME(LONGER) NAME(SHORTER) NAME(PROBE) NAME(LAW) NAME(LIKE)
 #define COMPANION_ENTRY(name) COMPANION_##name,
 enum companion_name { COMPANION_NAMES(COMPANION_ENTRY) COMPANION_COUNT };
 #undef COMPANION_ENTRY

@@ -2,7 +2,7 @@
  * blocks of the case are low, on exact layers of their heights. These pairs have the same surface,
  * and differ by the height alone, of which they estimate the error. The half-space is also compared
  * with surfaces of another length (companion_cell.c) and with those of alternative generators
- * (companion_generation.c). */
+ * (companion_law.c). */
 #include "jobs/contact/companion/block_error.h"
 #include "jobs/contact/companion/companion.h"
 #include "jobs/contact/model/model_linear.h"

@@ -4,7 +4,6 @@
 #include "jobs/contact/contact_scalars.h"
 #include "jobs/contact/target/contact_density.h"
 #include "jobs/contact/target/contact_target.h"
-#include "jobs/surface/surface_paths.h"
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdlib.h>
@@ -73,21 +72,18 @@ static double forecast_at(const struct forecast *forecast, size_t load) {
 }
 
 /* Sets the statistical error that is allowed at each load if a bound becomes as forecast: what the
- * bounds leave of the error, at least STATISTICAL_LEAST of it. Sampling cannot reduce the error
- * `generation`: if it is the whole error or more, it is left out here. Returns whether the other
- * bounds leave STATISTICAL_LEAST at every load. */
+ * bounds leave of the error, at least STATISTICAL_LEAST of it. Returns whether the bounds leave
+ * STATISTICAL_LEAST at every load. */
 static bool allow(const struct planning *planning, struct forecast forecast) {
     const struct contact_answer *answer = planning->answer;
     bool enough = true;
     for (size_t k = 0; k < answer->loads; k++) {
         double asked = asked_at(answer, planning->sum, k);
-        double found = planning->sum->generation[k];
-        double all = contact_sum_bounds(answer, planning->sum, k, false);
+        double all = contact_sum_bounds(answer, planning->sum, k);
         double less =
             forecast.of != NULL ? pow(forecast.of[k], 2) - pow(forecast_at(&forecast, k), 2) : 0;
-        double planned = sqrt(fmax(0, all * all - less)), without = left_by(asked, planned);
-        double left = found >= asked ? without : left_by(asked, hypot(planned, found));
-        enough = enough && !(without < STATISTICAL_LEAST * asked);
+        double left = left_by(asked, sqrt(fmax(0, all * all - less)));
+        enough = enough && !(left < STATISTICAL_LEAST * asked);
         planning->allowed[k] = fmax(left, STATISTICAL_LEAST * asked);
     }
     return enough;
@@ -241,7 +237,7 @@ static int plan_realisations(const struct contact_answer *answer, const struct c
 /* The parts of the error at the load where it is largest. Loads without a value are left out, as
  * their curve shows. */
 struct reached {
-    double all, statistical, mesh, cell, model, generation;
+    double all, statistical, mesh, cell, model;
 };
 
 static struct reached error_reached(const struct contact_answer *answer,
@@ -249,14 +245,11 @@ static struct reached error_reached(const struct contact_answer *answer,
     struct reached most = {0};
     for (size_t k = 0; k < answer->loads; k++) {
         double y = fabs(sum->value[k]);
-        double all = hypot(sum->width[k], contact_sum_bounds(answer, sum, k, true)) / y;
+        double all = hypot(sum->width[k], contact_sum_bounds(answer, sum, k)) / y;
         if (!isnan(y) && !(all <= most.all))
-            most = (struct reached){isnan(all) ? INFINITY : all,
-                                    sum->width[k] / y,
-                                    answer->named_mesh ? 0 : sum->mesh[k] / y,
-                                    sum->cell[k] / y,
-                                    sum->model[k] / y,
-                                    sum->generation[k] / y};
+            most = (struct reached){isnan(all) ? INFINITY : all, sum->width[k] / y,
+                                    answer->named_mesh ? 0 : sum->mesh[k] / y, sum->cell[k] / y,
+                                    sum->model[k] / y};
     }
     return most;
 }
@@ -274,8 +267,6 @@ static bool applies(const struct contact_answer *answer, enum error_source sourc
         return isfinite(component_case(answer->of[ROLE_BASE])->blocks[0].height);
     case ERROR_MODEL:
         return contact_case_has_scale(answer->one_case);
-    case ERROR_GENERATION:
-        return surface_paths_apply(&answer->one_case->surface);
     default:
         return false;
     }
@@ -293,10 +284,6 @@ static double *bounds_of(const struct contact_answer *answer, const struct conta
         return sum->solver;
     case ERROR_MODEL:
         return answer->of[ROLE_MODEL] != NULL && !answer->named_mesh ? sum->model : NULL;
-    case ERROR_GENERATION:
-        return contact_case_has(component_case(answer->of[ROLE_BASE]), COMPANION_GENERATION)
-                   ? sum->generation
-                   : NULL;
     default:
         return NULL;
     }
@@ -315,6 +302,15 @@ static void put_bounds(const struct contact_answer *answer, const struct contact
                                              .standard_error = none,
                                              .order = NAN};
     }
+}
+
+/* Gives a curve the law difference, if it is known at any point. */
+static void put_law(const struct contact_sum *sum, struct curve *curve) {
+    bool any = false;
+    for (size_t k = 0; k < sum->points; k++)
+        any = any || isfinite(sum->law[k]);
+    curve->law_difference = any ? sum->law : NULL;
+    curve->law_standard_error = any ? sum->law_standard_error : NULL;
 }
 
 /* Makes a curve of the model that is asked for. */
@@ -343,6 +339,7 @@ static int put_curve(const struct contact_answer *answer, const struct contact_s
     curve.series = measure->cell == CELL_SAME ? measure->series : "wave";
     curve_set_points(&curve, answer->loads, loads, sum->value, sum->standard_error);
     put_bounds(answer, sum, curve.errors);
+    put_law(sum, &curve);
     return result_add_curve(answer->result, &curve, err);
 }
 
@@ -365,6 +362,7 @@ static int put_densities(const struct contact_answer *answer, const struct conta
         curve_set_points(&curve, density.sum.points, density.x, density.sum.value,
                          density.sum.standard_error);
         put_bounds(answer, &density.sum, curve.errors);
+        put_law(&density.sum, &curve);
         status = result_add_curve(answer->result, &curve, err);
     }
     return status;
@@ -432,9 +430,9 @@ static double kurtosis(const struct contact_answer *answer, enum contact_measure
 }
 
 /* Returns the work of plain sampling for the same error: with the model that is asked for, on the
- * finest mesh where it was solved, and on the cells of the base. The errors of the cell and of
- * generation remain; that of the mesh is left out in favour of plain sampling. At least two
- * realisations are counted, since one has no standard error. */
+ * finest mesh where it was solved, and on the cells of the base. The error of the cell remains;
+ * that of the mesh is left out in favour of plain sampling. At least two realisations are counted,
+ * since one has no standard error. */
 static double plain_work(const struct contact_answer *answer, const struct contact_sum *sum,
                          double error) {
     const struct target_component *base = answer->of[ROLE_BASE];
@@ -447,8 +445,7 @@ static double plain_work(const struct contact_answer *answer, const struct conta
     double quantile = gsl_cdf_ugaussian_Pinv((1 + answer->target.confidence) / 2);
     double realisations = 2, work = 0;
     for (size_t k = 0; k < answer->loads; k++) {
-        double all = error * fabs(sum->value[k]), left = all * all - sum->cell[k] * sum->cell[k] -
-                                                         sum->generation[k] * sum->generation[k];
+        double all = error * fabs(sum->value[k]), left = all * all - sum->cell[k] * sum->cell[k];
         realisations = fmax(realisations, sum->variance[ROLE_BASE][k] * quantile * quantile / left);
         work += contact_tally_total(component_tally(from), MEASURE_WORK, first + k) /
                 (double)from->done * (double)grid_points(&contact_case_finest(one_case)->grid);
@@ -477,7 +474,6 @@ static int put_scalars(const struct contact_answer *answer, const struct contact
                    {"error_mesh", reached.mesh},
                    {"error_cell", reached.cell},
                    {"error_model", reached.model},
-                   {"error_generation", reached.generation},
                    {"length_ratio", component_case(answer->of[ROLE_BASE])->surface.length_ratio},
                    {"work", work},
                    {"plain_work", plain_work(answer, sum, error)},
@@ -505,6 +501,8 @@ static int put_fit(const struct contact_answer *answer, const struct contact_sum
         return status;
     struct scalar scalar =
         scalar_named(fit->name, sum.value[n - 1], sum.standard_error[n - 1], NAN);
+    scalar.law_difference = sum.law[n - 1];
+    scalar.law_standard_error = sum.law_standard_error[n - 1];
     for (enum error_source s = 0; s < ERROR_SOURCES; s++) {
         const double *bounds = bounds_of(answer, &sum, s);
         scalar.errors[s] = (struct scalar_error){.applies = applies(answer, s) || bounds != NULL,

@@ -269,7 +269,9 @@ static void bound_by_area(struct summing *summing, const struct contact_sum *are
     for (size_t b = 0; b < summing->bins; b++) {
         double by = contact_errors_sensitivity(summing->bins, out->x, out->sum.value, b) / all;
         out->sum.cell[b] = fmax(out->sum.cell[b], by * area->cell[summing->load]);
-        out->sum.generation[b] = by * area->generation[summing->load];
+        double stretch = contact_errors_stretch(summing->bins, out->x, out->sum.value, b) / all;
+        out->sum.law[b] = stretch * area->law[summing->load];
+        out->sum.law_standard_error[b] = fabs(stretch) * area->law_standard_error[summing->load];
     }
 }
 

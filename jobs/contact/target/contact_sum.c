@@ -1,4 +1,5 @@
 #include "jobs/contact/target/contact_sum.h"
+#include "jobs/contact/companion/companion_law.h"
 #include "jobs/contact/contact_measure.h"
 #include <math.h>
 #include <stdlib.h>
@@ -157,28 +158,32 @@ static void set_named_mesh(const struct contact_answer *answer, enum contact_mea
             sum->mesh[k] = factor_of(model, measure) * (fabs(error[k].value) + error[k].bound);
 }
 
-/* Sets the bound of generation as a share of the value. It is estimated on the longest cells that
- * have enough surfaces by alternative generators. */
-static void bound_generation(const struct contact_answer *answer, enum contact_measure measure,
-                             struct contact_error *error, struct contact_sum *sum) {
-    bool probed = contact_case_has(component_case(answer->of[ROLE_BASE]), COMPANION_GENERATION);
+/* Sets the law difference as a share of the value. It is estimated on the longest cells that have
+ * enough surfaces of the other law. room: an entry for each load. */
+static void set_law(const struct contact_answer *answer, enum contact_measure measure,
+                    struct estimate *room, struct contact_sum *sum) {
     bool known = false;
-    for (size_t a = answer->length_count; a > 0 && probed && !known; a--) {
+    for (size_t a = answer->length_count; a > 0 && !known; a--) {
         const struct contact_tally *tally = component_tally(answer->lengths[a - 1]);
-        known = contact_errors(tally, measure, 0, ERROR_GENERATION, error);
-        for (size_t k = 0; k < answer->loads && known; k++)
-            sum->generation[k] =
-                fabs(sum->value[k] / contact_tally_mean(tally, measure, k).value) * error[k].bound;
+        known = companion_law_difference(tally, measure, 0, room);
+        for (size_t k = 0; k < answer->loads && known; k++) {
+            double factor = sum->value[k] / contact_tally_mean(tally, measure, k).value;
+            sum->law[k] = factor * room[k].value;
+            sum->law_standard_error[k] = fabs(factor) * room[k].standard_error;
+        }
     }
-    for (size_t k = 0; k < answer->loads && probed && !known; k++)
-        sum->generation[k] = NAN;
+    for (size_t k = 0; k < answer->loads && !known; k++)
+        sum->law[k] = sum->law_standard_error[k] = NAN;
 }
 
 static int add_all(const struct contact_answer *answer, enum contact_measure measure,
                    struct contact_sum *sum, struct error *err) {
     struct contact_error *error = array_create(answer->loads, sizeof *error);
-    if (error == NULL)
+    struct estimate *difference = result_room(answer->result, answer->loads, sizeof *difference);
+    if (error == NULL || difference == NULL) {
+        free(error);
         return error_memory(err, answer->loads * sizeof *error, "errors of a sum");
+    }
     add_base(answer, measure, sum);
     if (contact_errors(component_tally(answer->of[ROLE_BASE]), measure, 0, ERROR_SOLVER, error))
         for (size_t k = 0; k < answer->loads; k++)
@@ -194,7 +199,7 @@ static int add_all(const struct contact_answer *answer, enum contact_measure mea
         add_models(answer, measure, error, sum);
     if (answer->named_mesh)
         set_named_mesh(answer, measure, error, sum);
-    bound_generation(answer, measure, error, sum);
+    set_law(answer, measure, difference, sum);
     free(error);
     return 0;
 }
@@ -214,7 +219,8 @@ int contact_sum_room(const struct contact_answer *answer, size_t points, struct 
                                &out->solver,
                                &out->length,
                                &out->length_standard_error,
-                               &out->generation,
+                               &out->law,
+                               &out->law_standard_error,
                                &out->mesh_standard_error,
                                &out->model_standard_error};
     const size_t own = sizeof arrays / sizeof *arrays;
@@ -254,10 +260,9 @@ size_t contact_sum_parts(const struct contact_answer *answer, const struct conta
 }
 
 double contact_sum_bounds(const struct contact_answer *answer, const struct contact_sum *sum,
-                          size_t load, bool generation) {
+                          size_t load) {
     double mesh = answer->named_mesh ? 0 : sum->mesh[load];
-    double bounds = hypot(hypot(mesh, sum->solver[load]), hypot(sum->cell[load], sum->model[load]));
-    return generation ? hypot(bounds, sum->generation[load]) : bounds;
+    return hypot(hypot(mesh, sum->solver[load]), hypot(sum->cell[load], sum->model[load]));
 }
 
 /* The interval includes the statistical error of the bound of the cell; the standard error is that
@@ -298,12 +303,14 @@ int contact_sum_quotient(const struct contact_answer *answer, const struct conta
                                    {dividend->cell, divisor->cell},
                                    {dividend->model, divisor->model},
                                    {dividend->solver, divisor->solver},
-                                   {dividend->generation, divisor->generation}};
-    double *const to[] = {out->standard_error, out->width,  out->mesh,      out->cell,
-                          out->model,          out->solver, out->generation};
+                                   {dividend->law_standard_error, divisor->law_standard_error}};
+    double *const to[] = {
+        out->standard_error,    out->width, out->mesh, out->cell, out->model, out->solver,
+        out->law_standard_error};
     for (size_t k = 0; k < answer->loads; k++) {
         double a = dividend->value[k], b = divisor->value[k];
         out->value[k] = a / b;
+        out->law[k] = a / b * (dividend->law[k] / a - divisor->law[k] / b);
         for (size_t e = 0; e < sizeof to / sizeof *to; e++)
             to[e][k] = fabs(a / b) * (of[e][0][k] / fabs(a) + of[e][1][k] / fabs(b));
     }

@@ -24,7 +24,7 @@ struct contact_sum {
     double *value, *standard_error, *width; /* width: half of the interval at the confidence */
     double *base;                           /* of the base alone */
     double *mesh, *cell, *model, *solver;   /* bounds; 0 for a source without a component */
-    double *generation;                     /* likewise; 0 where it is not estimated */
+    double *law, *law_standard_error;       /* law_difference; NaN: not known */
     double *length, *length_standard_error; /* of the bound of the cell: the part by the change
                                              * between the two lengths, and its standard error */
     double *mesh_standard_error, *model_standard_error; /* standard errors of these bounds */
@@ -124,10 +124,10 @@ size_t contact_sum_parts(const struct contact_answer *answer, const struct conta
 /* Returns the work of one realisation: points x transforms of all its loads, levels and models. */
 double contact_sum_work(const struct target_component *component);
 /* Returns the sum of the bounds at a load of the sources that the target counts. A mesh that the
- * study names is not counted. generation: with that of generation, which sampling cannot reduce.
- * Sources are independent of each other and of the statistical error, and add up by their squares
- * (JCGM 100 2008, section 5.1); bounds of one source add up linearly. */
+ * study names is not counted. Sources are independent of each other and of the statistical error,
+ * and add up by their squares (JCGM 100 2008, section 5.1); bounds of one source add up linearly.
+ */
 double contact_sum_bounds(const struct contact_answer *answer, const struct contact_sum *sum,
-                          size_t load, bool generation);
+                          size_t load);
 
 #endif

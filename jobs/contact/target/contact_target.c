@@ -57,7 +57,7 @@ struct variant {
     bool both;           /* both models; else the cheap one */
     size_t first, count; /* of the ladder */
     double length_ratio;
-    bool generation; /* estimates the error of generation */
+    bool law; /* estimates the law difference */
 };
 
 /* --- parameters --- */
@@ -176,8 +176,8 @@ static int put_errors(cJSON *parameters, const struct choices *choices,
                       const struct variant *variant) {
     /* the components together estimate the error of the cell */
     int status = put(parameters, "contact", "cell_error", cJSON_CreateString("none"));
-    if (status == 0 && !variant->generation)
-        status = put(parameters, "contact", "generation_error", cJSON_CreateString("none"));
+    if (status == 0 && !variant->law)
+        status = put(parameters, "contact", "law_difference", cJSON_CreateString("none"));
     if (status == 0 && choices->densities)
         status = put_pairs(parameters, variant->both || variant->count > 1);
     return status;

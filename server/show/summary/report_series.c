@@ -7,7 +7,8 @@ void errors_of(const struct curve_report *curve, double errors[ERROR_COLUMNS]) {
     errors[0] = curve != NULL ? curve->statistical : (double)NAN;
     for (int source = 0; source < ERROR_SOURCES; source++)
         errors[1 + source] = curve != NULL ? curve->errors[source] : (double)NAN;
-    errors[ERROR_COLUMNS - 1] = curve != NULL ? curve->total : (double)NAN;
+    errors[TOTAL_COLUMN] = curve != NULL ? curve->total : (double)NAN;
+    errors[LAW_COLUMN] = curve != NULL ? curve->law : (double)NAN;
 }
 
 static bool same_place(const struct curve *a, const struct curve *b) {

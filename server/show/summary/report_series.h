@@ -5,8 +5,8 @@
 
 #include "schema/result/report.h"
 
-/* Errors stand in this order: the statistical one, one a source, the total. */
-enum { SERIES_MOST = 64, ERROR_COLUMNS = ERROR_SOURCES + 2 };
+/* Sizes stand in this order: the statistical error, one a source, the total, the law difference. */
+enum { TOTAL_COLUMN = ERROR_SOURCES + 1, LAW_COLUMN, ERROR_COLUMNS, SERIES_MOST = 64 };
 /* Fills in NaN without a curve. */
 void errors_of(const struct curve_report *curve, double errors[ERROR_COLUMNS]);
 

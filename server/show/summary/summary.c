@@ -348,6 +348,17 @@ static double largest_error(const struct case_result *one, size_t count, const c
     return largest;
 }
 
+/* The largest law difference, over its scalar, likewise. */
+static double largest_law(const struct case_result *one, size_t count, const char *const *names) {
+    double largest = NAN;
+    for (size_t s = 0; s < count; s++) {
+        const struct scalar *scalar = result_scalar(one, names[s]);
+        if (scalar != NULL)
+            largest = fmax(largest, fabs(scalar->law_difference / scalar->value));
+    }
+    return largest;
+}
+
 /* The view's headlines; where these cases have none, all scalars with a theory. */
 static size_t shown_scalars(const struct shown_cases *shown, const char *const *headlines,
                             const char **names) {
@@ -392,6 +403,7 @@ struct scalar_table {
     const char *scalars[COLUMNS_MOST];
     bool compared[COLUMNS_MOST][WITH_GRID + 1]; /* with what beside it */
     bool sources[ERROR_SOURCES];                /* of which errors of these are known */
+    bool law;                                   /* the other law of some of these is known */
     bool uneven;                                /* not all cases have as many realisations */
 };
 
@@ -408,7 +420,7 @@ static size_t column_count(const struct scalar_table *plan) {
         columns += 1 + 2u * plan->compared[s][WITH_THEORY] + 2u * plan->compared[s][WITH_GRID];
     for (enum error_source e = 0; e < ERROR_SOURCES; e++)
         columns += plan->sources[e];
-    return columns;
+    return columns + plan->law;
 }
 
 static void scalar_table_heading(const struct scalar_table *plan, struct text_table *table) {
@@ -429,6 +441,8 @@ static void scalar_table_heading(const struct scalar_table *plan, struct text_ta
     for (enum error_source e = 0; e < ERROR_SOURCES; e++)
         if (plan->sources[e])
             table_cell(table, "%s %%", ERROR_SOURCE_ROWS[e].name);
+    if (plan->law)
+        table_cell(table, "law %%");
     if (plan->report != NULL) {
         table_fold(table);
         table_cell(table, "CPU time");
@@ -446,6 +460,8 @@ static void scalar_table_row(const struct scalar_table *plan, size_t c, struct t
     for (enum error_source e = 0; e < ERROR_SOURCES; e++)
         if (plan->sources[e])
             percent_cell(table, largest_error(one, plan->scalar_count, plan->scalars, e));
+    if (plan->law)
+        percent_cell(table, largest_law(one, plan->scalar_count, plan->scalars));
     if (plan->report != NULL) {
         const struct case_report *cost = report_of(plan->report, one);
         duration_cell(table, cost != NULL ? cost->time.cpu_seconds : (double)NAN);
@@ -457,6 +473,9 @@ static void find_sources(struct scalar_table *plan) {
         for (size_t c = 0; c < plan->shown->count && !plan->sources[e]; c++)
             plan->sources[e] =
                 !isnan(largest_error(plan->shown->list[c], plan->scalar_count, plan->scalars, e));
+    for (size_t c = 0; c < plan->shown->count; c++)
+        plan->law = plan->law ||
+                    !isnan(largest_law(plan->shown->list[c], plan->scalar_count, plan->scalars));
 }
 
 static void scalar_table_print(const struct scalar_table *plan, FILE *file) {
@@ -512,6 +531,9 @@ void summary_of_curves(const struct study_result *study, const struct study_repo
                 plan.compared[s][with] = has_scalar(&shown, plan.scalars[s], with);
         find_sources(&plan);
         scalar_table_print(&plan, file);
+        if (plan.law)
+            print_law_legend(file);
+        print_heights(&shown, file);
         for (size_t c = 0; c < shown.count && c < TARGETS_SHOWN; c++)
             summary_of_target(shown.list[c], file);
     }

@@ -76,6 +76,35 @@ void print_small(const bool small[ERROR_SOURCES], const char *const *words, FILE
     print_sources("Errors below 0.01 %: ", small, words, file);
 }
 
+void print_law_legend(FILE *file) {
+    fputs("law: what the other law of heights would give (/surface/heights/law), less this; no "
+          "error, and in no total.\n",
+          file);
+}
+
+static void print_off(const struct shown_cases *shown, const char *name, const char *what,
+                      FILE *file) {
+    double most = HEIGHTS_OFF;
+    const struct case_result *worst = NULL;
+    for (size_t c = 0; c < shown->count; c++) {
+        const struct scalar *off = result_scalar(shown->list[c], name);
+        if (off != NULL && off->value > most) {
+            most = off->value;
+            worst = shown->list[c];
+        }
+    }
+    if (worst != NULL)
+        fprintf(file,
+                "%s up to %.2g %% off what was asked for (%s, case %llu): iterated surfaces do not "
+                "reach both.\n",
+                what, 100 * most, name, (unsigned long long)worst->case_number);
+}
+
+void print_heights(const struct shown_cases *shown, FILE *file) {
+    print_off(shown, "eps_h", "Heights are", file);
+    print_off(shown, "eps_s", "The spectrum is", file);
+}
+
 const char *model_text(const char *model, const char *kinematics, char *out, size_t size) {
     model = model != NULL ? model : "-";
     if (kinematics != NULL)

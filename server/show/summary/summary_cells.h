@@ -24,6 +24,12 @@ const char *source_word(const char *const *words, enum error_source source);
  * there are none. */
 void print_unknown(const bool unknown[ERROR_SOURCES], const char *const *words, FILE *file);
 void print_small(const bool small[ERROR_SOURCES], const char *const *words, FILE *file);
+/* The line below a table with columns "law %". */
+void print_law_legend(FILE *file);
+/* Lines on surfaces that do not reach the heights or the spectrum that were asked for: where eps_h
+ * or eps_s of a case is above HEIGHTS_OFF. */
+void print_heights(const struct shown_cases *shown, FILE *file);
+#define HEIGHTS_OFF 0.02
 /* "layered", or "full (hencky)" where the model has several kinematics; "-" without one. */
 const char *model_text(const char *model, const char *kinematics, char *out, size_t size);
 /* Returns whether a series is a bracket of another one, and no estimate: nodes_lower, nodes_upper.

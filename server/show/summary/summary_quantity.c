@@ -74,6 +74,16 @@ static void error_cell(struct text_table *table, double error, double bound, dou
         table_cell(table, "%+.2g", 100 * error / value);
 }
 
+/* In percent of the value, +- one standard error. */
+static void law_cell(struct text_table *table, double difference, double standard_error,
+                     double value) {
+    if (isnan(difference / value))
+        table_cell(table, "-");
+    else
+        table_cell(table, "%+.2g +- %.2g", 100 * difference / value,
+                   100 * standard_error / fabs(value));
+}
+
 static void value_cell(struct text_table *table, const struct case_result *one,
                        const struct curve *curve, size_t k) {
     char text[64], partial[48];
@@ -139,8 +149,16 @@ static void find_unknown(const struct finest_curves *finest, bool unknown[ERROR_
         }
 }
 
+static bool has_law(const struct finest_curves *finest) {
+    bool any = false;
+    for (size_t m = 0; m < finest->model_count; m++)
+        any = any || finest->curves[m]->law_difference != NULL;
+    return any;
+}
+
 static size_t column_count(const struct finest_curves *finest) {
     size_t columns = 1 + finest->model_count + finest->theory_count;
+    columns += has_law(finest) ? finest->model_count : 0;
     for (int source = 0; source < ERROR_SOURCES; source++)
         columns += has_column(finest, (enum error_source)source) ? finest->model_count : 0;
     return columns;
@@ -158,6 +176,8 @@ static void put_heading(const struct quantity_table *words, const struct finest_
             if (has_column(finest, (enum error_source)source))
                 table_cell(table, "%s %%",
                            source_word(words->error_words, (enum error_source)source));
+        if (has_law(finest))
+            table_cell(table, "law %%");
     }
     if (finest->theory_count > 0)
         table_fold(table);
@@ -176,6 +196,9 @@ static void put_place(const struct case_result *one, const struct finest_curves 
                 error_cell(table, number_at(curve->errors[source].value, curve, k),
                            number_at(curve->errors[source].bound, curve, k),
                            number_at(curve->y, curve, k));
+        if (has_law(finest))
+            law_cell(table, number_at(curve->law_difference, curve, k),
+                     number_at(curve->law_standard_error, curve, k), number_at(curve->y, curve, k));
     }
     for (size_t t = 0; t < finest->theory_count; t++) {
         double theory = finest->theories[t]->y[k];
@@ -242,6 +265,14 @@ static void print_case(const struct quantity_table *words, const struct shown_ca
     }
 }
 
+/* Returns the largest law difference of a curve over its values; NaN where none is known. */
+static double largest_law(const struct curve *curve) {
+    double largest = NAN;
+    for (size_t k = 0; curve->law_difference != NULL && k < curve->n; k++)
+        largest = fmax(largest, fabs(curve->law_difference[k] / curve->y[k]));
+    return largest;
+}
+
 /* --- a row a case --- */
 
 enum { SAMPLES = 3 }; /* first, middle and last point */
@@ -281,8 +312,19 @@ static void find_known(const struct study_report *report, const struct shown_cas
     }
 }
 
+/* Returns whether some case has a law difference in its table. */
+static bool any_law(const struct quantity_table *words, const struct shown_cases *shown) {
+    bool any = false;
+    for (size_t c = 0; c < shown->count; c++) {
+        struct finest_curves finest;
+        find_finest(&finest, words, shown->list[c]);
+        any = any || has_law(&finest);
+    }
+    return any;
+}
+
 static void put_row_heading(const struct quantity_table *words, const struct shown_cases *shown,
-                            const bool known[ERROR_SOURCES], struct text_table *table) {
+                            const bool known[ERROR_SOURCES], bool law, struct text_table *table) {
     static const char *const SAMPLE_NAMES[SAMPLES] = {"lowest", "middle", "highest"};
     double x[SAMPLES] = {NAN, NAN, NAN};
     find_samples(words, shown, x);
@@ -298,6 +340,8 @@ static void put_row_heading(const struct quantity_table *words, const struct sho
     for (int source = 0; source < ERROR_SOURCES; source++)
         if (known[source])
             table_cell(table, "%s %%", source_word(words->error_words, (enum error_source)source));
+    if (law)
+        table_cell(table, "law %%");
     table_fold(table);
     for (const char *const *name = words->scalars; name != NULL && *name != NULL; name++)
         table_cell(table, "%s", *name);
@@ -305,7 +349,7 @@ static void put_row_heading(const struct quantity_table *words, const struct sho
 }
 
 static void put_row(const struct quantity_table *words, const struct shown_cases *shown, size_t c,
-                    const struct case_report *cost, const bool known[ERROR_SOURCES],
+                    const struct case_report *cost, const bool known[ERROR_SOURCES], bool law,
                     struct text_table *table) {
     const struct case_result *one = shown->list[c];
     struct finest_curves finest;
@@ -319,6 +363,8 @@ static void put_row(const struct quantity_table *words, const struct shown_cases
         if (known[source])
             percent_cell(table, cost != NULL && cost->main != NULL ? cost->main->errors[source]
                                                                    : (double)NAN);
+    if (law)
+        percent_cell(table, finest.model_count > 0 ? largest_law(finest.curves[0]) : (double)NAN);
     for (const char *const *name = words->scalars; name != NULL && *name != NULL; name++) {
         const struct scalar *scalar = result_scalar(one, *name);
         measured_cell(table, scalar != NULL ? scalar->value : (double)NAN,
@@ -331,19 +377,20 @@ static void print_rows(const struct quantity_table *words, const struct shown_ca
                        const struct study_report *report, FILE *file) {
     bool known[ERROR_SOURCES], small[ERROR_SOURCES], unknown[ERROR_SOURCES] = {false};
     size_t scalars = 0, sources = 0;
+    bool law = any_law(words, shown);
     find_known(report, shown, known, small);
     for (size_t s = 0; s < ERROR_SOURCES; s++)
         sources += known[s];
     while (words->scalars != NULL && words->scalars[scalars] != NULL)
         scalars++;
-    struct text_table table = {.columns =
-                                   1 + shown->varied_count + 1 + SAMPLES + sources + scalars + 1};
-    put_row_heading(words, shown, known, &table);
+    struct text_table table = {.columns = 1 + shown->varied_count + 1 + SAMPLES + sources + law +
+                                          scalars + 1};
+    put_row_heading(words, shown, known, law, &table);
     for (size_t c = 0; c < shown->count; c++) {
         struct finest_curves finest;
         find_finest(&finest, words, shown->list[c]);
         find_unknown(&finest, unknown);
-        put_row(words, shown, c, report_of(report, shown->list[c]), known, &table);
+        put_row(words, shown, c, report_of(report, shown->list[c]), known, law, &table);
     }
     fputc('\n', file);
     table_print(&table, file);
@@ -360,6 +407,9 @@ void summary_of_quantity(const struct quantity_table *words, const struct shown_
     else
         print_rows(words, shown, report, file);
     fprintf(file, "\n%s\n", words->legend);
+    if (any_law(words, shown))
+        print_law_legend(file);
+    print_heights(shown, file);
     print_partial(shown, words->x, file);
     print_notes(shown, NOTES_SHOWN, file);
 }

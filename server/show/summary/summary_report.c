@@ -21,11 +21,12 @@ static void find_columns(const struct curve_report *curve, struct error_columns 
         columns->small[s] = columns->small[s] || curve->errors[s] < ERROR_SHOWN;
         columns->unknown[s] = columns->unknown[s] || (curve->applies[s] && isnan(curve->errors[s]));
     }
+    columns->shown[LAW_COLUMN] = columns->shown[LAW_COLUMN] || curve->law >= ERROR_SHOWN;
 }
 
 /* Finds the columns for all curves of the main quantities. */
 static struct error_columns columns_of(const struct study_report *report) {
-    struct error_columns columns = {.shown = {[0] = true, [ERROR_COLUMNS - 1] = true}};
+    struct error_columns columns = {.shown = {[0] = true, [TOTAL_COLUMN] = true}};
     for (size_t c = 0; c < report->case_count; c++) {
         const struct case_report *one = &report->cases[c];
         for (size_t a = 0; a < one->curve_count && one->main != NULL; a++)
@@ -45,6 +46,8 @@ static void error_headings(const struct error_columns *columns, struct text_tabl
         if (columns->shown[1 + source])
             table_cell(table, "%s %%", ERROR_SOURCE_ROWS[source].name);
     table_cell(table, "total %%");
+    if (columns->shown[LAW_COLUMN])
+        table_cell(table, "law %%");
 }
 
 static void error_cells(const struct error_columns *columns, const double errors[ERROR_COLUMNS],
@@ -169,6 +172,8 @@ void summary_of_report(const struct study_report *report, FILE *file) {
     print_all_series(report, &shown, &columns, file);
     print_unknown(columns.unknown, NULL, file);
     print_small(columns.small, NULL, file);
+    if (columns.shown[LAW_COLUMN])
+        print_law_legend(file);
     print_partial(&shown, words != NULL ? words->x : "point", file);
     print_notes(&shown, NOTES_SHOWN, file);
     print_missing(&shown, file);

@@ -12,10 +12,8 @@ static double scalar_of(const struct case_result *one, const char *name) {
 /* Prints which source keeps the answer from the error asked for, and what more sampling would take:
  * sources add up by their squares, and the statistical one falls as the work grows. */
 static void print_left(const struct case_result *one, FILE *file) {
-    static const char *const SOURCES[] = {"error_mesh", "error_cell", "error_model",
-                                          "error_generation"};
-    static const char *const NAMES[] = {"mesh", "cell", "model",
-                                        "generation of the surfaces (/surface/heights)"};
+    static const char *const SOURCES[] = {"error_mesh", "error_cell", "error_model"};
+    static const char *const NAMES[] = {"mesh", "cell", "model"};
     enum { COUNT = sizeof SOURCES / sizeof *SOURCES };
     double asked = scalar_of(one, "error_asked"), chance = scalar_of(one, "error_chance");
     double bounds = 0;
@@ -56,8 +54,6 @@ void summary_of_target(const struct case_result *one, FILE *file) {
         fprintf(file, ": statistical %.2g, mesh %.2g, cell %.2g, model %.2g %%",
                 100 * scalar_of(one, "error_chance"), 100 * scalar_of(one, "error_mesh"),
                 100 * scalar_of(one, "error_cell"), 100 * scalar_of(one, "error_model"));
-    if (scalar_of(one, "error_generation") > 0)
-        fprintf(file, ", generation %.2g %%", 100 * scalar_of(one, "error_generation"));
     fputc('\n', file);
     if (result_scalar(one, "plain_work") != NULL)
         print_work(scalar_of(one, "plain_work") / scalar_of(one, "work"),

@@ -49,8 +49,13 @@ static int table_add(struct case_table *table, struct table_column column,
     if (larger == NULL || room == NULL || column.name == NULL)
         return error_memory(err, table->row_count * sizeof *room, "a column");
     for (size_t r = 0; r < table->row_count; r++)
-        room[r] = (struct table_value){
-            .value = NAN, .standard_error = NAN, .error = NAN, .theory = NAN, .grid = NAN};
+        room[r] = (struct table_value){.value = NAN,
+                                       .standard_error = NAN,
+                                       .error = NAN,
+                                       .theory = NAN,
+                                       .grid = NAN,
+                                       .law_difference = NAN,
+                                       .law_standard_error = NAN};
     column.values = room;
     table->columns[table->column_count++] = column;
     *values = room;
@@ -94,7 +99,9 @@ static struct table_value value_of(const struct scalar *scalar, bool unknown[ERR
                                 .standard_error = scalar->standard_error,
                                 .error = NAN,
                                 .theory = scalar->theory,
-                                .grid = scalar->grid};
+                                .grid = scalar->grid,
+                                .law_difference = scalar->law_difference,
+                                .law_standard_error = scalar->law_standard_error};
     for (size_t s = 0; s < ERROR_SOURCES; s++) {
         const struct scalar_error *error = &scalar->errors[s];
         unknown[s] = unknown[s] || (error->applies && !error->known);
@@ -230,7 +237,9 @@ static struct table_value value_at(const struct curve *curve, size_t k, const st
                                 .standard_error = curve->standard_error[k],
                                 .error = NAN,
                                 .theory = NAN,
-                                .grid = NAN};
+                                .grid = NAN,
+                                .law_difference = number_at(curve->law_difference, k),
+                                .law_standard_error = number_at(curve->law_standard_error, k)};
     value.theory = theory != NULL ? number_at(theory->y, k) : (double)NAN;
     for (size_t s = 0; s < ERROR_SOURCES; s++) {
         const struct curve_error *error = &curve->errors[s];

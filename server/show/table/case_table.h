@@ -26,6 +26,7 @@ struct table_value {
     double error; /* the sum of what other sources are known to leave: |value| + bound */
     double theory;
     double grid; /* theory on the grid, of a scalar alone */
+    double law_difference, law_standard_error;
 };
 struct table_column {
     enum table_column_type type;

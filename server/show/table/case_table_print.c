@@ -52,11 +52,14 @@ static void text_rows(const struct case_table *table, struct text_table *text) {
  */
 static void text_legend(const struct case_table *table, const struct table_column *column,
                         FILE *file) {
-    double largest = NAN;
-    for (size_t r = 0; r < table->row_count; r++)
-        largest = fmax(largest, column->values[r].error / fabs(column->values[r].value));
+    double largest = NAN, law = NAN;
+    for (size_t r = 0; r < table->row_count; r++) {
+        const struct table_value *value = &column->values[r];
+        largest = fmax(largest, value->error / fabs(value->value));
+        law = fmax(law, fabs(value->law_difference / value->value));
+    }
     bool told = largest > 0 && isfinite(largest), curve = column->quantity != NULL;
-    if (!told && column->unit == NULL)
+    if (!told && column->unit == NULL && !(law > 0))
         return;
     fprintf(file, "%s:", column->name);
     if (column->unit != NULL)
@@ -67,6 +70,9 @@ static void text_legend(const struct case_table *table, const struct table_colum
     if (told)
         fprintf(file, "%s errors other than statistical up to %.2g %%",
                 column->unit != NULL ? ";" : "", 100 * largest);
+    if (law > 0)
+        fprintf(file, "%s the other law of heights up to %.2g %% off",
+                told || column->unit != NULL ? ";" : "", 100 * law);
     fputc('\n', file);
 }
 
@@ -128,6 +134,8 @@ static void csv_heading(const struct case_table *table, FILE *file) {
         fprintf(file, ",%s_standard_error,%s_error", column->name, column->name);
         if (HAS_ANY(table, column, theory))
             fprintf(file, ",%s_theory", column->name);
+        if (HAS_ANY(table, column, law_difference))
+            fprintf(file, ",%s_law_difference,%s_law_standard_error", column->name, column->name);
     }
     fputc('\n', file);
 }
@@ -150,6 +158,10 @@ bool case_table_csv(const struct case_table *table, FILE *file) {
             csv_number(file, value->error);
             if (HAS_ANY(table, column, theory))
                 csv_number(file, value->theory);
+            if (HAS_ANY(table, column, law_difference)) {
+                csv_number(file, value->law_difference);
+                csv_number(file, value->law_standard_error);
+            }
         }
         fputc('\n', file);
     }
@@ -213,6 +225,16 @@ static bool print_members(const struct case_table *table, size_t r, size_t at, F
     return done;
 }
 
+enum { LAW_MEMBERS = 2 };
+
+static bool has_law(const struct case_table *table) {
+    bool any = false;
+    for (size_t n = 0; n < table->column_count; n++)
+        any = any || (table->columns[n].type != COLUMN_PARAMETER &&
+                      HAS_ANY(table, &table->columns[n], law_difference));
+    return any;
+}
+
 static bool print_row(const struct case_table *table, size_t r, FILE *file) {
     static const struct {
         const char *key;
@@ -220,12 +242,16 @@ static bool print_row(const struct case_table *table, size_t r, FILE *file) {
     } MEMBERS[] = {{"values", offsetof(struct table_value, value)},
                    {"standard_errors", offsetof(struct table_value, standard_error)},
                    {"errors", offsetof(struct table_value, error)},
-                   {"theory", offsetof(struct table_value, theory)}};
+                   {"theory", offsetof(struct table_value, theory)},
+                   /* where some case has one */
+                   {"law_differences", offsetof(struct table_value, law_difference)},
+                   {"law_standard_errors", offsetof(struct table_value, law_standard_error)}};
     bool done = true;
     fprintf(file, "{\"case\":%llu,\"realisations\":%llu",
             (unsigned long long)table->rows[r]->case_number,
             (unsigned long long)table->rows[r]->realisations);
-    for (size_t m = 0; m < sizeof MEMBERS / sizeof *MEMBERS && done; m++) {
+    size_t members = sizeof MEMBERS / sizeof *MEMBERS - (has_law(table) ? 0 : LAW_MEMBERS);
+    for (size_t m = 0; m < members && done; m++) {
         fprintf(file, ",\"%s\":", MEMBERS[m].key);
         done = print_members(table, r, MEMBERS[m].at, file);
     }

@@ -1,7 +1,7 @@
 /* A realisation of a study of statistics, 1024 x 1024, with all that it measures, beside generation
  * with nine-point summits alone. Printed: CPU time, one core, medians, taken in turn so that other
- * work on the machine is the same for all. Weibull surfaces are those without pairs for the error
- * `generation`, which one in 64 has.
+ * work on the machine is the same for all. Weibull surfaces are those without pairs for the law
+ * difference, which some have.
  *
  * A second table has Gaussian surfaces and profiles with fixed and with random amplitudes, 8 and 2
  * points a shortest wave, beside what is estimated before they run; ratios are medians of ratios.

@@ -1,7 +1,7 @@
 /* Studies that ask for an error: how many of their points are within it, and within the error that
  * they report, against references of long cells and fine meshes; and what a study of the model full
- * at 1 % and 0.2 % takes against plain sampling of it, without the error generation, which sampling
- * cannot reduce.
+ * at 1 % and 0.2 % takes against plain sampling of it, without the law difference, which is no
+ * error.
  *
  * bench_target [FIRST [COUNT [SEEDS]]]: some of the questions, numbered from 1. */
 #include "tests/support/target_coverage.h"
@@ -65,7 +65,7 @@ enum { REALISATIONS_LEAST = 24 };
 #define COSTLY(error, heights)                                                                     \
     "{\"name\":\"area\",\"kind\":\"contact\",\"seed\":1,\"target\":{\"error\":" error              \
     "},\"surface\":{\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":8,\"rms_slope\":0.1,"       \
-    "\"heights\":{" heights "}},\"contact\":{\"model\":\"full\",\"generation_error\":\"none\","    \
+    "\"heights\":{" heights "}},\"contact\":{\"model\":\"full\",\"law_difference\":\"none\","    \
     "\"pressures\":{\"to\":0.3,\"steps\":10}}}"
 
 /* Points, and those within the error asked for, within the larger of that and the error reached,

@@ -34,8 +34,7 @@ static void profiles_are_within_the_error(void **state) {
     check_question(&(struct coverage_question){&LOW, "halfspace", NULL, 0.05}, 3, &EFFORT);
 }
 
-/* Heights further from Gaussian ones cannot be had of profiles of so few waves: the generation
- * error is a third of their area then. */
+/* Heights further from Gaussian ones cannot be had of profiles of so few waves. */
 static void profiles_of_full_are_within_the_error(void **state) {
     (void)state;
     static const struct coverage_scene LOW = {WEIBULL("3.602"), 1, 0.8, 2, "[0.1,0.2]"};

@@ -32,7 +32,7 @@ static void plans_are_consistent(void **state) {
     static const size_t SERIES[COMPANION_COUNT] = {[COMPANION_LONGER] = 1,
                                                    [COMPANION_SHORTER] = 1,
                                                    [COMPANION_PROBE] = 3,
-                                                   [COMPANION_GENERATION] = 3};
+                                                   [COMPANION_LAW] = 2};
     struct contact_case one_case;
     struct error err = {0};
     cJSON *parameters = cJSON_Parse(STUDY);

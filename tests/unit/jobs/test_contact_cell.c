@@ -181,7 +181,7 @@ static void they_cost_a_tenth(void **state) {
         assert_true(contact_case_has(&one_case, COMPANION_LONGER) &&
                     contact_case_has(&one_case, COMPANION_SHORTER));
         contact_case_estimate(&one_case, &cost);
-        double beside = companions_seconds_but(&one_case, COMPANION_GENERATION);
+        double beside = companions_seconds_but(&one_case, COMPANION_LAW);
         assert_true(beside > 0 && beside <= 0.14 * (cost.seconds - beside));
         const struct subset *due = &one_case.companions[COMPANION_LONGER].due;
         assert_true(due->interval >= (one_case.surface.dimension == 1 ? 2 : 4));

@@ -215,7 +215,7 @@ static void curves_say_what_is_known(void **state) {
     const struct curve_error *solver = &gap->errors[ERROR_SOLVER];
     assert_true(gap->errors[ERROR_MODEL].applies && gap->errors[ERROR_MODEL].value == NULL);
     assert_false(gap->errors[ERROR_BLOCK].applies || gap->errors[ERROR_CELL].applies ||
-                 gap->errors[ERROR_GENERATION].applies || gap->errors[ERROR_MISSING].applies);
+                 gap->errors[ERROR_MISSING].applies || gap->law_difference != NULL);
     assert_true(solver->value[1] == 0);
     check_relative(solver->bound[1], 100 * 1e-8 * gap->y[1], 1e-12);
     assert_true(isnan(solver->standard_error[1]) && isnan(gap->standard_error[1]));

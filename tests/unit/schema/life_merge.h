@@ -33,11 +33,7 @@ static inline void merge(struct store *store, const struct due_case *due, struct
     double *errors = result_numbers(out, LIFE_MOST);
     assert_true(sum.first != NULL && sum.count != NULL && errors != NULL);
     assert_int_equal(store_results(store, due->study, due->case_number, add_block, &sum, NULL), 0);
-    struct scalar scalar = {.name = "sum",
-                            .value = sum.value,
-                            .standard_error = (double)sum.realisations,
-                            .theory = NAN,
-                            .grid = NAN};
+    const struct scalar scalar = scalar_named("sum", sum.value, (double)sum.realisations, NAN);
     struct curve curve = curve_named("blocks", "first", "count");
     curve_set_points(&curve, sum.blocks, sum.first, sum.count, errors);
     assert_int_equal(result_add_scalar(out, &scalar, NULL), 0);

@@ -168,15 +168,15 @@ static void csv_is_one_table(void **state) {
     static const char HEADING[] = "case,quantity,series,model,kinematics,level,pressure,x,x2,y,"
                                   "standard_error,discretisation_error,discretisation_bound,"
                                   "cell_error,cell_bound,block_error,block_bound,model_error,"
-                                  "model_bound,solver_error,solver_bound,generation_error,"
-                                  "generation_bound,missing_error,missing_bound,valueless";
+                                  "model_bound,solver_error,solver_bound,missing_error,"
+                                  "missing_bound,valueless,law_difference,law_standard_error";
     static const char POINTS[] =
         "3,q,\"x, \"\"y\"\"\",,,,,0.1,,3,0.1,,,,,,,,,,,,,,,,1.5,\n"
         "3,q,\"x, \"\"y\"\"\",,,,,2,,,,,,,,,,,,,,,,,,,2.5,\n"
         "3,joint,,,,,,0.1,8,2,0.25,-0.5,0.75,,,,,,,,,,,,,,,\n"
         "3,joint,,,,,,2,9,6,1,1,0,,,,,,,,,,,,,,,\n"
-        "3,area,edges,full,hencky,8,0.5,0.1,,1e-300,0,0.25,0.125,,,,,,,,,,,,,0,,3\n"
-        "3,area,edges,full,hencky,8,0.5,2,,0.5,0,0.5,0,,,,,-2,,,,,,,,3,,4\n";
+        "3,area,edges,full,hencky,8,0.5,0.1,,1e-300,0,0.25,0.125,,,,,,,,,,,0,,,,3\n"
+        "3,area,edges,full,hencky,8,0.5,2,,0.5,0,0.5,0,,,,,-2,,,,,,3,,,,4\n";
     struct case_result sample;
     char expected[2048];
     sample_result(&sample);
