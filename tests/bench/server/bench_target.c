@@ -14,6 +14,7 @@ enum { SEEDS = 6 };
 
 #define GAUSSIAN "\"distribution\":\"gaussian\""
 #define WEIBULL(kind, shape) "\"distribution\":\"weibull_" kind "\",\"shape\":" shape
+#define LAW ",\"law\":\"translation\""
 /* Areas of 0.02 to 0.6. The lightest takes most: it is left out where errors are small. */
 #define LOADS "[0.01,0.03,0.1,0.3]"
 #define HEAVIER "[0.03,0.1,0.3]"
@@ -31,6 +32,17 @@ static const struct coverage_scene SMOOTH = {GAUSSIAN, 1, 0.8, 4, LOADS},
                                    SURFACE_LOW = {WEIBULL("min", "2"), 2, 0.5, 2, LOADS},
                                    PRESSED = {GAUSSIAN, 2, 0.8, 2, HEAVY},
                                    PRESSED_LOW = {WEIBULL("min", "2"), 2, 0.8, 2, HEAVY};
+/* Of the law of translation, which has a limit in long cells. */
+static const struct coverage_scene OF_PITS = {WEIBULL("min", "1") LAW, 1, 0.8, 4, LOADS},
+                                   OF_PEAKS = {WEIBULL("max", "1") LAW, 1, 0.8, 4, HEAVIER},
+                                   OF_ROUGH = {WEIBULL("min", "1.5") LAW, 1, 0.5, 2, HEAVIER},
+                                   OF_LOW = {WEIBULL("min", "2") LAW, 1, 0.6, 4, LOADS},
+                                   OF_HIGH = {WEIBULL("max", "2") LAW, 1, 0.9, 3, HEAVIER},
+                                   OF_EVEN = {WEIBULL("min", "3.602") LAW, 1, 0.8, 2, HEAVY},
+                                   OF_LOGS = {"\"distribution\":\"lognormal\",\"shape\":0.5" LAW, 1,
+                                              0.8, 4, HEAVIER},
+                                   OF_SURFACE = {WEIBULL("min", "1") LAW, 2, 0.8, 2, HEAVIER},
+                                   OF_PLATEAU = {WEIBULL("max", "1.5") LAW, 2, 0.8, 2, HEAVY};
 
 static const struct coverage_question QUESTIONS[] = {{&SMOOTH, "halfspace", NULL, 0.01},
                                                      {&MIDDLE, "halfspace", NULL, 0.005},
@@ -49,11 +61,21 @@ static const struct coverage_question QUESTIONS[] = {{&SMOOTH, "halfspace", NULL
                                                      {&SURFACE_LOW, "halfspace", NULL, 0.05},
                                                      {&PRESSED, "layered", NULL, 0.05},
                                                      {&PRESSED, "full", NULL, 0.05},
-                                                     {&PRESSED_LOW, "full", NULL, 0.05}};
+                                                     {&PRESSED_LOW, "full", NULL, 0.05},
+                                                     {&OF_PITS, "halfspace", NULL, 0.02},
+                                                     {&OF_PEAKS, "halfspace", NULL, 0.01},
+                                                     {&OF_ROUGH, "halfspace", NULL, 0.05},
+                                                     {&OF_LOW, "layered", NULL, 0.02},
+                                                     {&OF_HIGH, "layered", NULL, 0.01},
+                                                     {&OF_LOGS, "halfspace", NULL, 0.02},
+                                                     {&OF_EVEN, "full", NULL, 0.02},
+                                                     {&OF_PEAKS, "full", NULL, 0.05},
+                                                     {&OF_SURFACE, "halfspace", NULL, 0.05},
+                                                     {&OF_PLATEAU, "layered", NULL, 0.05}};
 enum { COUNT = sizeof QUESTIONS / sizeof *QUESTIONS };
 
 /* Realisations on long cells are those of an error of 1 %; for others they are fewer or more.
- * Gaussian profiles come to their limit on shorter cells than others. */
+ * Gaussian profiles, and translated ones, come to their limit on shorter cells than others. */
 static const struct coverage_effort PROFILES = {240, 100,   40,          256,        64,
                                                 16,  "[8]", "[8,16,32]", "[8,16,32]"},
                                     OTHERS = {60, 100,   40,          1024,       64,
@@ -65,7 +87,7 @@ enum { REALISATIONS_LEAST = 24 };
 #define COSTLY(error, heights)                                                                     \
     "{\"name\":\"area\",\"kind\":\"contact\",\"seed\":1,\"target\":{\"error\":" error              \
     "},\"surface\":{\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":8,\"rms_slope\":0.1,"       \
-    "\"heights\":{" heights "}},\"contact\":{\"model\":\"full\",\"law_difference\":\"none\","    \
+    "\"heights\":{" heights "}},\"contact\":{\"model\":\"full\",\"law_difference\":\"none\","      \
     "\"pressures\":{\"to\":0.3,\"steps\":10}}}"
 
 /* Points, and those within the error asked for, within the larger of that and the error reached,
@@ -119,9 +141,10 @@ static int cover(const struct coverage_question *question, int seeds, struct cou
     struct coverage_points answers[64], reference;
     struct counts own = {0};
     double worst = 0, reached = 0, work = 0, plain = 0, error = 0;
-    bool gaussian = strcmp(question->scene->heights, GAUSSIAN) == 0;
+    const char *heights = question->scene->heights;
+    bool limited = strcmp(heights, GAUSSIAN) == 0 || strstr(heights, "translation") != NULL;
     struct coverage_effort effort = question->scene->dimension > 1 ? SURFACES
-                                    : gaussian                     ? PROFILES
+                                    : limited                      ? PROFILES
                                                                    : OTHERS;
     effort.realisations =
         (int)fmax(REALISATIONS_LEAST, 0.01 / question->error * effort.realisations);

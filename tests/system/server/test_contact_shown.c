@@ -150,7 +150,7 @@ static void missing_realisations_are_told(void **state) {
     shell("steep.db", "$RUGO report --db $DB --format json $ID");
     check_shown((const char *[]){"\"valueless\":", NULL});
     shell("steep.db", "$RUGO curves --db $DB --format csv $ID | grep -q "
-                      "'^0,contact_area,edges,full,hencky,6,,0.5,.*,[1-8],0.68' && "
+                      "'^0,contact_area,edges,full,hencky,6,,0.5,.*,[1-8],,,0.68' && "
                       "! $RUGO report --db one.db "
                       "$($RUGO status --db one.db | awk 'NR == 2 {print $1}') | grep 'of [0-9]' && "
                       "cat steep/curves.csv && "

@@ -196,12 +196,12 @@ static void says_what_is_left(void **state) {
  * with its sign. */
 static void laws_are_no_error(void **state) {
     (void)state;
-    static const char STUDY[] =
+    static const char LAWS[] =
         "{\"name\":\"law\",\"kind\":\"contact\",\"seed\":1,\"target\":{\"error\":0.05},\"surface\":"
         "{"
         "\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":2,\"heights\":{\"distribution\":"
         "\"weibull_min\",\"shape\":1}},\"contact\":{\"pressures\":{\"values\":[0.03,0.1]}}}";
-    spit("law.json", STUDY);
+    spit("law.json", LAWS);
     assert_int_equal(run_rugo("law", (const char *[]){"run", "--db", "law.db", "law.json", NULL}),
                      0);
     double most = read_number("law.db", "SELECT max(abs(law_difference / y)) FROM curve_points "
