@@ -132,9 +132,7 @@ static double share_of(const struct case_result *result, const struct curve *cur
 
 /* --- together --- */
 
-/* Errors that are the same in every realisation add up; the statistical one is added in
- * quadrature. */
-static double total_of(const struct curve_report *report) {
+double curve_report_total(const struct curve_report *report) {
     double systematic = 0;
     for (size_t s = 0; s < ERROR_SOURCES; s++)
         systematic += report->applies[s] ? report->errors[s] : 0;
@@ -171,7 +169,7 @@ static int curve_report_make(struct case_report *report, const struct case_resul
         out->errors[s] = source_error(result, curve, (enum error_source)s, scratch);
         out->applies[s] = curve->errors[s].applies || !isnan(out->errors[s]);
     }
-    out->total = total_of(out);
+    out->total = curve_report_total(out);
     out->law = curve->law_difference != NULL
                    ? relative_size(curve_value_count(curve), curve->law_difference, NULL, curve->y)
                    : (double)NAN;

@@ -63,6 +63,10 @@ void study_report_take_head(struct study_report *report, const struct study_resu
 int case_report_make(struct case_report *out, const struct case_result *result, struct error *err);
 /* Sets the time of a case, and multiplies the shares of its curves by it. */
 void case_report_spend(struct case_report *report, const struct work_time *time);
+/* Returns the total of the errors of a curve: those that are the same in every realisation add up,
+ * the statistical one is added in quadrature. NaN where one that bears on the curve is not known.
+ */
+double curve_report_total(const struct curve_report *report);
 /* Returns the processor time to halve the error. Statistical errors fall with the square root of
  * the realisations, so that it is three times what was spent. NaN without a main curve. */
 double case_report_seconds_to_halve(const struct case_report *report);

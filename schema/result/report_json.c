@@ -162,7 +162,8 @@ static int read_curve(struct case_result *about, const cJSON *object, struct cur
         out->applies[s] = field_at(object, ERROR_SOURCE_ROWS[s].key) != NULL;
         out->errors[s] = field_number(object, ERROR_SOURCE_ROWS[s].key);
     }
-    out->total = field_number(object, "total_error");
+    out->total =
+        curve_report_total(out); /* that of an older program may have counted other sources */
     out->law = field_number(object, "law_difference");
     out->valueless = field_number(object, "valueless");
     const cJSON *deviations = field_at(object, "theory_deviation");

@@ -16,6 +16,7 @@ static inline void sample_result(struct case_result *out) {
     static const double area[] = {1e-300, 0.5}, zero[] = {0, 0}, persson[] = {3, 4};
     static const double mesh[] = {0.25, 0.5}, mesh_error[] = {0.01, 0.02}, bound[] = {0.125, 0};
     static const double model[] = {NAN, -2}, model_error[] = {0.03, 0.04}, valueless[] = {0, 3};
+    static const double law[] = {0.5, -1}, law_error[] = {0.25, 0.5};
     static struct result_note notes[] = {{7, "why"}};
     struct curve plain = curve_named("q", "z/\302\265m", "density");
     struct curve matrix = curve_named("joint", "z", "density");
@@ -24,6 +25,8 @@ static inline void sample_result(struct case_result *out) {
     m0.errors[ERROR_CELL].applies = true;
     m0.errors[ERROR_MODEL] = (struct scalar_error){true, true, -0.5, 0.25, 0.125};
     alpha.grid = 5.5;
+    alpha.law_difference = -0.5;
+    alpha.law_standard_error = 0.125;
     *out = (struct case_result){.case_number = 3, .realisations = 24, .notes = notes};
     out->note_count = 1;
     out->notes_all = 2;
@@ -53,6 +56,8 @@ static inline void sample_result(struct case_result *out) {
     full.errors[ERROR_MODEL] = (struct curve_error){true, model, NULL, model_error, NAN, false};
     full.errors[ERROR_BLOCK].applies = true;
     plain.errors[ERROR_DISCRETISATION].applies = true;
+    full.law_difference = law;
+    full.law_standard_error = law_error;
     full.valueless = valueless;
     full.theories[full.theory_count++] = (struct theory){"persson", persson};
     assert_int_equal(result_add_curve(out, &plain, NULL), 0);

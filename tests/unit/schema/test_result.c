@@ -1,6 +1,7 @@
 /* A result comes back from each of its formats as it went in: JSON, bytes; and its table and report
  * say what it holds. */
 #include "core/memory_file.h"
+#include "schema/result/bytes.h"
 #include "schema/result/csv.h"
 #include "schema/result/curve_bytes.h"
 #include "schema/result/report.h"
@@ -23,7 +24,7 @@ static const char PRINTED[] =
     "{\"case\":3,\"parameters\":{},\"realisations\":24,\"scalars\":{\"m0\":{\"value\":1,"
     "\"standard_error\":0.5,\"cell_error\":null,\"model_error\":-0.5,\"model_bound\":0.25,"
     "\"model_error_standard_error\":0.125},\"alpha\":{\"value\":5,\"standard_error\":null,"
-    "\"theory\":6,\"grid_theory\":5.5}},"
+    "\"theory\":6,\"grid_theory\":5.5,\"law_difference\":-0.5,\"law_standard_error\":0.125}},"
     "\"curves\":[{\"quantity\":\"q\",\"series\":\"x, \\\"y\\\"\",\"x\":[0.1,2],\"y\":[3,null],"
     "\"standard_error\":[0.1,null],\"discretisation_error\":null,\"theory\":{\"nayak\":[1.5,2.5]},"
     "\"x_label\":\"z/\302\265m\",\"underflow\":4,\"overflow\":0,\"y_label\":\"density\"},"
@@ -40,7 +41,8 @@ static const char PRINTED[] =
     "0],"
     "\"discretisation_standard_error\":[0.01,0.02],\"discretisation_order\":1.5,"
     "\"discretisation_order_from\":\"levels\",\"block_error\":null,\"model_error\":[null,-2],"
-    "\"model_error_standard_error\":[0.03,0.04],\"theory\":{\"persson\":[3,4]},"
+    "\"model_error_standard_error\":[0.03,0.04],\"law_difference\":[0.5,-1],"
+    "\"law_standard_error\":[0.25,0.5],\"theory\":{\"persson\":[3,4]},"
     "\"x_label\":\"load\",\"valueless\":[0,3],\"y_label\":\"A/A0\"}],"
     "\"notes\":{\"count\":2,\"kept\":[{\"realisation\":7,\"text\":\"why\"}]}}";
 
@@ -126,6 +128,34 @@ static void bytes_come_back(void **state) {
     result_clear(&again);
 }
 
+/* A curve of another program may have an error of a source that this one does not know: it is left
+ * out, and the curve comes back. */
+static void unknown_sources_are_left_out(void **state) {
+    (void)state;
+    struct case_result sample, again = {0};
+    unsigned char *data = NULL;
+    size_t size = 0, renamed = 0;
+    sample_result(&sample);
+    assert_int_equal(curve_encode(&sample.curves[2], &data, &size, NULL), 0);
+    for (size_t a = 0; a + 14 < size; a++)
+        if (memcmp(data + a, "discretisation", 14) == 0) {
+            memcpy(data + a, "generation----", 14);
+            renamed++;
+        }
+    assert_int_equal(renamed, 2); /* the error and its bound */
+    uint64_t checksum = hash_bytes(HASH_START, size - 8, data);
+    for (size_t a = 0; a < 8; a++)
+        data[size - 8 + a] = (unsigned char)(checksum >> 8 * a);
+    assert_int_equal(curve_decode(&again, data, size, NULL), 0);
+    assert_false(again.curves[0].errors[ERROR_DISCRETISATION].applies);
+    assert_true(again.curves[0].errors[ERROR_MODEL].value[1] == -2);
+    assert_memory_equal(again.curves[0].y, sample.curves[2].y, 2 * sizeof *again.curves[0].y);
+    assert_true(again.curves[0].law_difference[1] == -1);
+    free(data);
+    result_clear(&sample);
+    result_clear(&again);
+}
+
 /* Whatever byte is changed, and wherever the bytes end: an error, and no curve. */
 static void damaged_bytes_are_refused(void **state) {
     (void)state;
@@ -175,8 +205,8 @@ static void csv_is_one_table(void **state) {
         "3,q,\"x, \"\"y\"\"\",,,,,2,,,,,,,,,,,,,,,,,,,2.5,\n"
         "3,joint,,,,,,0.1,8,2,0.25,-0.5,0.75,,,,,,,,,,,,,,,\n"
         "3,joint,,,,,,2,9,6,1,1,0,,,,,,,,,,,,,,,\n"
-        "3,area,edges,full,hencky,8,0.5,0.1,,1e-300,0,0.25,0.125,,,,,,,,,,,0,,,,3\n"
-        "3,area,edges,full,hencky,8,0.5,2,,0.5,0,0.5,0,,,,,-2,,,,,,3,,,,4\n";
+        "3,area,edges,full,hencky,8,0.5,0.1,,1e-300,0,0.25,0.125,,,,,,,,,,,0,0.5,0.25,,3\n"
+        "3,area,edges,full,hencky,8,0.5,2,,0.5,0,0.5,0,,,,,-2,,,,,,3,-1,0.5,,4\n";
     struct case_result sample;
     char expected[2048];
     sample_result(&sample);
@@ -299,6 +329,8 @@ static void report_measures_and_comes_back(void **state) {
     assert_false(report.curves[2].applies[ERROR_CELL]);
     assert_true(report.curves[2].valueless == 3);
     assert_true(isnan(report.curves[0].valueless));
+    assert_true(isnan(report.curves[0].law));
+    assert_true(fabs(report.curves[2].law - sqrt(1.25) / 0.5) <= 1e-12);
     assert_true(report.scalars[0].statistical == 0.5);
     assert_false(report.scalars[0].has_theory);
     assert_true(fabs(report.scalars[1].deviation - 1.0 / 6) <= 1e-15);
@@ -310,6 +342,15 @@ static void report_measures_and_comes_back(void **state) {
     assert_int_equal(case_report_read(document, &again, &err), 0);
     assert_ptr_equal(again.main, &again.curves[0]);
     char *second = print_report(&again);
+    assert_string_equal(second, first);
+    free(second);
+    case_report_clear(&again);
+    /* an older program counted a source that is none now */
+    cJSON *curve = cJSON_GetArrayItem(cJSON_GetObjectItem(document, "curves"), 1);
+    assert_true(cJSON_AddNumberToObject(curve, "generation_error", 9) != NULL);
+    cJSON_SetNumberValue(cJSON_GetObjectItem(curve, "total_error"), 9.5);
+    assert_int_equal(case_report_read(document, &again, &err), 0);
+    second = print_report(&again);
     assert_string_equal(second, first);
     free(first);
     free(second);
@@ -353,6 +394,7 @@ int main(void) {
         cmocka_unit_test(json_comes_back),
         cmocka_unit_test(json_that_is_none_is_refused),
         cmocka_unit_test(bytes_come_back),
+        cmocka_unit_test(unknown_sources_are_left_out),
         cmocka_unit_test(damaged_bytes_are_refused),
         cmocka_unit_test(csv_is_one_table),
         cmocka_unit_test(csv_has_all_theories),
