@@ -1,4 +1,4 @@
-/* Generation error of the area in contact (edges): non-Gaussian surfaces of several generators are
+/* How far areas in contact (edges) of non-Gaussian surfaces of several iterations differ: they are
  * pressed on a half-space. Differences are of pairs, in percent of the area of the default's
  * surfaces.
  *
@@ -9,8 +9,8 @@
  * profiles alone.
  *
  * "other" is momentum down to the error of the default, "longer" the default down to half of it;
- * "bound" is the one that studies form from the two (FORMULAS.md, F15.14). "plain" is 1500 plain
- * iterations.
+ * "bound" is |other| and the change by the longer ones, continued with the logarithm of eps_h to
+ * half of it. "plain" is 1500 plain iterations.
  */
 #include "core/contact/area.h"
 #include "core/contact/contact.h"
