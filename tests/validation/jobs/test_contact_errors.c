@@ -260,7 +260,7 @@ static void errors_of_solvers_cover(void **state) {
     " \"length_ratio\": 2, \"rms_slope\": 0.1, \"points_per_wavelength\": 16, \"heights\":"        \
     " {\"distribution\": \"" heights "\", \"shape\": 1}}, \"contact\": {\"model\": \"full\","      \
     " \"poisson\": " poisson ", \"gap_weighting\": \"dual\", \"levels\": [8, 16],"                 \
-    " \"law_difference\": \"none\", \"cell_error\": \"none\", \"transition_depth\": " depth ","  \
+    " \"law_difference\": \"none\", \"cell_error\": \"none\", \"transition_depth\": " depth ","    \
     " \"pressures\": {\"values\": [0.03, 0.1, 0.3]}}}"
 
 /* What columns of elements change that widen with depth, which levels do not show, is within its
