@@ -252,6 +252,13 @@ static size_t steps_of(double error) {
     return steps;
 }
 
+/* Returns whether heights are translated from a Gaussian field: they have waves shorter than the
+ * band's, for which profiles need a level more. */
+static bool is_translated(const cJSON *parameters) {
+    const cJSON *law = json_at(parameters, "/surface/heights/law");
+    return cJSON_IsString(law) && strcmp(law->valuestring, "translation") == 0;
+}
+
 /* Reads or chooses the levels: from the coarsest that is solved up to the one that the study names,
  * or to one that is fine enough, as far as that is known in advance. */
 static void read_ladder(struct choices *out, const cJSON *document, const cJSON *parameters,
@@ -266,7 +273,9 @@ static void read_ladder(struct choices *out, const cJSON *document, const cJSON 
     if (named > 0)
         points = cJSON_GetArrayItem(levels, (int)named - 1)->valuedouble;
     if (out->mesh) {
-        size_t count = LADDER_LEAST + (out->profile ? steps_of(out->target.error) : 0);
+        size_t count = LADDER_LEAST;
+        if (out->profile)
+            count += steps_of(out->target.error) + is_translated(parameters);
         out->levels = count < LADDER_MOST ? count : LADDER_MOST;
         for (size_t l = 0; l < out->levels; l++)
             out->ladder[l] = ldexp(COARSEST, (int)l);
