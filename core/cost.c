@@ -8,7 +8,7 @@
 /* Nanoseconds a point of a Gaussian surface (bench_surface). */
 static const double GAUSSIAN_NS = 6;
 /* ... and of a table look-up of its height, with random amplitudes. */
-static const double TRANSLATION_NS = 5;
+static const double TRANSLATION_NS = 3;
 /* bench_nongaussian: nanoseconds a point and iteration; iterations after which plain alternation
  * stalls; plain iterations after the relaxed ones. */
 static const double ITERATION_NS = 15, PLAIN_ITERATIONS = 120, LAST_ITERATIONS = 3;
@@ -22,9 +22,9 @@ static const double FAST_ITERATION_NS = 9.5, FAST_ITERATIONS = 65;
 static const double REACH = 56, FALL = 0.8, SKEWED = 5;
 /* Nanoseconds a point of refined summits and of spectral curvatures (bench_summits). */
 static const double REFINED_NS = 15, SPECTRAL_CURVATURE_NS = 4;
-/* Nanoseconds a point of psd_measure and acf_measure together, fitted to surfaces of 256 x 256 to
- * 8192 x 8192 points. */
-static const double SPECTRA_NS = 17;
+/* Nanoseconds a point of the spectra of heights (bench_statistics, translated surfaces), beside
+ * those of rings below. */
+static const double SPECTRA_NS = 10;
 /* Random amplitudes (bench_statistics): nanoseconds a mode of the half plane, to be drawn and
  * summed; a point, for the field of the autocorrelation; a value of a ring, for exact sums. Fitted
  * to 512 x 512 and 1024 x 1024 points and profiles of 4096 and 65536, 2 to 16 a shortest wave. */
@@ -65,8 +65,9 @@ double cost_summits(enum summit_stencil stencil, enum summit_curvature curvature
     return curvature == CURVATURE_SPECTRAL ? SPECTRAL_CURVATURE_NS : 0;
 }
 
-double cost_spectra(void) {
-    return SPECTRA_NS;
+double cost_spectra(const struct grid *grid) {
+    double rings = (double)radial_bins(grid) + (double)acf_lags(grid);
+    return SPECTRA_NS * (double)grid_points(grid) + RING_NS * rings;
 }
 
 double cost_random_amplitudes(const struct grid *grid, size_t mode_x, size_t mode_y) {

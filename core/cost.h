@@ -9,11 +9,12 @@
 #include "core/surface/surface.h"
 
 /* Nanoseconds a point and realisation: to generate a surface (non-Gaussian ones by the number of
- * iterations expected for their tolerance and heights), to find its summits, and to measure the
- * spectral density and autocorrelation of its heights. */
+ * iterations expected for their tolerance and heights), and to find its summits. */
 double cost_generation(const struct surface_options *options, const struct grid *grid);
 double cost_summits(enum summit_stencil stencil, enum summit_curvature curvature);
-double cost_spectra(void);
+/* Nanoseconds a realisation: to measure moments, spectral density and autocorrelation of its
+ * heights, up to the waves of the grid (core/statistics/spectra/whole_band.h). */
+double cost_spectra(const struct grid *grid);
 /* Nanoseconds a realisation: to draw random amplitudes, and to measure what the drawn spectrum has
  * (core/statistics/spectra/spectral_band.h) and add it up exactly. */
 double cost_random_amplitudes(const struct grid *grid, size_t mode_x, size_t mode_y);

@@ -230,17 +230,31 @@ void generator_aim(struct generator *g, const struct surface_aim *aim) {
         nongaussian_aim(g->nongaussian, aim);
 }
 
+/* Computes heights from the spectrum, those of a translated surface strip by strip in cache. */
+static void heights_fill(struct generator *g, double *z) {
+    const struct grid *grid = &g->modes->grid;
+    if (g->modes->translation == NULL) {
+        transform_inverse(g->transform, z);
+        return;
+    }
+    const struct height_function *function = translation_function(g->modes->translation);
+    transform_inverse_columns(g->transform);
+    for (size_t j = 0; j < grid->ny; j += TRANSFORM_ROWS) {
+        size_t rows = grid->ny - j < TRANSFORM_ROWS ? grid->ny - j : TRANSFORM_ROWS;
+        double *strip = z + j * grid->nx;
+        transform_inverse_rows(g->transform, j, rows, strip);
+        height_function_apply(function, g->modes->height, rows * grid->nx, strip);
+    }
+}
+
 int generator_run(struct generator *g, struct random_key key, double *z,
                   struct surface_report *report, struct error *err) {
     spectrum_draw(g, key);
     if (g->drawn != NULL)
         drawn_measure(g);
-    transform_inverse(g->transform, z);
+    heights_fill(g, z);
     if (g->nongaussian != NULL)
         return nongaussian_run(g->nongaussian, g->transform, key, z, report, err);
-    if (g->modes->translation != NULL)
-        height_function_apply(translation_function(g->modes->translation), g->modes->height,
-                              grid_points(&g->modes->grid), z);
     if (report != NULL)
         *report = (struct surface_report){.end = END_DIRECT};
     return 0;

@@ -200,17 +200,20 @@ struct measured {
     struct moments moments; /* of its own spectrum */
 };
 
-/* Fills the parameters of a surface whose spectrum is known: constants of all surfaces, or what
- * this spectrum has, and what depends on heights. */
-static void known_fill(const struct statistics_workspace *work, const struct modes *modes,
-                       const struct height_sums *sums, struct measured *out) {
+/* Fills the parameters of a surface: constants of all surfaces, or what its spectrum has, and what
+ * depends on heights, about their mean. */
+static void measured_fill(const struct statistics_workspace *work, const struct modes *modes,
+                          double mean, const struct height_sums *sums, struct measured *out) {
     *out = (struct measured){work->constants, work->moments};
     struct roughness *roughness = &out->roughness;
     if (!surface_case_exact(&work->one_case->surface))
         spectral_band_moments(work->spectra.band, modes, &out->moments, roughness);
-    double variance = roughness->rms_height * roughness->rms_height;
-    roughness->skewness = sums->third / (variance * roughness->rms_height);
-    roughness->kurtosis = sums->fourth / (variance * variance);
+    double variance = roughness->rms_height * roughness->rms_height, square = mean * mean;
+    double third = sums->third - mean * (3 * variance + square);
+    double fourth = sums->fourth - 4 * mean * sums->third + 3 * square * (2 * variance + square);
+    roughness->mean = mean;
+    roughness->skewness = third / (variance * roughness->rms_height);
+    roughness->kurtosis = fourth / (variance * variance);
     roughness->lowest = sums->lowest;
     roughness->highest = sums->highest;
 }
@@ -220,27 +223,21 @@ static int measure_surface(struct statistics_workspace *work, const struct reali
                            struct statistics_tally *tally, struct measured *out,
                            struct error *err) {
     const struct statistics_case *one_case = work->one_case;
-    const struct grid *grid = &one_case->surface.grid;
     struct height_sums sums;
-    bool known = realisation->modes != NULL; /* then heights have no mean, too */
+    double mean;
     const struct surface_pass pass = {.finder = work->finder,
                                       .bins = &one_case->height,
                                       .scale = tally->scales.height,
                                       .counts = tally->counts.height,
-                                      .sums = known ? &sums : NULL,
+                                      .sums = &sums,
                                       .summits = &work->summits[SIDE_SUMMITS],
                                       .pits = &work->summits[SIDE_PITS]};
-    int status = surface_pass_run(&pass, grid, realisation->z, err);
+    int status = surface_pass_run(&pass, &one_case->surface.grid, realisation->z, err);
     if (status != 0)
         return status;
-    if (known)
-        known_fill(work, realisation->modes, &sums, out);
-    else {
-        roughness_measure(grid, realisation->z, &out->roughness);
-        status = roughness_spectral(grid, realisation->z, &out->moments, err);
-    }
-    if (status != 0)
-        return status;
+    const struct modes *modes = spectra_modes(&work->spectra, realisation, &mean);
+    measured_fill(work, modes, mean, &sums, out);
+    spectra_measure(&work->spectra, modes, tally);
     if (!statistics_case_symmetric(one_case))
         return 0;
     return summit_list_append(&work->summits[SIDE_SUMMITS], &work->summits[SIDE_PITS], err);
@@ -252,8 +249,6 @@ static int realise(void *workspace, const struct realisation *realisation, void 
     const struct grid *grid = &work->one_case->surface.grid;
     struct measured measured;
     int status = measure_surface(work, realisation, tally, &measured, err);
-    if (status == 0)
-        status = spectra_measure(&work->spectra, realisation, grid, tally, err);
     if (status != 0)
         return status;
     statistics_tally_add(tally, realisation->key.realisation, grid_points(grid), work->summits);

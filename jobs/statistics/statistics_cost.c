@@ -27,8 +27,6 @@ static double expected_of_waves(const struct surface_case *surface) {
 static double expected_seconds(const struct statistics_case *one_case) {
     double points = (double)grid_points(&one_case->surface.grid);
     double nanoseconds = cost_generation(&one_case->surface.options, &one_case->surface.grid);
-    if (!surface_case_band_limited(&one_case->surface))
-        nanoseconds += cost_spectra() * CHANGES_COST;
     double summits = 2 * cost_summits(one_case->stencil, one_case->curvature); /* and pits */
     nanoseconds += summits;
     for (size_t l = 0; l < one_case->level_count; l++) {
@@ -36,6 +34,8 @@ static double expected_seconds(const struct statistics_case *one_case) {
         nanoseconds += summits / (one_case->surface.dimension == 2 ? part * part : part);
     }
     nanoseconds = nanoseconds * points + expected_of_waves(&one_case->surface);
+    if (!surface_case_band_limited(&one_case->surface))
+        nanoseconds += cost_spectra(&one_case->surface.grid) * CHANGES_COST;
     return 1e-4 + 1e-9 * nanoseconds * cost_caches(points) + statistics_law_seconds(one_case) +
            like_patch_seconds(&one_case->like);
 }

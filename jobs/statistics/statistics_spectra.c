@@ -53,121 +53,115 @@ void spectra_reference(const struct modes *modes, double *wave_number, double *d
             density[a] = sum / (double)used;
 }
 
-static bool scratch_create(struct spectra *out, size_t most) {
-    size_t samples = out->sizes.density_changes > 0 ? grid_points(&out->coarse) : 1;
-    out->abscissa = array_create(most, sizeof(double));
-    out->measured = array_create(most, sizeof(double));
-    out->reference = array_create(most, sizeof(double));
-    out->changed = array_create(most, sizeof(double));
-    out->samples = array_create(samples, sizeof(double));
-    return out->abscissa != NULL && out->measured != NULL && out->reference != NULL &&
-           out->changed != NULL && out->samples != NULL;
+/* Surfaces with waves beyond the band are measured by a transform of all waves of the grid. */
+static int whole_create(struct spectra *out, const struct grid *grid, struct error *err) {
+    bool halved;
+    const struct grid coarse = coarser(grid, &halved);
+    bool changes = out->sizes.density_changes > 0;
+    int status = whole_band_create(&out->whole, grid, changes ? &coarse : NULL, err);
+    if (status == 0 && changes)
+        status = spectral_band_create(&out->coarse, &coarse, coarse.nx / 2, coarse.ny / 2, err);
+    return status;
 }
 
 int spectra_create(struct spectra *out, const struct statistics_case *one_case,
                    const struct modes *modes, struct error *err) {
-    bool halved;
-    *out = (struct spectra){.sizes = spectra_sizes(one_case),
-                            .coarse = coarser(&one_case->surface.grid, &halved)};
+    *out = (struct spectra){.sizes = spectra_sizes(one_case)};
+    const struct grid *grid = &modes->grid;
     size_t densities = out->sizes.densities, correlations = out->sizes.correlations;
+    const struct surface_band own = surface_case_own_band(&one_case->surface);
+    int status = 0;
     if (densities == 0)
         return 0;
     size_t most = densities > correlations ? densities : correlations;
-    if (!scratch_create(out, most)) {
-        spectra_clear(out);
-        return error_memory(err, (4 * most + grid_points(&modes->grid) / 2) * sizeof(double),
-                            "spectra");
-    }
-    spectra_reference(modes, out->abscissa, out->reference);
-    if (!surface_case_band_limited(&one_case->surface))
-        return 0;
-    int status = spectral_band_create(&out->band, &modes->grid, modes->mode_x, modes->mode_y, err);
-    if (status != 0)
+    out->measured = array_create(most, sizeof(double));
+    out->changed = array_create(most, sizeof(double));
+    out->reference = array_create(most, sizeof(double));
+    if (out->measured == NULL || out->changed == NULL || out->reference == NULL)
+        status = error_memory(err, 3 * most * sizeof(double), "spectra");
+    if (status == 0)
+        status = spectral_band_create(&out->band, grid, own.x, own.y, err);
+    if (status == 0 && !surface_case_band_limited(&one_case->surface))
+        status = whole_create(out, grid, err);
+    if (status == 0)
+        spectra_reference(modes, out->measured, out->reference);
+    else
         spectra_clear(out);
     return status;
 }
 
 double spectra_bytes(const struct statistics_case *one_case) {
     const struct grid *grid = &one_case->surface.grid;
-    const struct surface_band band = surface_case_band(&one_case->surface);
+    const struct surface_band own = surface_case_own_band(&one_case->surface);
+    const struct spectra_sizes sizes = spectra_sizes(one_case);
+    bool halved;
+    const struct grid coarse = coarser(grid, &halved);
     if (surface_case_exact(&one_case->surface))
         return 0;
+    double bytes = spectral_band_bytes(grid, own.x, own.y);
     if (surface_case_band_limited(&one_case->surface))
-        return spectral_band_bytes(grid, band.x, band.y);
-    return 26 * (double)grid_points(grid); /* of a transform of the grid */
+        return bytes;
+    bytes += whole_band_bytes(grid, sizes.density_changes > 0 ? &coarse : NULL);
+    if (sizes.density_changes > 0)
+        bytes += spectral_band_bytes(&coarse, coarse.nx / 2, coarse.ny / 2);
+    return bytes;
 }
 
 void spectra_clear(struct spectra *spectra) {
     spectral_band_destroy(&spectra->band);
-    free(spectra->abscissa);
+    spectral_band_destroy(&spectra->coarse);
+    whole_band_destroy(&spectra->whole);
     free(spectra->measured);
-    free(spectra->reference);
-    free(spectra->samples);
     free(spectra->changed);
-    *spectra = (struct spectra){.coarse = {0}};
+    free(spectra->reference);
+    *spectra = (struct spectra){.band = NULL};
 }
 
-static void sample(const struct grid *grid, const double *z, const struct grid *to, double *out) {
-    for (size_t j = 0; j < to->ny; j++)
-        for (size_t i = 0; i < to->nx; i++)
-            out[j * to->nx + i] = z[2 * j * grid->nx + 2 * i];
+const struct modes *spectra_modes(struct spectra *spectra, const struct realisation *realisation,
+                                  double *mean) {
+    *mean = 0;
+    if (spectra->whole == NULL)
+        return realisation->modes;
+    *mean = whole_band_measure(spectra->whole, realisation->z);
+    return whole_band_modes(spectra->whole);
 }
 
-static int measure_density(struct spectra *spectra, const struct grid *grid, const double *z,
-                           struct statistics_tally *tally, struct error *err) {
+static void add_density(struct spectra *spectra, const struct modes *modes,
+                        const struct modes *coarser, struct statistics_tally *tally) {
     const double *measured = spectra->measured, *reference = spectra->reference;
-    size_t changes = spectra->sizes.density_changes;
-    int status = psd_measure(grid, z, spectra->abscissa, spectra->measured, err);
-    for (size_t a = 0; a < spectra->sizes.densities && status == 0; a++)
-        tally_sums_add(&tally->density, a, measured[a] / reference[a], 1);
-    if (status == 0 && changes > 0)
-        status = psd_measure(&spectra->coarse, spectra->samples, spectra->abscissa,
-                             spectra->changed, err);
-    for (size_t a = 0; a < changes && status == 0; a++)
-        tally_sums_add(&tally->density_change, a,
-                       (measured[a] - spectra->changed[a]) / reference[a], 1);
-    return status;
-}
-
-static int measure_correlation(struct spectra *spectra, const struct grid *grid, const double *z,
-                               struct statistics_tally *tally, struct error *err) {
-    const double *measured = spectra->measured;
-    size_t changes = spectra->sizes.correlation_changes;
-    int status = acf_measure(grid, z, spectra->abscissa, spectra->measured, err);
-    for (size_t a = 0; a < spectra->sizes.correlations && status == 0; a++)
-        tally_sums_add(&tally->correlation, a, measured[a], 1);
-    if (status == 0 && changes > 0)
-        status = acf_measure(&spectra->coarse, spectra->samples, spectra->abscissa,
-                             spectra->changed, err);
-    for (size_t a = 0; a < changes && status == 0; a++)
-        tally_sums_add(&tally->correlation_change, a, measured[2 * a] - spectra->changed[a], 1);
-    return status;
-}
-
-/* Adds what a known spectrum has, whose changes are 0. */
-static void add_known(struct spectra *spectra, const struct modes *modes,
-                      struct statistics_tally *tally) {
     spectral_band_density(spectra->band, modes, spectra->measured);
     for (size_t a = 0; a < spectra->sizes.densities; a++)
-        tally_sums_add(&tally->density, a, spectra->measured[a] / spectra->reference[a], 1);
-    spectral_band_correlation(spectra->band, modes, spectra->measured);
-    for (size_t a = 0; a < spectra->sizes.correlations; a++)
-        tally_sums_add(&tally->correlation, a, spectra->measured[a], 1);
+        tally_sums_add(&tally->density, a, measured[a] / reference[a], 1);
+    if (coarser == NULL)
+        return;
+    spectral_band_density(spectra->coarse, coarser, spectra->changed);
+    for (size_t a = 0; a < spectra->sizes.density_changes; a++)
+        tally_sums_add(&tally->density_change, a,
+                       (measured[a] - spectra->changed[a]) / reference[a], 1);
 }
 
-int spectra_measure(struct spectra *spectra, const struct realisation *realisation,
-                    const struct grid *grid, struct statistics_tally *tally, struct error *err) {
-    const double *z = realisation->z;
-    if (spectra->sizes.densities == 0)
-        return 0;
-    if (spectra->band != NULL) {
-        add_known(spectra, realisation->modes, tally);
-        return 0;
-    }
-    if (spectra->sizes.density_changes > 0)
-        sample(grid, z, &spectra->coarse, spectra->samples);
-    int status = measure_density(spectra, grid, z, tally, err);
-    return status != 0 ? status : measure_correlation(spectra, grid, z, tally, err);
+static void add_correlation(struct spectra *spectra, const struct modes *modes,
+                            const struct modes *coarser, struct statistics_tally *tally) {
+    const double *measured = spectra->measured;
+    spectral_band_correlation(spectra->band, modes, spectra->measured);
+    for (size_t a = 0; a < spectra->sizes.correlations; a++)
+        tally_sums_add(&tally->correlation, a, measured[a], 1);
+    if (coarser == NULL)
+        return;
+    spectral_band_correlation(spectra->coarse, coarser, spectra->changed);
+    for (size_t a = 0; a < spectra->sizes.correlation_changes; a++)
+        tally_sums_add(&tally->correlation_change, a, measured[2 * a] - spectra->changed[a], 1);
+}
+
+void spectra_measure(struct spectra *spectra, const struct modes *modes,
+                     struct statistics_tally *tally) {
+    const struct modes *coarser = NULL;
+    if (spectra->band == NULL)
+        return;
+    if (spectra->whole != NULL)
+        coarser = whole_band_coarser(spectra->whole);
+    add_density(spectra, modes, coarser, tally);
+    add_correlation(spectra, modes, coarser, tally);
 }
 
 /* The curves "psd" and "acf" with their errors, from measured or prescribed spectra. */

@@ -5,6 +5,7 @@
 #define RUGO_JOBS_STATISTICS_STATISTICS_SPECTRA_H
 
 #include "core/statistics/spectra/spectral_band.h"
+#include "core/statistics/spectra/whole_band.h"
 #include "jobs/statistics/statistics_tally.h"
 #include "schema/result/result.h"
 
@@ -13,11 +14,11 @@ struct spectra_sizes spectra_sizes(const struct statistics_case *one_case);
 /* The workspace for measuring, made once a case. */
 struct spectra {
     struct spectra_sizes sizes;
-    struct spectral_band *band;  /* owned; NULL unless spectra are measured and known */
-    double *abscissa, *measured; /* owned, scratch */
-    struct grid coarse;          /* of every second point, where changes are measured */
-    double *samples, *changed;   /* owned, scratch: its heights, what is measured on it */
-    double *reference; /* owned, densities: prescribed density, its mean where that is 0 */
+    struct spectral_band *band;   /* owned, as all below; NULL unless spectra are measured */
+    struct whole_band *whole;     /* NULL where the spectrum of a realisation is known */
+    struct spectral_band *coarse; /* of every second point; NULL unless changes are measured */
+    double *measured, *changed;   /* scratch */
+    double *reference;            /* densities: prescribed density, its mean where that is 0 */
 };
 /* Fills the densities by which measured ones are divided before they are summed, so that sums are
  * exact: radial_bins prescribed densities, their mean where that is 0. */
@@ -25,8 +26,13 @@ void spectra_reference(const struct modes *modes, double *wave_number, double *d
 int spectra_create(struct spectra *out, const struct statistics_case *one_case,
                    const struct modes *modes, struct error *err);
 void spectra_clear(struct spectra *spectra);
-int spectra_measure(struct spectra *spectra, const struct realisation *realisation,
-                    const struct grid *grid, struct statistics_tally *tally, struct error *err);
+/* Returns the spectrum of a realisation, without its mean, which it fills. It is measured where it
+ * is not known, and valid until the next one. */
+const struct modes *spectra_modes(struct spectra *spectra, const struct realisation *realisation,
+                                  double *mean);
+/* Adds density and correlation of the spectrum that spectra_modes has returned last. */
+void spectra_measure(struct spectra *spectra, const struct modes *modes,
+                     struct statistics_tally *tally);
 /* Returns the peak bytes of the workspace and of what is measured with it. */
 double spectra_bytes(const struct statistics_case *one_case);
 

@@ -1,5 +1,8 @@
 #include "core/surface/translation/height_function.h"
+#include "core/vectors.h"
 #include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
 #include <stdlib.h>
 
 /* Nodes of the table lie SCORE_STEP apart, up to SCORE_MOST on either side. A Gaussian value lies
@@ -8,9 +11,14 @@ enum { NODES_A_UNIT = 256, SCORE_MOST = 9, NODES = 2 * SCORE_MOST * NODES_A_UNIT
 static const double SCORE_STEP = 1.0 / NODES_A_UNIT;
 
 /* Between nodes f is the cubic of their values and slopes (Hermite), whose error is that of f over
- * four times the step: 1e-12. */
+ * four times the step: 1e-12. A cubic is the sum of of[n] t^n with t in [0, 1] from node to node.
+ */
+struct cubic {
+    double of[4];
+};
 struct height_function {
     double height[NODES], slope[NODES]; /* f and f', at rising scores */
+    struct cubic cubics[NODES - 1];
     struct hermite_powers powers;
 };
 
@@ -57,6 +65,15 @@ static int nodes_fill(struct height_function *function, const struct heights *he
                              function->height[node]);
     }
     return 0;
+}
+
+static void cubics_fill(struct height_function *function) {
+    for (size_t node = 0; node + 1 < NODES; node++) {
+        double a = function->height[node], b = function->height[node + 1];
+        double p = function->slope[node] * SCORE_STEP, q = function->slope[node + 1] * SCORE_STEP;
+        function->cubics[node] =
+            (struct cubic){{a, p, 3 * (b - a) - 2 * p - q, 2 * (a - b) + p + q}};
+    }
 }
 
 /* --- Hermite's series --- */
@@ -115,6 +132,7 @@ int height_function_create(struct height_function **out, const struct heights *h
         height_function_destroy(&function);
         return status;
     }
+    cubics_fill(function);
     powers_fill(function);
     *out = function;
     return 0;
@@ -177,11 +195,9 @@ double hermite_gaussian_correlation(const struct hermite_powers *powers, double 
 
 /* Returns the cubic between two nodes, and its slope; t in [0, 1]. */
 static struct height_slope cubic(const struct height_function *function, size_t node, double t) {
-    double a = function->height[node], b = function->height[node + 1];
-    double p = function->slope[node] * SCORE_STEP, q = function->slope[node + 1] * SCORE_STEP;
-    double second = 3 * (b - a) - 2 * p - q, third = 2 * (a - b) + p + q;
-    return (struct height_slope){a + t * (p + t * (second + t * third)),
-                                 (p + t * (2 * second + t * 3 * third)) / SCORE_STEP};
+    const double *of = function->cubics[node].of;
+    return (struct height_slope){of[0] + t * (of[1] + t * (of[2] + t * of[3])),
+                                 (of[1] + t * (2 * of[2] + t * 3 * of[3])) / SCORE_STEP};
 }
 
 /* Beyond the table f goes on along its outermost slopes. */
@@ -210,15 +226,24 @@ static size_t node_below(const struct height_function *function, double height) 
     return low;
 }
 
-double height_function_inverse(const struct height_function *function, double height) {
-    size_t last = NODES - 1;
-    if (height <= function->height[0] || height >= function->height[last]) {
-        size_t node = height <= function->height[0] ? 0 : last;
-        double beyond = height - function->height[node], slope = function->slope[node];
-        return node_score(node) + (slope > SLOPE_LEAST ? beyond / slope : 0);
+/* Returns the node below a height within the table, first looking near another one. */
+static size_t node_below_near(const struct height_function *function, double height, size_t near) {
+    enum { REACH = 8 };
+    for (int tries = 0; tries < REACH; tries++) {
+        if (height < function->height[near])
+            near--;
+        else if (height >= function->height[near + 1])
+            near++;
+        else
+            return near;
     }
-    size_t node = node_below(function, height);
-    double low = 0, high = 1, t = 0.5, step = 1;
+    return node_below(function, height);
+}
+
+/* Returns the score of a height between two nodes, by Newton's steps from the chord. */
+static double score_between(const struct height_function *function, size_t node, double height) {
+    double a = function->height[node], b = function->height[node + 1];
+    double low = 0, high = 1, t = b > a ? (height - a) / (b - a) : 0.5, step = 1;
     for (int tries = 0; tries < 60 && fabs(step) > 1e-14; tries++) {
         struct height_slope at = cubic(function, node, t);
         if (at.height <= height)
@@ -233,14 +258,59 @@ double height_function_inverse(const struct height_function *function, double he
     return node_score(node) + t * SCORE_STEP;
 }
 
+/* As height_function_inverse. *node, below NODES - 1, is where a search starts, and is left where
+ * it ends. */
+static double inverse_near(const struct height_function *function, double height, size_t *node) {
+    size_t last = NODES - 1;
+    if (!(height > function->height[0] && height < function->height[last])) {
+        size_t end = height <= function->height[0] ? 0 : last;
+        double beyond = height - function->height[end], slope = function->slope[end];
+        return node_score(end) + (slope > SLOPE_LEAST ? beyond / slope : 0);
+    }
+    *node = node_below_near(function, height, *node);
+    return score_between(function, *node, height);
+}
+
+double height_function_inverse(const struct height_function *function, double height) {
+    size_t node = NODES / 2;
+    return inverse_near(function, height, &node);
+}
+
+/* Replaces values within the table. */
+WIDE_VECTORS static void within_apply(const double *restrict cubics, double factor, size_t n,
+                                      double *restrict z) {
+    for (size_t i = 0; i < n; i++) {
+        double at = (z[i] + SCORE_MOST) * NODES_A_UNIT;
+        int node = (int)at;
+        double t = at - node;
+        const double *of = cubics + 4 * node;
+        z[i] = factor * (of[0] + t * (of[1] + t * (of[2] + t * of[3])));
+    }
+}
+
+/* Returns whether all values lie within the table. */
+WIDE_VECTORS static bool all_within(size_t n, const double *z) {
+    int64_t outside = 0;
+    for (size_t i = 0; i < n; i++)
+        outside |= -(int64_t) !(fabs(z[i]) < SCORE_MOST);
+    return outside == 0;
+}
+
 void height_function_apply(const struct height_function *function, double factor, size_t n,
                            double *z) {
-    for (size_t i = 0; i < n; i++)
-        z[i] = factor * height_function_at(function, z[i]).height;
+    for (size_t first = 0; first < n; first += BATCH) {
+        size_t count = n - first < BATCH ? n - first : BATCH;
+        if (all_within(count, z + first))
+            within_apply(function->cubics[0].of, factor, count, z + first);
+        else
+            for (size_t i = first; i < first + count; i++)
+                z[i] = factor * height_function_at(function, z[i]).height;
+    }
 }
 
 void height_function_undo(const struct height_function *function, double factor, size_t n,
                           double *z) {
+    size_t node = NODES / 2;
     for (size_t i = 0; i < n; i++)
-        z[i] = height_function_inverse(function, z[i] / factor);
+        z[i] = inverse_near(function, z[i] / factor, &node);
 }
