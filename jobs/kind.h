@@ -68,6 +68,9 @@ struct realisation {
     const void *study;     /* the case */
     struct random_key key; /* the number of the realisation among others */
     const double *z;       /* heights on the grid of the case */
+    /* The Gaussian field on the same points that a translated surface is a function of, where the
+     * kind wants it; else NULL. */
+    const double *gaussian;
     struct surface_report report;
     const struct modes *modes; /* its own spectrum; NULL where it has waves beyond the band */
     /* Empty where the kind measures them itself; moments are of its own spectrum. */
@@ -105,6 +108,9 @@ struct job_kind {
     void (*estimate)(const void *study, struct study_cost *out);
     /* Returns the surface that realisations are made of; NULL for kinds without surfaces. */
     const struct surface_case *(*surface)(const void *study);
+    /* Returns whether a case wants the Gaussian field of its surfaces, which are translated. NULL:
+     * none does. */
+    bool (*wants_gaussian)(const void *study);
     bool measures_roughness; /* the kind measures roughness and moments itself: realisations come
                                 without them */
 

@@ -67,7 +67,8 @@ struct job_runner {
     struct surface_basis basis; /* of the generator */
     struct job_shared *own;     /* where none was given */
     void *workspace;
-    double *z; /* points of the own grid */
+    double *z;        /* points of the own grid */
+    double *gaussian; /* likewise, where the case wants it; else NULL */
 };
 
 void runner_destroy(struct job_runner **runner) {
@@ -78,6 +79,7 @@ void runner_destroy(struct job_runner **runner) {
         gone->kind->workspace_clear(gone->workspace);
     free(gone->workspace);
     free(gone->z);
+    free(gone->gaussian);
     job_shared_destroy(&gone->own);
     generator_destroy(&gone->generator);
     kind_case_destroy(gone->kind, &gone->study);
@@ -95,7 +97,14 @@ static int surface_make(struct job_runner *runner, struct error *err) {
     runner->basis.modes = generator_modes(runner->generator);
     modes_moments(runner->basis.modes, &runner->basis.moments);
     runner->z = array_create(points, sizeof *runner->z);
-    return runner->z != NULL ? 0 : error_memory(err, points * sizeof *runner->z, "a surface");
+    bool wanted =
+        runner->kind->wants_gaussian != NULL && runner->kind->wants_gaussian(runner->study);
+    if (wanted)
+        runner->gaussian = array_create(points, sizeof *runner->gaussian);
+    generator_keep_gaussian(runner->generator, runner->gaussian);
+    return runner->z != NULL && (!wanted || runner->gaussian != NULL)
+               ? 0
+               : error_memory(err, points * sizeof *runner->z, "a surface");
 }
 
 static int workspace_make(struct job_runner *runner, const struct job_shared *shared,
@@ -172,6 +181,7 @@ static int surface_measure(const struct job_runner *runner, struct realisation *
 static int surface_generate(struct job_runner *runner, struct realisation *realisation,
                             struct error *err) {
     realisation->z = runner->z;
+    realisation->gaussian = runner->gaussian;
     int status =
         generator_run(runner->generator, runner->key, runner->z, &realisation->report, err);
     if (status != 0)

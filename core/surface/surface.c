@@ -17,6 +17,7 @@ struct generator {
     size_t *row_length; /* 2 mode_y + 1: 1 + highest mx of the row with power; 0: none */
     uint64_t *words;    /* mode_x + 1, as row_drawn */
     double *row_drawn;  /* amplitudes of a row, where they are random; else NULL */
+    double *gaussian;   /* borrowed: where the Gaussian field is kept; NULL: nowhere */
 };
 
 static void amplitudes_fill(struct generator *g) {
@@ -225,6 +226,10 @@ static void drawn_measure(struct generator *g) {
         }
 }
 
+void generator_keep_gaussian(struct generator *g, double *gaussian) {
+    g->gaussian = gaussian;
+}
+
 void generator_aim(struct generator *g, const struct surface_aim *aim) {
     if (g->nongaussian != NULL)
         nongaussian_aim(g->nongaussian, aim);
@@ -243,6 +248,8 @@ static void heights_fill(struct generator *g, double *z) {
         size_t rows = grid->ny - j < TRANSFORM_ROWS ? grid->ny - j : TRANSFORM_ROWS;
         double *strip = z + j * grid->nx;
         transform_inverse_rows(g->transform, j, rows, strip);
+        if (g->gaussian != NULL)
+            memcpy(g->gaussian + j * grid->nx, strip, rows * grid->nx * sizeof *strip);
         height_function_apply(function, g->modes->height, rows * grid->nx, strip);
     }
 }

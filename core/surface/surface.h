@@ -37,6 +37,11 @@ double generator_bytes(const struct grid *grid, size_t mode_x, size_t mode_y,
 int generator_run(struct generator *generator, struct random_key key, double *z,
                   struct surface_report *report, struct error *err);
 
+/* From now on runs fill gaussian[grid_points], too, with the Gaussian field of unit variance that a
+ * translated surface is a function of; of other surfaces they leave it as it is. NULL: not wanted.
+ * Borrowed. */
+void generator_keep_gaussian(struct generator *generator, double *gaussian);
+
 /* Changes the tolerances and limits of the next runs; without effect where heights are Gaussian. */
 void generator_aim(struct generator *generator, const struct surface_aim *aim);
 

@@ -140,6 +140,10 @@ static const struct surface_case *surface_of(const void *one_case) {
     return &statistics->surface;
 }
 
+static bool wants_gaussian(const void *one_case) {
+    return statistics_case_wants_gaussian(one_case);
+}
+
 /* --- realisations --- */
 
 struct statistics_workspace {
@@ -161,20 +165,21 @@ static int workspace_create(void *workspace, const void *one_case,
     const struct statistics_case *statistics = one_case;
     const struct grid *grid = &statistics->surface.grid;
     const struct modes *modes = basis->modes;
-    /* otherwise heights are mapped point by point, and have waves up to the grid's */
-    bool limited = surface_case_band_limited(&statistics->surface);
+    /* heights that are set point by point have waves up to the grid's */
+    bool limited = surface_case_band_limited(&statistics->surface) || modes->translation != NULL;
+    const struct surface_band band = {limited ? modes->mode_x : grid->nx / 2,
+                                      limited ? modes->mode_y : grid->ny / 2};
     (void)shared;
     work->one_case = statistics;
     work->moments = basis->moments;
     if (surface_case_exact(&statistics->surface))
         statistics_constants(modes, &basis->moments, &work->constants);
     int status = summit_finder_create(&work->finder, grid, statistics->stencil,
-                                      statistics->curvature, limited ? modes->mode_x : grid->nx / 2,
-                                      limited ? modes->mode_y : grid->ny / 2, err);
+                                      statistics->curvature, band.x, band.y, err);
     if (status == 0)
-        status = levels_workspace_create(&work->levels, statistics,
-                                         limited ? modes->mode_x : grid->nx / 2,
-                                         limited ? modes->mode_y : grid->ny / 2, err);
+        status = statistics_case_translate(statistics, work->finder, modes->height, err);
+    if (status == 0)
+        status = levels_workspace_create(&work->levels, statistics, band, modes->height, err);
     if (status == 0)
         status = spectra_create(&work->spectra, statistics, modes, err);
     if (status == 0 && like_case_is_cut(&statistics->like))
@@ -232,6 +237,7 @@ static int measure_surface(struct statistics_workspace *work, const struct reali
                                       .sums = &sums,
                                       .summits = &work->summits[SIDE_SUMMITS],
                                       .pits = &work->summits[SIDE_PITS]};
+    summit_finder_gaussian(work->finder, realisation->gaussian);
     int status = surface_pass_run(&pass, &one_case->surface.grid, realisation->z, err);
     if (status != 0)
         return status;
@@ -252,8 +258,7 @@ static int realise(void *workspace, const struct realisation *realisation, void 
     if (status != 0)
         return status;
     statistics_tally_add(tally, realisation->key.realisation, grid_points(grid), work->summits);
-    status = levels_workspace_add(work->levels, realisation->key.realisation, realisation->z,
-                                  work->summits, tally, err);
+    status = levels_workspace_add(work->levels, realisation, work->summits, tally, err);
     if (status != 0)
         return status;
     const struct realisation_measures measures = {.roughness = &measured.roughness,
@@ -359,6 +364,7 @@ const struct job_kind STATISTICS_KIND = {
     .clear = clear_case,
     .estimate = estimate,
     .surface = surface_of,
+    .wants_gaussian = wants_gaussian,
     .measures_roughness = true,
     .workspace_size = sizeof(struct statistics_workspace),
     .workspace_create = workspace_create,

@@ -1,4 +1,5 @@
 #include "jobs/statistics/statistics_case.h"
+#include "core/surface/translation/translation.h"
 #include "jobs/like/like_parameters.h"
 #include "jobs/surface/surface_parameters.h"
 #include "jobs/target.h"
@@ -136,6 +137,19 @@ int statistics_case_read(struct statistics_case *out, const cJSON *parameters,
         statistics_case_clear(out);
     values_destroy(&values);
     return status;
+}
+
+bool statistics_case_wants_gaussian(const struct statistics_case *one_case) {
+    return surface_case_translated(&one_case->surface) &&
+           summit_needs_band(one_case->stencil, one_case->curvature);
+}
+
+int statistics_case_translate(const struct statistics_case *one_case, struct summit_finder *finder,
+                              double height, struct error *err) {
+    if (!statistics_case_wants_gaussian(one_case))
+        return 0;
+    return summit_finder_translate(finder, translation_function(one_case->surface.translation),
+                                   height, err);
 }
 
 void statistics_case_clear(struct statistics_case *one_case) {

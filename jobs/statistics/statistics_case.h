@@ -43,6 +43,13 @@ static inline size_t statistics_case_sides(const struct statistics_case *one_cas
     return statistics_case_symmetric(one_case) ? 1 : 2;
 }
 
+/* Returns whether summits are found by the Gaussian field of a translated surface. */
+bool statistics_case_wants_gaussian(const struct statistics_case *one_case);
+/* Makes a finder of such summits know the function of the field (summits.h). height: RMS height.
+ * Does nothing for other cases. */
+int statistics_case_translate(const struct statistics_case *one_case, struct summit_finder *finder,
+                              double height, struct error *err);
+
 /* Estimates memory, time and error of one realisation before anything ran (statistics_cost.c). */
 void statistics_case_estimate(const struct statistics_case *one_case, struct study_cost *out);
 

@@ -68,7 +68,8 @@ void statistics_case_estimate(const struct statistics_case *one_case, struct stu
     const struct surface_case *surface = &one_case->surface;
     const struct grid *grid = &surface->grid;
     const struct surface_band band = surface_case_band(surface);
-    const struct surface_band own = surface_case_own_band(surface);
+    const struct surface_band sampled = surface_case_sampled_band(surface);
+    bool wanted = statistics_case_wants_gaussian(one_case);
     double alpha;
     double summits =
         fmax(1, spectrum_expected_summits(&surface->spectrum, grid, surface->length_ratio,
@@ -78,12 +79,13 @@ void statistics_case_estimate(const struct statistics_case *one_case, struct stu
     out->nx = grid->nx;
     out->ny = grid->ny;
     /* a list of summits doubles as it grows */
-    out->memory_bytes =
-        surface_case_bytes(surface) + statistics_law_bytes(one_case) +
-        summit_finder_bytes(grid, one_case->stencil, one_case->curvature, own.x, own.y) +
-        statistics_tally_bytes(one_case) + statistics_levels_bytes(one_case) +
-        like_patch_bytes(&one_case->like) + 6 * summits * sizeof(struct summit) +
-        spectra_bytes(one_case) + 6e6;
+    out->memory_bytes = surface_case_bytes(surface) + statistics_law_bytes(one_case) +
+                        summit_finder_bytes(grid, one_case->stencil, one_case->curvature, sampled.x,
+                                            sampled.y, wanted) +
+                        (wanted ? (double)grid_points(grid) * sizeof(double) : 0) +
+                        statistics_tally_bytes(one_case) + statistics_levels_bytes(one_case) +
+                        like_patch_bytes(&one_case->like) + 6 * summits * sizeof(struct summit) +
+                        spectra_bytes(one_case) + 6e6;
     out->seconds = expected_seconds(one_case);
     out->case_seconds = expected_case_seconds(one_case, summits);
     /* sum of the bins' errors over their sum: integral sqrt(p) / sqrt(N w), p near normal */

@@ -168,13 +168,14 @@ void statistics_levels_merge(struct statistics_levels *into, const struct statis
 
 double statistics_levels_bytes(const struct statistics_case *one_case) {
     double bytes = 0;
+    bool wanted = statistics_case_wants_gaussian(one_case);
     for (size_t l = 0; l < one_case->level_count; l++) {
         const struct statistics_case coarse = statistics_level_case(one_case, l);
         const struct grid *grid = &coarse.surface.grid;
-        bytes +=
-            2 * statistics_groups_bytes(SIDES, LEVEL_SUMS) + statistics_tally_bytes(&coarse) +
-            (double)grid_points(grid) * sizeof(double) +
-            summit_finder_bytes(grid, coarse.stencil, coarse.curvature, grid->nx / 2, grid->ny / 2);
+        bytes += 2 * statistics_groups_bytes(SIDES, LEVEL_SUMS) + statistics_tally_bytes(&coarse) +
+                 (wanted ? 2 : 1) * (double)grid_points(grid) * sizeof(double) +
+                 summit_finder_bytes(grid, coarse.stencil, coarse.curvature, grid->nx / 2,
+                                     grid->ny / 2, wanted);
     }
     return bytes;
 }
@@ -187,6 +188,7 @@ struct level_workspace {
     struct summit_finder *finder; /* owned, as all below */
     struct summit_list summits[SIDES];
     double *z;
+    double *gaussian; /* where summits are found by it; else NULL */
 };
 struct levels_workspace {
     struct grid grid; /* of the surfaces */
@@ -195,21 +197,29 @@ struct levels_workspace {
 };
 
 static int level_create(struct level_workspace *level, const struct statistics_case *one_case,
-                        size_t l, size_t mode_x, size_t mode_y, struct error *err) {
+                        size_t l, struct surface_band band, double height, struct error *err) {
     level->one_case = statistics_level_case(one_case, l);
     level->stride = one_case->strides[l];
     const struct grid *grid = &level->one_case.surface.grid;
-    size_t most_x = grid->nx / 2, most_y = grid->ny / 2;
-    level->z = array_create(grid_points(grid), sizeof *level->z);
-    if (level->z == NULL)
-        return error_memory(err, grid_points(grid) * sizeof *level->z, "a coarser surface");
-    return summit_finder_create(&level->finder, grid, one_case->stencil, one_case->curvature,
-                                mode_x < most_x ? mode_x : most_x,
-                                mode_y < most_y ? mode_y : most_y, err);
+    size_t points = grid_points(grid), most_x = grid->nx / 2, most_y = grid->ny / 2;
+    bool wanted = statistics_case_wants_gaussian(one_case);
+    level->z = array_create(points, sizeof *level->z);
+    if (wanted)
+        level->gaussian = array_create(points, sizeof *level->gaussian);
+    if (level->z == NULL || (wanted && level->gaussian == NULL))
+        return error_memory(err, points * sizeof *level->z, "a coarser surface");
+    int status = summit_finder_create(&level->finder, grid, one_case->stencil, one_case->curvature,
+                                      band.x < most_x ? band.x : most_x,
+                                      band.y < most_y ? band.y : most_y, err);
+    if (status == 0)
+        status = statistics_case_translate(one_case, level->finder, height, err);
+    if (status == 0)
+        summit_finder_gaussian(level->finder, level->gaussian);
+    return status;
 }
 
 int levels_workspace_create(struct levels_workspace **out, const struct statistics_case *one_case,
-                            size_t mode_x, size_t mode_y, struct error *err) {
+                            struct surface_band band, double height, struct error *err) {
     *out = NULL;
     if (one_case->level_count == 0)
         return 0;
@@ -220,7 +230,7 @@ int levels_workspace_create(struct levels_workspace **out, const struct statisti
     workspace->count = one_case->level_count;
     int status = 0;
     for (size_t l = 0; l < workspace->count && status == 0; l++)
-        status = level_create(&workspace->levels[l], one_case, l, mode_x, mode_y, err);
+        status = level_create(&workspace->levels[l], one_case, l, band, height, err);
     if (status != 0)
         levels_workspace_destroy(&workspace);
     *out = workspace;
@@ -237,6 +247,7 @@ void levels_workspace_destroy(struct levels_workspace **workspace) {
         for (size_t side = 0; side < SIDES; side++)
             summit_list_clear(&level->summits[side]);
         free(level->z);
+        free(level->gaussian);
     }
     free(gone);
     *workspace = NULL;
@@ -276,8 +287,8 @@ static void add_moments(struct statistics_groups *moments, const struct statisti
 }
 
 /* Measures the surface on one level as it is measured on its own grid. */
-static int level_add(struct level_workspace *level, const struct grid *from, uint64_t realisation,
-                     const double *z, struct statistics_tally *tally,
+static int level_add(struct level_workspace *level, const struct grid *from,
+                     const struct realisation *realisation, struct statistics_tally *tally,
                      struct statistics_groups *moments, struct error *err) {
     const struct grid *grid = &level->one_case.surface.grid;
     struct height_sums sums;
@@ -288,31 +299,36 @@ static int level_add(struct level_workspace *level, const struct grid *from, uin
                                       .sums = &sums,
                                       .summits = &level->summits[SIDE_SUMMITS],
                                       .pits = &level->summits[SIDE_PITS]};
-    sample(from, z, level->stride, grid, level->z);
+    sample(from, realisation->z, level->stride, grid, level->z);
+    if (level->gaussian != NULL)
+        sample(from, realisation->gaussian, level->stride, grid, level->gaussian);
     int status = surface_pass_run(&pass, grid, level->z, err);
     if (status == 0 && statistics_case_symmetric(&level->one_case))
         status = summit_list_append(&level->summits[SIDE_SUMMITS], &level->summits[SIDE_PITS], err);
     if (status != 0)
         return status;
-    statistics_tally_add(tally, realisation, grid_points(grid), level->summits);
-    add_moments(moments, tally, realisation, level->summits, sums.lowest, sums.highest);
+    uint64_t number = realisation->key.realisation;
+    statistics_tally_add(tally, number, grid_points(grid), level->summits);
+    add_moments(moments, tally, number, level->summits, sums.lowest, sums.highest);
     return 0;
 }
 
-int levels_workspace_add(struct levels_workspace *workspace, uint64_t realisation, const double *z,
+int levels_workspace_add(struct levels_workspace *workspace, const struct realisation *realisation,
                          const struct summit_list own[], struct statistics_levels *levels,
                          struct error *err) {
     int status = 0;
     if (workspace == NULL)
         return 0;
+    const double *z = realisation->z;
     double lowest = z[0], highest = z[0];
     for (size_t i = 1; i < grid_points(&workspace->grid); i++) {
         lowest = z[i] < lowest ? z[i] : lowest;
         highest = z[i] > highest ? z[i] : highest;
     }
-    add_moments(&levels->moments[0], &levels->own, realisation, own, lowest, highest);
+    add_moments(&levels->moments[0], &levels->own, realisation->key.realisation, own, lowest,
+                highest);
     for (size_t l = 0; l < workspace->count && status == 0; l++)
-        status = level_add(&workspace->levels[l], &workspace->grid, realisation, z,
+        status = level_add(&workspace->levels[l], &workspace->grid, realisation,
                            &levels->tallies[l], &levels->moments[l + 1], err);
     return status;
 }

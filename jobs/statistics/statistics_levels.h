@@ -42,14 +42,14 @@ struct statistics_case statistics_level_case(const struct statistics_case *one_c
 
 /* The workspace that measures the surfaces of one case on its levels. */
 struct levels_workspace;
-/* Borrows the case. *out is NULL where it has no levels. mode_x, mode_y as of summit_finder_create
- * for its own grid. */
+/* Borrows the case. *out is NULL where it has no levels. band: as of summit_finder_create for its
+ * own grid. height: RMS height of translated surfaces. */
 int levels_workspace_create(struct levels_workspace **out, const struct statistics_case *one_case,
-                            size_t mode_x, size_t mode_y, struct error *err);
+                            struct surface_band band, double height, struct error *err);
 void levels_workspace_destroy(struct levels_workspace **workspace);
-/* Adds a realisation to the levels, after its own tally has it. z and the summits are those of its
- * own grid. Without a workspace (NULL) it does nothing. */
-int levels_workspace_add(struct levels_workspace *workspace, uint64_t realisation, const double *z,
+/* Adds a realisation to the levels, after its own tally has it. The summits are those of its own
+ * grid. Without a workspace (NULL) it does nothing. */
+int levels_workspace_add(struct levels_workspace *workspace, const struct realisation *realisation,
                          const struct summit_list own[], struct statistics_levels *levels,
                          struct error *err);
 

@@ -69,7 +69,7 @@ int spectra_create(struct spectra *out, const struct statistics_case *one_case,
     *out = (struct spectra){.sizes = spectra_sizes(one_case)};
     const struct grid *grid = &modes->grid;
     size_t densities = out->sizes.densities, correlations = out->sizes.correlations;
-    const struct surface_band own = surface_case_own_band(&one_case->surface);
+    bool limited = surface_case_band_limited(&one_case->surface);
     int status = 0;
     if (densities == 0)
         return 0;
@@ -80,8 +80,9 @@ int spectra_create(struct spectra *out, const struct statistics_case *one_case,
     if (out->measured == NULL || out->changed == NULL || out->reference == NULL)
         status = error_memory(err, 3 * most * sizeof(double), "spectra");
     if (status == 0)
-        status = spectral_band_create(&out->band, grid, own.x, own.y, err);
-    if (status == 0 && !surface_case_band_limited(&one_case->surface))
+        status = spectral_band_create(&out->band, grid, limited ? modes->mode_x : grid->nx / 2,
+                                      limited ? modes->mode_y : grid->ny / 2, err);
+    if (status == 0 && !limited)
         status = whole_create(out, grid, err);
     if (status == 0)
         spectra_reference(modes, out->measured, out->reference);

@@ -4,6 +4,16 @@
 #include "core/surface/transform.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
+
+/* Of surfaces z = height f(g). */
+struct summit_translation {
+    const struct height_function *function; /* borrowed, as g; NULL: surfaces are z themselves */
+    double height;
+    const double *gaussian;
+    double *slope;            /* square of the slope of g at every point; owned, as below */
+    double complex *spectrum; /* of g; both where curvatures are spectral, NULL otherwise */
+};
 
 struct summit_finder {
     struct grid grid;
@@ -11,8 +21,9 @@ struct summit_finder {
     size_t mode_x, mode_y;
     size_t *columns;             /* one row's summits */
     struct transform *transform; /* spectral curvature: exact derivatives, NULL otherwise */
-    double *curvature;           /* of every point, likewise */
+    double *curvature;           /* of every point, of z or of g, likewise */
     struct refined *refined;     /* SUMMITS_REFINED, NULL otherwise */
+    struct summit_translation translation;
 };
 
 static int finder_fill(struct summit_finder *f, enum summit_curvature curvature,
@@ -58,31 +69,89 @@ void summit_finder_destroy(struct summit_finder **finder) {
         return;
     refined_destroy(&f->refined);
     transform_destroy(&f->transform);
+    free(f->translation.slope);
+    free(f->translation.spectrum);
     free(f->curvature);
     free(f->columns);
     free(f);
     *finder = NULL;
 }
 
+static size_t waves(const struct summit_finder *f) {
+    return (f->mode_x + 1) * f->grid.ny;
+}
+
+int summit_finder_translate(struct summit_finder *f, const struct height_function *function,
+                            double height, struct error *err) {
+    struct summit_translation *translation = &f->translation;
+    if (f->curvature != NULL && translation->slope == NULL) {
+        size_t points = grid_points(&f->grid);
+        translation->slope = array_create(points, sizeof *translation->slope);
+        translation->spectrum = array_create(waves(f), sizeof *translation->spectrum);
+        if (translation->slope == NULL || translation->spectrum == NULL)
+            return error_memory(err, points * sizeof *translation->slope, "slopes");
+    }
+    translation->function = function;
+    translation->height = height;
+    return 0;
+}
+
+void summit_finder_gaussian(struct summit_finder *f, const double *gaussian) {
+    f->translation.gaussian = gaussian;
+}
+
 double summit_finder_bytes(const struct grid *grid, enum summit_stencil stencil,
-                           enum summit_curvature curvature, size_t mode_x, size_t mode_y) {
+                           enum summit_curvature curvature, size_t mode_x, size_t mode_y,
+                           bool translated) {
     if (stencil == SUMMITS_REFINED)
         return refined_bytes(grid, mode_x, mode_y);
     double bytes = (double)grid->nx * sizeof(size_t);
     if (curvature == CURVATURE_SPECTRAL)
-        bytes += (double)grid_points(grid) * sizeof(double) +
-                 (double)(mode_x + 1) * (double)grid->ny * sizeof(double complex);
+        bytes += (translated ? 2 : 1) *
+                 ((double)grid_points(grid) * sizeof(double) +
+                  (double)(mode_x + 1) * (double)grid->ny * sizeof(double complex));
     return bytes;
 }
 
-/* Fills in -(z_xx + z_yy)/2 of every point (profiles -z_xx), exact for a band-limited surface. */
+/* Fills the squares of slopes of g from its spectrum, the curvatures being scratch. A wave of half
+ * the points of a side has no slope at them. */
+static void slopes_fill(struct summit_finder *f) {
+    const struct grid *grid = &f->grid;
+    const size_t ny = grid->ny, points = grid_points(grid);
+    for (int axis = 0; axis < (grid_is_profile(grid) ? 1 : 2); axis++) {
+        const double step = 2 * M_PI / (axis == 0 ? grid->lx : grid->ly);
+        double complex *mode = transform_spectrum(f->transform);
+        const double complex *from = f->translation.spectrum;
+        for (size_t mx = 0; mx <= f->mode_x; mx++)
+            for (size_t row = 0; row < ny; row++) {
+                double my = row <= f->mode_y ? (double)row : -(double)(ny - row);
+                bool half = axis == 0 ? 2 * mx == grid->nx : 2 * row == ny;
+                bool inside = (row <= f->mode_y || ny - row <= f->mode_y) && !half;
+                *mode++ = inside ? step * (axis == 0 ? (double)mx : my) * I * *from : 0;
+                from++;
+            }
+        transform_inverse(f->transform, f->curvature);
+        for (size_t i = 0; i < points; i++)
+            f->translation.slope[i] =
+                (axis == 0 ? 0 : f->translation.slope[i]) + f->curvature[i] * f->curvature[i];
+    }
+}
+
+/* Fills in -(z_xx + z_yy)/2 of every point (profiles -z_xx), exact for a band-limited surface. Of a
+ * translated one these are of g, with the squares of slopes. */
 static void curvature_fill(struct summit_finder *f, const double *z) {
     const struct grid *grid = &f->grid;
     size_t ny = grid->ny;
+    const bool translated = f->translation.function != NULL;
     double step_x = 2 * M_PI / grid->lx, step_y = grid_is_profile(grid) ? 0 : 2 * M_PI / grid->ly;
     double half = grid_is_profile(grid) ? 1 : 0.5;
-    transform_forward(f->transform, z);
+    transform_forward(f->transform, translated ? f->translation.gaussian : z);
     double complex *mode = transform_spectrum(f->transform);
+    if (translated) {
+        memcpy(f->translation.spectrum, mode, waves(f) * sizeof *mode);
+        slopes_fill(f);
+        memcpy(mode, f->translation.spectrum, waves(f) * sizeof *mode);
+    }
     for (size_t mx = 0; mx <= f->mode_x; mx++)
         for (size_t row = 0; row < ny; row++, mode++) {
             size_t my = row <= ny / 2 ? row : ny - row;
@@ -106,13 +175,25 @@ static double difference_curvature(const struct grid *grid, const double *z, siz
     return -(xx + yy) / 2;
 }
 
+/* Returns the curvature of a point from exact derivatives (F6.13). */
+static double spectral_curvature(const struct summit_finder *f, size_t point) {
+    const struct summit_translation *translation = &f->translation;
+    if (translation->function == NULL)
+        return f->curvature[point];
+    double g = translation->gaussian[point], half = grid_is_profile(&f->grid) ? 1 : 0.5;
+    double slope = height_function_at(translation->function, g).slope;
+    double bend = height_function_bend(translation->function, g);
+    return translation->height *
+           (slope * f->curvature[point] - half * bend * translation->slope[point]);
+}
+
 static int point_add(struct summit_finder *f, const double *z, size_t i, size_t j, bool mirrored,
                      struct summit_list *list, struct error *err) {
     const struct grid *grid = &f->grid;
     const double sign = mirrored ? -1 : 1;
     size_t point = j * grid->nx + i;
     double curvature =
-        f->curvature != NULL ? f->curvature[point] : difference_curvature(grid, z, i, j);
+        f->curvature != NULL ? spectral_curvature(f, point) : difference_curvature(grid, z, i, j);
     struct summit summit = {.x = (double)i * grid_dx(grid),
                             .y = grid_is_profile(grid) ? 0 : (double)j * grid_dy(grid),
                             .height = sign * z[point],
@@ -132,12 +213,29 @@ static struct three_rows rows_at(const struct grid *grid, const double *z, size_
                                z + (j + 1 < ny ? j + 1 : 0) * nx};
 }
 
+/* Appends refined summits to an empty list. Those of a translated surface lie where those of g
+ * do. */
+static int refine(struct summit_finder *f, const double *z, bool mirrored, struct summit_list *list,
+                  struct error *err) {
+    const struct summit_translation *translation = &f->translation;
+    const double sign = mirrored ? -1 : 1;
+    const double *field = translation->function != NULL ? translation->gaussian : z;
+    int status = mirrored ? refined_find_pits(f->refined, field, list, err)
+                          : refined_find(f->refined, field, list, err);
+    for (size_t s = 0; s < list->count && translation->function != NULL && status == 0; s++) {
+        struct summit *summit = &list->summits[s];
+        struct height_slope at = height_function_at(translation->function, sign * summit->height);
+        summit->height = sign * translation->height * at.height;
+        summit->curvature *= translation->height * at.slope;
+    }
+    return status;
+}
+
 static int find(struct summit_finder *f, const double *z, bool mirrored, struct summit_list *list,
                 struct error *err) {
     list->count = 0;
     if (f->stencil == SUMMITS_REFINED)
-        return mirrored ? refined_find_pits(f->refined, z, list, err)
-                        : refined_find(f->refined, z, list, err);
+        return refine(f, z, mirrored, list, err);
     if (f->curvature != NULL)
         curvature_fill(f, z);
     const bool corners = f->stencil == SUMMITS_NINE_POINT;
@@ -167,8 +265,8 @@ int extremes_find(struct summit_finder *f, const double *z, size_t first, size_t
     const bool corners = f->stencil == SUMMITS_NINE_POINT;
     int status = 0;
     if (f->stencil == SUMMITS_REFINED) {
-        status = first == 0 ? refined_find(f->refined, z, summits, err) : 0;
-        return status != 0 || first > 0 ? status : refined_find_pits(f->refined, z, pits, err);
+        status = first == 0 ? refine(f, z, false, summits, err) : 0;
+        return status != 0 || first > 0 ? status : refine(f, z, true, pits, err);
     }
     if (f->curvature != NULL && first == 0)
         curvature_fill(f, z);

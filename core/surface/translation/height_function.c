@@ -213,6 +213,18 @@ struct height_slope height_function_at(const struct height_function *function, d
                                  slope};
 }
 
+/* The cubics of neighbours have unlike second derivatives at their node; differences of slopes
+ * between nodes, whose error is that of f'' over twice the step, do not. */
+double height_function_bend(const struct height_function *function, double gaussian) {
+    double at = (gaussian + SCORE_MOST) * NODES_A_UNIT;
+    if (!(at >= 1 && at < NODES - 2))
+        return 0;
+    size_t node = (size_t)at;
+    const double *slope = function->slope + node;
+    double here = slope[1] - slope[-1], next = slope[2] - slope[0], t = at - (double)node;
+    return (here + t * (next - here)) / (2 * SCORE_STEP);
+}
+
 /* Returns the node below a height within the table. */
 static size_t node_below(const struct height_function *function, double height) {
     size_t low = 0, high = NODES - 1;

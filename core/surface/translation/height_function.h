@@ -36,6 +36,8 @@ struct height_slope {
     double height, slope; /* f(g), f'(g) */
 };
 struct height_slope height_function_at(const struct height_function *function, double gaussian);
+/* Returns the second derivative, with an error below 1e-4 where heights are smooth. */
+double height_function_bend(const struct height_function *function, double gaussian);
 double height_function_inverse(const struct height_function *function, double height);
 /* Replaces n values of g by factor f(g). */
 void height_function_apply(const struct height_function *function, double factor, size_t n,

@@ -67,6 +67,49 @@ static void many_points_are_as_one(void **state) {
     height_function_destroy(&function);
 }
 
+/* Rows of a surface, within the table and with jumps farther than neighbours differ. */
+static void rows_are_as_points(void **state) {
+    (void)state;
+    enum { POINTS = 1000 };
+    double z[POINTS], g[POINTS];
+    for (size_t a = 0; a < HEIGHTS_COUNT; a++) {
+        struct height_function *function = function_of(HEIGHTS[a].type, HEIGHTS[a].shape);
+        for (size_t i = 0; i < POINTS; i++)
+            z[i] = g[i] = 4 * sin(0.02 * (double)i) * (i % 100 == 7 ? -1 : 1);
+        height_function_apply(function, 0.25, POINTS, z);
+        for (size_t i = 0; i < POINTS; i++)
+            assert_true(z[i] == 0.25 * height_function_at(function, g[i]).height);
+        height_function_undo(function, 0.25, POINTS, z);
+        for (size_t i = 0; i < POINTS; i++)
+            check_close(z[i], g[i], 1e-12 + 1e-13 / height_function_at(function, g[i]).slope);
+        height_function_destroy(&function);
+    }
+}
+
+/* Second derivatives against those of exp, and against differences of slopes. Steps make errors of
+ * 1e-6 f'''', which is some 100 f'' in the tails. */
+static void bends_belong_to_slopes(void **state) {
+    (void)state;
+    const double shape = 0.7, deviation = exp(shape * shape / 2) * sqrt(expm1(shape * shape));
+    struct height_function *lognormal = function_of(HEIGHTS_LOGNORMAL, shape);
+    for (double g = -5; g < 5; g += 0.0173)
+        check_relative(height_function_bend(lognormal, g),
+                       shape * shape * exp(shape * g) / deviation, 1e-5);
+    height_function_destroy(&lognormal);
+    for (size_t a = 0; a < HEIGHTS_COUNT; a++) {
+        struct height_function *function = function_of(HEIGHTS[a].type, HEIGHTS[a].shape);
+        for (double g = -4; g < 4; g += 0.0173) {
+            double step = 2e-3, slope = height_function_at(function, g).slope;
+            double bend = (height_function_at(function, g + step).slope -
+                           height_function_at(function, g - step).slope) /
+                          (2 * step);
+            check_close(height_function_bend(function, g), bend, 1e-4 * (slope + fabs(bend)));
+        }
+        assert_true(height_function_bend(function, 20) == 0);
+        height_function_destroy(&function);
+    }
+}
+
 /* Log-normal heights have closed coefficients: c_n^2 = s^2n/(n! (exp(s^2) - 1)), with sums of them
  * by n: <f'^2> = s^2 exp(s^2)/(exp(s^2) - 1), <f''^2> s^2 times as much. */
 static void series_of_lognormal_heights(void **state) {
@@ -133,9 +176,14 @@ static void flat_ground_is_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(heights_are_quantiles),           cmocka_unit_test(many_points_are_as_one),
-        cmocka_unit_test(slopes_and_inverse_belong_to_it), cmocka_unit_test(tails_have_one_series),
-        cmocka_unit_test(series_of_lognormal_heights),     cmocka_unit_test(flat_ground_is_refused),
+        cmocka_unit_test(heights_are_quantiles),
+        cmocka_unit_test(many_points_are_as_one),
+        cmocka_unit_test(rows_are_as_points),
+        cmocka_unit_test(bends_belong_to_slopes),
+        cmocka_unit_test(slopes_and_inverse_belong_to_it),
+        cmocka_unit_test(tails_have_one_series),
+        cmocka_unit_test(series_of_lognormal_heights),
+        cmocka_unit_test(flat_ground_is_refused),
         cmocka_unit_test(correlations_and_their_inverse),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -5,6 +5,7 @@
 #include "tests/support/check.h"
 #include "tests/support/seed.h"
 #include <stdlib.h>
+#include <string.h>
 
 static size_t count_summits(const struct grid *grid, const double *z, enum summit_stencil stencil,
                             struct summit_list *list) {
@@ -130,6 +131,76 @@ static void curvatures_of_a_wave(void **state) {
     summit_list_clear(&list);
 }
 
+/* A field g with known derivatives, cos(kx x + 0.3) + cos(ky y + 0.2), of profiles the first wave
+ * alone, and z = HEIGHT f(g) with log-normal heights: f = unit exp(SHAPE g) - least. */
+enum { FIELD_SIDE = 24, FIELD_WAVES = 2 };
+static const double SHAPE = 0.7, HEIGHT = 0.3;
+struct field {
+    struct grid grid;
+    bool profile;
+    double kx, ky, g[FIELD_SIDE * FIELD_SIDE], z[FIELD_SIDE * FIELD_SIDE];
+    struct height_function *function;
+};
+
+static void field_fill(struct field *field, const struct grid *grid) {
+    const struct heights heights = {.type = HEIGHTS_LOGNORMAL, .shape = SHAPE};
+    field->grid = *grid;
+    field->profile = grid_is_profile(grid);
+    field->kx = 2 * M_PI * FIELD_WAVES / grid->lx;
+    field->ky = field->profile ? 0 : 2 * M_PI * FIELD_WAVES / grid->ly;
+    assert_int_equal(height_function_create(&field->function, &heights, NULL), 0);
+    for (size_t j = 0; j < grid->ny; j++)
+        for (size_t i = 0; i < grid->nx; i++)
+            field->g[j * grid->nx + i] =
+                cos(field->kx * (double)i * grid_dx(grid) + 0.3) +
+                (field->profile ? 0 : cos(field->ky * (double)j * grid_dy(grid) + 0.2));
+    memcpy(field->z, field->g, sizeof field->z);
+    height_function_apply(field->function, HEIGHT, grid_points(grid), field->z);
+}
+
+/* The curvature of z at a point, from the derivatives of g along x and y. */
+static void check_field_summit(const struct field *field, const struct summit *summit,
+                               double sign) {
+    double unit = exp(-SHAPE * SHAPE / 2) / sqrt(expm1(SHAPE * SHAPE));
+    double least = 1 / sqrt(expm1(SHAPE * SHAPE));
+    double kx = field->kx, ky = field->ky, x = kx * summit->x + 0.3, y = ky * summit->y + 0.2;
+    double g = cos(x) + (field->profile ? 0 : cos(y));
+    double slope = SHAPE * unit * exp(SHAPE * g), bend = SHAPE * slope;
+    double xx = -slope * kx * kx * cos(x) + bend * kx * kx * sin(x) * sin(x);
+    double yy = -slope * ky * ky * cos(y) + bend * ky * ky * sin(y) * sin(y);
+    double curvature = field->profile ? -xx : -(xx + yy) / 2;
+    check_close(summit->height, sign * HEIGHT * (unit * exp(SHAPE * g) - least), 1e-6);
+    check_relative(summit->curvature, sign * HEIGHT * curvature, 1e-5);
+}
+
+/* Spectral curvatures are those of z at points of the grid, refined ones at its maxima. */
+static void curvatures_of_translated_waves(void **state) {
+    (void)state;
+    const struct grid grids[] = {{FIELD_SIDE, FIELD_SIDE, 1, 2}, {FIELD_SIDE, 1, 1, 1}};
+    for (size_t c = 0; c < 4; c++) {
+        struct field field;
+        struct summit_list list = {0};
+        struct summit_finder *finder = NULL;
+        field_fill(&field, &grids[c % 2]);
+        assert_int_equal(summit_finder_create(&finder, &field.grid,
+                                              c < 2 ? SUMMITS_REFINED : SUMMITS_NINE_POINT,
+                                              CURVATURE_SPECTRAL, FIELD_WAVES,
+                                              field.profile ? 0 : FIELD_WAVES, NULL),
+                         0);
+        assert_int_equal(summit_finder_translate(finder, field.function, HEIGHT, NULL), 0);
+        summit_finder_gaussian(finder, field.g);
+        for (int pits = 0; pits < 2; pits++) {
+            assert_int_equal((pits ? pits_find : summits_find)(finder, field.z, &list, NULL), 0);
+            assert_int_equal(list.count, field.profile ? FIELD_WAVES : FIELD_WAVES * FIELD_WAVES);
+            for (size_t a = 0; a < list.count; a++)
+                check_field_summit(&field, &list.summits[a], pits ? -1 : 1);
+        }
+        summit_list_clear(&list);
+        summit_finder_destroy(&finder);
+        height_function_destroy(&field.function);
+    }
+}
+
 /* Refined summits of one surface do not depend on the grid that samples it. */
 static void refined_summits_belong_to_the_surface(void **state) {
     (void)state;
@@ -210,6 +281,7 @@ int main(void) {
         cmocka_unit_test(flat_and_plateau_hold_none),
         cmocka_unit_test(refined_summits_are_exact),
         cmocka_unit_test(curvatures_of_a_wave),
+        cmocka_unit_test(curvatures_of_translated_waves),
         cmocka_unit_test(refined_summits_belong_to_the_surface),
         cmocka_unit_test(pits_are_summits_of_the_mirror),
     };
