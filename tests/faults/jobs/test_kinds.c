@@ -22,6 +22,12 @@ static const char WEIBULL[] =
     " \"points_per_wavelength\": 4, \"heights\": {\"distribution\": \"weibull_max\", \"shape\": "
     "2}},"
     " \"statistics\": {\"bins\": {\"height\": [0, 2, 10], \"curvature\": [-9, -1, 16]}}}";
+static const char TRANSLATED[] =
+    "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 2, \"length_ratio\": 2,"
+    " \"points_per_wavelength\": 8, \"amplitudes\": \"random\", \"heights\": {\"distribution\":"
+    " \"weibull_max\", \"shape\": 3, \"law\": \"translation\"}}, \"statistics\": {\"curvature\":"
+    " \"spectral\", \"levels\": [4], \"bins\": {\"height\": [0, 2, 10], \"curvature\": [-9, -1, "
+    "16]}}}";
 static const char LINEAR[] =
     "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 2, \"length_ratio\": 1,"
     " \"points_per_wavelength\": 4, \"heights\": {\"distribution\": \"weibull_min\", \"shape\": "
@@ -118,6 +124,7 @@ static void statistics(void **state) {
     (void)state;
     each_step((struct work){.kind = "statistics", .text = PROFILE, .count = 2});
     each_step((struct work){.kind = "statistics", .text = WEIBULL, .count = 2});
+    each_step((struct work){.kind = "statistics", .text = TRANSLATED, .count = 2});
 }
 
 static void contact(void **state) {
