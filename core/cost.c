@@ -1,6 +1,7 @@
 #include "core/cost.h"
 #include "core/full/linear/gmres.h"
 #include "core/statistics/heights/roughness.h"
+#include "core/statistics/summits/refined.h"
 #include <math.h>
 
 /* --- surfaces --- */
@@ -20,8 +21,9 @@ static const double FAST_ITERATION_NS = 9.5, FAST_ITERATIONS = 65;
  * shapes 1 to 3.602 and lognormal heights, surfaces of 256 x 256 to 1024 x 1024 and tolerances of
  * 0.003 to 0.03. */
 static const double REACH = 56, FALL = 0.8, SKEWED = 5;
-/* Nanoseconds a point of refined summits and of spectral curvatures (bench_summits). */
-static const double REFINED_NS = 15, SPECTRAL_CURVATURE_NS = 4;
+/* Nanoseconds of refined summits a point of their fine grid, and of spectral curvatures a point of
+ * the grid (bench_summits). */
+static const double REFINED_NS = 6, SPECTRAL_CURVATURE_NS = 4;
 /* Nanoseconds a point of the spectra of heights (bench_statistics, translated surfaces), beside
  * those of rings below. */
 static const double SPECTRA_NS = 10;
@@ -59,10 +61,11 @@ double cost_generation(const struct surface_options *options, const struct grid 
            fmin(LAST_ITERATIONS, most) * ITERATION_NS;
 }
 
-double cost_summits(enum summit_stencil stencil, enum summit_curvature curvature) {
+double cost_summits(enum summit_stencil stencil, enum summit_curvature curvature,
+                    const struct grid *grid, size_t mode_x, size_t mode_y) {
     if (stencil == SUMMITS_REFINED)
-        return REFINED_NS;
-    return curvature == CURVATURE_SPECTRAL ? SPECTRAL_CURVATURE_NS : 0;
+        return REFINED_NS * refined_points(grid, mode_x, mode_y);
+    return curvature == CURVATURE_SPECTRAL ? SPECTRAL_CURVATURE_NS * (double)grid_points(grid) : 0;
 }
 
 double cost_spectra(const struct grid *grid) {

@@ -8,10 +8,12 @@
 #include "core/statistics/summits/summits.h"
 #include "core/surface/surface.h"
 
-/* Nanoseconds a point and realisation: to generate a surface (non-Gaussian ones by the number of
- * iterations expected for their tolerance and heights), and to find its summits. */
+/* Nanoseconds a point and realisation to generate a surface, non-Gaussian ones by the number of
+ * iterations expected for their tolerance and heights. */
 double cost_generation(const struct surface_options *options, const struct grid *grid);
-double cost_summits(enum summit_stencil stencil, enum summit_curvature curvature);
+/* Nanoseconds a realisation: to find the summits of such a band on a grid, or its pits. */
+double cost_summits(enum summit_stencil stencil, enum summit_curvature curvature,
+                    const struct grid *grid, size_t mode_x, size_t mode_y);
 /* Nanoseconds a realisation: to measure moments, spectral density and autocorrelation of its
  * heights, up to the waves of the grid (core/statistics/spectra/whole_band.h). */
 double cost_spectra(const struct grid *grid);

@@ -23,17 +23,25 @@ static double expected_of_waves(const struct surface_case *surface) {
     return all;
 }
 
+/* Returns the CPU nanoseconds of the summits and pits of one realisation, on a grid of its
+ * points. */
+static double expected_of_summits(const struct statistics_case *one_case, const struct grid *grid) {
+    const struct surface_band band = surface_case_sampled_band(&one_case->surface);
+    size_t most_x = grid->nx / 2, most_y = grid->ny / 2;
+    return 2 * cost_summits(one_case->stencil, one_case->curvature, grid,
+                            band.x < most_x ? band.x : most_x, band.y < most_y ? band.y : most_y);
+}
+
 /* Returns the CPU seconds of one realisation. */
 static double expected_seconds(const struct statistics_case *one_case) {
     double points = (double)grid_points(&one_case->surface.grid);
     double nanoseconds = cost_generation(&one_case->surface.options, &one_case->surface.grid);
-    double summits = 2 * cost_summits(one_case->stencil, one_case->curvature); /* and pits */
-    nanoseconds += summits;
+    nanoseconds = nanoseconds * points + expected_of_waves(&one_case->surface) +
+                  expected_of_summits(one_case, &one_case->surface.grid);
     for (size_t l = 0; l < one_case->level_count; l++) {
-        double part = (double)one_case->strides[l];
-        nanoseconds += summits / (one_case->surface.dimension == 2 ? part * part : part);
+        const struct statistics_case level = statistics_level_case(one_case, l);
+        nanoseconds += expected_of_summits(&level, &level.surface.grid);
     }
-    nanoseconds = nanoseconds * points + expected_of_waves(&one_case->surface);
     if (!surface_case_band_limited(&one_case->surface))
         nanoseconds += cost_spectra(&one_case->surface.grid) * CHANGES_COST;
     return 1e-4 + 1e-9 * nanoseconds * cost_caches(points) + statistics_law_seconds(one_case) +

@@ -85,6 +85,11 @@ double refined_bytes(const struct grid *grid, size_t mode_x, size_t mode_y) {
     return columns * sizeof(double complex) + (rows + 1) * (double)fine.nx * sizeof(double);
 }
 
+double refined_points(const struct grid *grid, size_t mode_x, size_t mode_y) {
+    const struct grid fine = fine_grid(grid, mode_x, mode_y);
+    return (double)fine.nx * (double)fine.ny;
+}
+
 /* Lagrange basis on the points -3..4 at t in [-1/4, 5/4], with first and second derivatives. */
 struct basis {
     double value[POINTS], slope[POINTS], bend[POINTS];

@@ -22,6 +22,8 @@ int refined_create(struct refined **out, const struct grid *grid, size_t mode_x,
 void refined_destroy(struct refined **refined);
 /* Returns the bytes of two bands of columns, one of the fine grid, and 28 fine rows. */
 double refined_bytes(const struct grid *grid, size_t mode_x, size_t mode_y);
+/* Returns the points of the fine grid. */
+double refined_points(const struct grid *grid, size_t mode_x, size_t mode_y);
 /* Appends the summits to an empty list, in the order of rows. */
 int refined_find(struct refined *refined, const double *z, struct summit_list *list,
                  struct error *err);

@@ -113,28 +113,40 @@ double summit_finder_bytes(const struct grid *grid, enum summit_stencil stencil,
     return bytes;
 }
 
-/* Fills the squares of slopes of g from its spectrum, the curvatures being scratch. A wave of half
- * the points of a side has no slope at them. */
-static void slopes_fill(struct summit_finder *f) {
+/* Returns the wave number along an axis (0: x, 1: y) of a mode of the half spectrum. It is 0 beyond
+ * the band, and of a wave of two points, which has no slope at them. */
+static double wave_number(const struct summit_finder *f, int axis, size_t mx, size_t row) {
     const struct grid *grid = &f->grid;
-    const size_t ny = grid->ny, points = grid_points(grid);
-    for (int axis = 0; axis < (grid_is_profile(grid) ? 1 : 2); axis++) {
-        const double step = 2 * M_PI / (axis == 0 ? grid->lx : grid->ly);
-        double complex *mode = transform_spectrum(f->transform);
-        const double complex *from = f->translation.spectrum;
-        for (size_t mx = 0; mx <= f->mode_x; mx++)
-            for (size_t row = 0; row < ny; row++) {
-                double my = row <= f->mode_y ? (double)row : -(double)(ny - row);
-                bool half = axis == 0 ? 2 * mx == grid->nx : 2 * row == ny;
-                bool inside = (row <= f->mode_y || ny - row <= f->mode_y) && !half;
-                *mode++ = inside ? step * (axis == 0 ? (double)mx : my) * I * *from : 0;
-                from++;
-            }
-        transform_inverse(f->transform, f->curvature);
-        for (size_t i = 0; i < points; i++)
-            f->translation.slope[i] =
-                (axis == 0 ? 0 : f->translation.slope[i]) + f->curvature[i] * f->curvature[i];
-    }
+    bool above = row <= f->mode_y, below = grid->ny - row <= f->mode_y;
+    if ((!above && !below) || (axis == 0 ? 2 * mx == grid->nx : 2 * row == grid->ny))
+        return 0;
+    if (axis == 0)
+        return 2 * M_PI * (double)mx / grid->lx;
+    return 2 * M_PI * (above ? (double)row : -(double)(grid->ny - row)) / grid->ly;
+}
+
+/* Fills the derivative of g along an axis, from its spectrum, in place of curvatures. */
+static void derivative_fill(struct summit_finder *f, int axis) {
+    double complex *mode = transform_spectrum(f->transform);
+    const double complex *from = f->translation.spectrum;
+    for (size_t mx = 0; mx <= f->mode_x; mx++)
+        for (size_t row = 0; row < f->grid.ny; row++)
+            *mode++ = wave_number(f, axis, mx, row) * I * *from++;
+    transform_inverse(f->transform, f->curvature);
+}
+
+/* Fills the squares of slopes of g. */
+static void slopes_fill(struct summit_finder *f) {
+    const size_t points = grid_points(&f->grid);
+    double *slope = f->translation.slope;
+    derivative_fill(f, 0);
+    for (size_t i = 0; i < points; i++)
+        slope[i] = f->curvature[i] * f->curvature[i];
+    if (grid_is_profile(&f->grid))
+        return;
+    derivative_fill(f, 1);
+    for (size_t i = 0; i < points; i++)
+        slope[i] += f->curvature[i] * f->curvature[i];
 }
 
 /* Fills in -(z_xx + z_yy)/2 of every point (profiles -z_xx), exact for a band-limited surface. Of a
