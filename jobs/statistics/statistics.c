@@ -186,7 +186,7 @@ static int workspace_create(void *workspace, const void *one_case,
         status = like_patch_create(&work->patch, &statistics->like, grid, err);
     if (status != 0)
         return status;
-    return statistics_law_create(&work->law, statistics, work->finder, err);
+    return statistics_law_create(&work->law, statistics, err);
 }
 
 static void workspace_clear(void *workspace) {

@@ -13,8 +13,8 @@ static const double TIME_SHARE = 0.08;
 struct statistics_law {
     const struct statistics_case *one_case;
     struct subset due;
-    struct summit_finder *finder;
-    struct other_law *law; /* owned, as the lists */
+    struct other_law *law;        /* owned, as all below */
+    struct summit_finder *finder; /* NULL without such surfaces */
     struct summit_list summits[SIDES];
 };
 
@@ -25,8 +25,28 @@ static struct subset due_of(const struct surface_case *surface) {
     return subset_each(subset_interval(other, TIME_SHARE * own, 1));
 }
 
+/* Makes a finder for surfaces of the other law, which have their own band and function. */
+static int finder_create(struct statistics_law *law, struct error *err) {
+    struct statistics_case other = *law->one_case; /* borrows */
+    const struct modes *modes = other_law_modes(law->law);
+    const double *gaussian = NULL;
+    other.surface = *other_law_surface(law->law);
+    bool limited = surface_case_band_limited(&other.surface) || modes->translation != NULL;
+    const struct grid *grid = &other.surface.grid;
+    int status = summit_finder_create(&law->finder, grid, other.stencil, other.curvature,
+                                      limited ? modes->mode_x : grid->nx / 2,
+                                      limited ? modes->mode_y : grid->ny / 2, err);
+    if (status == 0)
+        status = statistics_case_translate(&other, law->finder, modes->height, err);
+    if (status == 0 && statistics_case_wants_gaussian(&other))
+        status = other_law_keep_gaussian(law->law, &gaussian, err);
+    if (status == 0)
+        summit_finder_gaussian(law->finder, gaussian);
+    return status;
+}
+
 int statistics_law_create(struct statistics_law **out, const struct statistics_case *one_case,
-                          struct summit_finder *finder, struct error *err) {
+                          struct error *err) {
     *out = NULL;
     if (!other_law_applies(&one_case->surface))
         return 0;
@@ -35,8 +55,9 @@ int statistics_law_create(struct statistics_law **out, const struct statistics_c
         return error_memory(err, sizeof *law, "the other law of heights");
     law->one_case = one_case;
     law->due = due_of(&one_case->surface);
-    law->finder = finder;
     int status = other_law_create(&law->law, &one_case->surface, err);
+    if (status == 0 && other_law_surface(law->law) != NULL)
+        status = finder_create(law, err);
     if (status != 0)
         statistics_law_destroy(&law);
     *out = law;
@@ -48,6 +69,7 @@ void statistics_law_destroy(struct statistics_law **law) {
     if (gone == NULL)
         return;
     other_law_destroy(&gone->law);
+    summit_finder_destroy(&gone->finder);
     for (size_t side = 0; side < SIDES; side++)
         summit_list_clear(&gone->summits[side]);
     free(gone);
@@ -56,8 +78,7 @@ void statistics_law_destroy(struct statistics_law **law) {
 
 int statistics_law_measure(struct statistics_law *law, struct random_key key,
                            double scalars[SCALAR_COUNT], struct error *err) {
-    if (law == NULL || other_law_surface(law->law) == NULL ||
-        !subset_has(&law->due, key.realisation))
+    if (law == NULL || law->finder == NULL || !subset_has(&law->due, key.realisation))
         return 0;
     const struct grid *grid = &law->one_case->surface.grid;
     const struct moments *moments = other_law_moments(law->law);
@@ -83,7 +104,16 @@ int statistics_law_measure(struct statistics_law *law, struct random_key key,
 }
 
 double statistics_law_bytes(const struct statistics_case *one_case) {
-    return other_law_applies(&one_case->surface) ? other_law_bytes(&one_case->surface) : 0;
+    const struct surface_case *surface = &one_case->surface;
+    const struct surface_band band = surface_case_sampled_band(surface);
+    bool wanted = !surface_case_translated(surface) &&
+                  summit_needs_band(one_case->stencil, one_case->curvature);
+    if (!other_law_applies(surface))
+        return 0;
+    return other_law_bytes(surface) +
+           summit_finder_bytes(&surface->grid, one_case->stencil, one_case->curvature, band.x,
+                               band.y, wanted) +
+           (wanted ? (double)grid_points(&surface->grid) * sizeof(double) : 0);
 }
 
 double statistics_law_seconds(const struct statistics_case *one_case) {

@@ -7,9 +7,9 @@
 #include "jobs/statistics/statistics_scalars.h"
 
 struct statistics_law;
-/* Borrows the case and the finder. *out is NULL where heights are Gaussian, which have one law. */
+/* Borrows the case. *out is NULL where heights are Gaussian, which have one law. */
 int statistics_law_create(struct statistics_law **out, const struct statistics_case *one_case,
-                          struct summit_finder *finder, struct error *err);
+                          struct error *err);
 void statistics_law_destroy(struct statistics_law **law);
 /* Fills the scalars of the surface of the other law, if this realisation is one that has them and
  * there are such surfaces. */

@@ -8,7 +8,7 @@ struct other_law {
     struct translation *translation; /* owned, as all below; NULL: surfaces are iterated */
     struct generator *generator;     /* NULL: there are no such surfaces */
     struct moments moments;
-    double *z;
+    double *z, *gaussian;
 };
 
 /* Returns the options of the other law, with the amplitudes of the case. */
@@ -71,12 +71,28 @@ void other_law_destroy(struct other_law **law) {
     generator_destroy(&gone->generator);
     translation_destroy(&gone->translation);
     free(gone->z);
+    free(gone->gaussian);
     free(gone);
     *law = NULL;
 }
 
 const struct surface_case *other_law_surface(const struct other_law *law) {
     return law->generator != NULL ? &law->surface : NULL;
+}
+
+const struct modes *other_law_modes(const struct other_law *law) {
+    return generator_modes(law->generator);
+}
+
+int other_law_keep_gaussian(struct other_law *law, const double **gaussian, struct error *err) {
+    size_t points = grid_points(&law->surface.grid);
+    if (law->gaussian == NULL)
+        law->gaussian = array_create(points, sizeof *law->gaussian);
+    if (law->gaussian == NULL)
+        return error_memory(err, points * sizeof *law->gaussian, "a Gaussian field");
+    generator_keep_gaussian(law->generator, law->gaussian);
+    *gaussian = law->gaussian;
+    return 0;
 }
 
 const struct moments *other_law_moments(const struct other_law *law) {

@@ -20,8 +20,13 @@ void other_law_destroy(struct other_law **law);
 /* Returns the surface under the other law; NULL where that has none with this spectrum and these
  * heights: no translation comes within OTHER_LAW_MISFIT. Borrowed, as below. */
 const struct surface_case *other_law_surface(const struct other_law *law);
-/* Returns the moments of surfaces of the other law; of one that has surfaces, as below. */
+/* Return the prescribed spectrum of surfaces of the other law and their moments; of one that has
+ * surfaces, as below. */
+const struct modes *other_law_modes(const struct other_law *law);
 const struct moments *other_law_moments(const struct other_law *law);
+/* From now on keeps the Gaussian field of which translated surfaces are a function. gaussian: where
+ * it will be, on the grid of the case; valid as long as the law. */
+int other_law_keep_gaussian(struct other_law *law, const double **gaussian, struct error *err);
 /* Makes the surface of this key. *z are its heights on the grid of the case, valid until the next
  * call. */
 int other_law_make(struct other_law *law, struct random_key key, const double **z,
