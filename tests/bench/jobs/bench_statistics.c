@@ -123,10 +123,13 @@ struct amplitude_bench {
     uint64_t block;
 };
 enum { FIXED, RANDOM, TRANSLATED, KINDS };
-static const char *const KIND_PARAMETERS[KINDS] = {
-    "\"amplitudes\":\"fixed\"", "\"amplitudes\":\"random\"",
-    "\"heights\":{\"distribution\":\"weibull_min\",\"shape\":1,\"law\":\"translation\"},"
-    "\"amplitudes\":\"random\""};
+static const char FIXED_AMPLITUDES[] = "\"amplitudes\":\"fixed\"";
+static const char RANDOM_AMPLITUDES[] = "\"amplitudes\":\"random\"";
+static const char TRANSLATED_HEIGHTS[] =
+    "\"amplitudes\":\"random\",\"heights\":{\"distribution\":\"weibull_min\",\"shape\":1,"
+    "\"law\":\"translation\"}";
+static const char *const KIND_PARAMETERS[KINDS] = {FIXED_AMPLITUDES, RANDOM_AMPLITUDES,
+                                                   TRANSLATED_HEIGHTS};
 
 static int runner_make(struct job_runner **out, const struct amplitude_bench *bench, int kind,
                        double *expected, struct error *err) {
