@@ -20,7 +20,8 @@ enum random_stream {
 struct random_key {
     uint64_t seed;
     uint64_t sequence; /* 0; or the case's number, where cases share no random numbers; with one of
-                          the two highest bits, for surfaces beside the realisations */
+                          the three highest bits, and a number from bit 40 on, for surfaces beside
+                          the realisations */
     uint64_t realisation;
 };
 

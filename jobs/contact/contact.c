@@ -298,9 +298,9 @@ static const struct quantity_table TABLE = {
     .error_words = {[ERROR_DISCRETISATION] = "mesh"},
     .legend =
         "load: p/(E* h'_rms); area: A/A0, +- one standard error; errors (reported - true) in "
-        "percent "
-        "of it: mesh, from the limit of the levels; cell, from a very long one; block, from an "
-        "infinitely high one; model, from the limit of the most complete one",
+        "percent of it (<2: below 2, not resolved): mesh, from the limit of the levels; cell, from "
+        "a very long one; block, from an infinitely high one; model, from the limit of the most "
+        "complete one",
     .scalars = SCALARS,
     .left_out = LEFT_OUT,
 };

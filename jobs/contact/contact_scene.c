@@ -281,7 +281,7 @@ void contact_case_estimate(const struct contact_case *one_case, struct study_cos
     out->seconds += companions_seconds(one_case);
     out->result_bytes = contact_rows_bytes(one_case);
     out->runs_most = RUNS_MOST;
-    out->case_seconds = case_seconds(one_case);
+    out->case_seconds = case_seconds(one_case) + companions_first_seconds(one_case);
     bool affine = surface->spectrum.type == SPECTRUM_SELF_AFFINE;
     out->relative_error = cost_area_scatter(surface->dimension, surface_case_mean_side(surface),
                                             affine ? surface->spectrum.hurst : NAN);

@@ -192,8 +192,7 @@ int contact_tally_add(struct contact_tally *tally, struct error *err) {
             add_model_pairs(tally, (enum contact_measure)a);
     }
     for (size_t c = 0; c < COMPANION_COUNT; c++)
-        companion_tally_add(&tally->companions[c], one_case, &one_case->companions[c],
-                            tally->values);
+        companion_tally_add(&tally->companions[c], one_case, &one_case->companions[c]);
     contact_densities_add(&tally->densities);
     tally_total_add(&tally->points, grid_points(&contact_case_finest(one_case)->grid));
     tally->realisations++;
@@ -299,6 +298,12 @@ struct estimate contact_tally_companion(const struct contact_tally *tally,
                              contact_sums_scale(tally->one_case, measure, load));
 }
 
+uint64_t contact_tally_draws(const struct contact_tally *tally, enum companion_name companion,
+                             size_t series, enum contact_measure measure, size_t load) {
+    return tally->companions[companion]
+        .sums.counts.count[companion_cell(tally->one_case, series, measure, load)];
+}
+
 struct estimate contact_tally_pair(const struct contact_tally *tally, enum companion_name companion,
                                    size_t pair, enum contact_measure measure, size_t load) {
     return contact_sums_mean(&tally->companions[companion].differences,
@@ -309,25 +314,6 @@ struct estimate contact_tally_pair(const struct contact_tally *tally, enum compa
 struct estimate contact_tally_fact(const struct contact_tally *tally, enum companion_name companion,
                                    size_t fact) {
     return contact_sums_mean(&tally->companions[companion].fact_sums, fact, 1);
-}
-
-/* The errors of the model and of the difference may be correlated. */
-struct estimate contact_tally_controlled(const struct contact_tally *tally,
-                                         enum companion_name companion, size_t series,
-                                         enum contact_measure measure, size_t load) {
-    const struct companion_plan *plan = &tally->one_case->companions[companion];
-    size_t pair = 0;
-    while (pair < plan->pair_count &&
-           !(plan->pairs[pair].of_model && plan->pairs[pair].less == series))
-        pair++;
-    if (pair == plan->pair_count)
-        return contact_tally_several(
-            contact_tally_companion(tally, companion, series, measure, load));
-    size_t control = contact_case_cell(tally->one_case, plan->pairs[pair].of, 0, load);
-    struct estimate all = contact_tally_mean(tally, measure, control);
-    struct estimate less =
-        contact_tally_several(contact_tally_pair(tally, companion, pair, measure, load));
-    return (struct estimate){all.value - less.value, all.standard_error + less.standard_error};
 }
 
 size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t model, size_t level,
@@ -536,7 +522,8 @@ bool contact_tally_adds_up(const struct contact_tally *tally) {
         if (!contact_sums_fit(&tally->sums[a], tally->realisations))
             return false;
     for (size_t c = 0; c < COMPANION_COUNT; c++)
-        if (!companion_tally_fits(&tally->companions[c], tally->realisations))
+        if (!companion_tally_fits(&tally->companions[c], &one_case->companions[c],
+                                  tally->realisations))
             return false;
     for (size_t m = 0; m < one_case->model_count; m++)
         for (size_t l = 0; l < one_case->level_count; l++)

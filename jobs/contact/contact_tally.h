@@ -98,16 +98,13 @@ struct estimate contact_tally_pair(const struct contact_tally *tally, enum compa
                                    size_t pair, enum contact_measure measure, size_t load);
 struct estimate contact_tally_fact(const struct contact_tally *tally, enum companion_name companion,
                                    size_t fact);
+/* Counts the values of a series of a companion of the case: one a draw. */
+uint64_t contact_tally_draws(const struct contact_tally *tally, enum companion_name companion,
+                             size_t series, enum contact_measure measure, size_t load);
 /* Returns a mean of at least two realisations, and NaN for one, which shows no scatter. */
 static inline struct estimate contact_tally_several(struct estimate mean) {
     return isnan(mean.standard_error) ? (struct estimate){NAN, NAN} : mean;
 }
-/* Returns the mean of a series over several realisations. Where a pair of its plan compares it with
- * a model of the case, that model is the control, which is known on all realisations: the mean of
- * the model less that of the difference, which scatters little. */
-struct estimate contact_tally_controlled(const struct contact_tally *tally,
-                                         enum companion_name companion, size_t series,
-                                         enum contact_measure measure, size_t load);
 /* Return the mean of a measure over realisations of which some may lack a value, and the model by
  * which it is made; model_count for a plain mean. On the finest level the most complete model may
  * lack values that another one has in all realisations. Its mean is then that of the other model

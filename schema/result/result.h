@@ -34,8 +34,13 @@ struct error_source_row {
     const char *standard_error_key; /* in JSON */
     const char *order_key;          /* in JSON; NULL: a source without an order */
     const char *order_from_key;     /* in JSON: "levels" or "assumed" */
+    bool bound_has_chance;          /* bounds have the chance of their values at 95 %, too */
 };
 extern const struct error_source_row ERROR_SOURCE_ROWS[ERROR_SOURCES];
+/* Returns whether an estimated error, whose bound has its chance, is mostly chance: all that is
+ * known of it is its size, |value| + bound at most. */
+bool error_is_unresolved(enum error_source source, double value, double bound,
+                         double standard_error);
 
 /* The error of a curve from one source, in the units of y and as long as it (of a matrix, as its
  * occupied cells): (reported - true) lies within value +- bound, where value has the standard

@@ -44,6 +44,20 @@ double companions_seconds(const struct contact_case *one_case) {
     return seconds;
 }
 
+double companions_first_seconds(const struct contact_case *one_case) {
+    double seconds = 0;
+    for (enum companion_name c = 0; c < COMPANION_COUNT; c++) {
+        const struct companion_plan *plan = &one_case->companions[c];
+        uint64_t draws = 0;
+        for (uint64_t r = 0; r < plan->due.first; r++)
+            draws += companion_draws(plan, r);
+        if (contact_case_has(one_case, c))
+            seconds += COMPANIONS[c]->seconds(one_case, plan) *
+                       ((double)draws - (double)plan->due.first / (double)plan->due.interval);
+    }
+    return seconds;
+}
+
 int companions_curves(const struct contact_tally *tally, struct case_result *out,
                       struct error *err) {
     int status = 0;
@@ -95,18 +109,31 @@ void companion_bench_destroy(struct companion_bench **bench) {
     *bench = NULL;
 }
 
+/* Solves all draws of a companion. One without a surface has no values. */
+static int solve_draws(struct companion_bench *bench, enum companion_name at,
+                       const struct contact_surface *surface, struct contact_tally *tally,
+                       const struct contact_stopper *stopper, struct error *err) {
+    struct companion_tally *out = &tally->companions[at];
+    uint64_t draws = companion_draws(&bench->one_case->companions[at], surface->key.realisation);
+    out->draws = draws > 1 ? (size_t)draws : 1;
+    int status = 0;
+    for (out->draw = 0; out->draw < draws && status == 0; out->draw++) {
+        struct error reason = {0};
+        status =
+            COMPANIONS[at]->solve(bench->workspaces[at], surface, tally, out, stopper, &reason);
+        status =
+            status == ERROR_NUMERIC || status == 0 ? 0 : error_set(err, status, "%s", reason.text);
+    }
+    out->draw = 0;
+    return status;
+}
+
 int companion_bench_solve(struct companion_bench *bench, const struct contact_surface *surface,
                           struct contact_tally *tally, const struct contact_stopper *stopper,
                           struct error *err) {
-    for (size_t c = 0; c < COMPANION_COUNT; c++) {
-        struct error reason = {0};
-        int status = 0;
-        if (bench->workspaces[c] != NULL &&
-            subset_has(&bench->one_case->companions[c].due, surface->key.realisation))
-            status = COMPANIONS[c]->solve(bench->workspaces[c], surface, tally,
-                                          &tally->companions[c], stopper, &reason);
-        if (status != 0 && status != ERROR_NUMERIC) /* without a surface it has no values */
-            return error_set(err, status, "%s", reason.text);
-    }
-    return 0;
+    int status = 0;
+    for (enum companion_name c = 0; c < COMPANION_COUNT && status == 0; c++)
+        if (bench->workspaces[c] != NULL)
+            status = solve_draws(bench, c, surface, tally, stopper, err);
+    return status;
 }

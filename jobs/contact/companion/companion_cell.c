@@ -1,19 +1,31 @@
-/* The error of the finite length of the cell (FORMULAS.md, F15.7). Beside some realisations,
- * surfaces of twice the length_ratio, and of a quarter or half of it, are pressed on a half-space
- * on a coarse mesh. They have random numbers of their own; a rectangle keeps its shape. The change
- * with the length bounds the error. Longer surfaces have the lengths that matter; shorter ones are
- * so cheap that many of them give the change a small statistical error.
+/* The error of the finite length of the cell (FORMULAS.md, F15.7). Beside the first realisations,
+ * and some of the others, surfaces on cells of the own length and on longer ones are pressed on a
+ * half-space on a coarse mesh. The error is the difference of their means. They have random numbers
+ * of their own; a rectangle keeps its shape.
  *
- * Such a surface is a function of the seed and its realisation, and cases that share their random
- * numbers share it. All else of it is that of the case. The interval is such that they take about a
- * tenth of the case's time, and that longer ones together are not longer than those of the case. */
+ * Such a surface is a function of the seed, its realisation and its number there, and cases that
+ * share their random numbers share it. All else of it is that of the case. How many there are is
+ * counted by the work that they take, as it is estimated, on any machine. Solves of small cells
+ * are so cheap that the first realisations have many, and the difference a small chance. */
 #include "core/cost.h"
 #include "jobs/contact/companion/companion.h"
 #include "jobs/contact/contact_measure.h"
+#include <gsl/gsl_cdf.h>
 #include <stdlib.h>
 
-/* Time for the surfaces of one length, over that of the case without. */
+/* The first realisations, which have the work of FIRST_SECONDS on a 3 GHz core for each length, or
+ * this share of a study of usual size. */
+enum { FIRST = 8, USUAL_STUDY = 20, DRAWS_LEAST = 4, DRAWS_ENOUGH = 16, DRAWS_MOST = 2048 };
+static const double FIRST_SECONDS = 0.5, FIRST_SHARE = 0.12;
+/* Time for the surfaces of one length from then on, over that of the case without. */
 static const double TIME_SHARE = 0.06;
+/* Lengths beyond which an error of the cell is small, in longest waves. */
+static const double PROFILE_WAVES = 64, SURFACE_WAVES = 32;
+/* Doubling the length is assumed to leave this share of an error: of profiles errors fall as 1/L or
+ * slower, and not monotonically, of surfaces faster. The change on a coarse half-space stands for
+ * that of other models and meshes within TRANSFER of itself. Measured by
+ * tests/validation/jobs/test_contact_cells.c. */
+static const double PROFILE_LEFT = 0.7, SURFACE_LEFT = 0.5, TRANSFER = 0.2;
 /* These surfaces may take as much memory as the case's own on a half-space on its finest mesh, or
  * this if that is less. */
 static const double BYTES_LEAST = 1e9;
@@ -75,23 +87,58 @@ static double cell_bytes(const struct contact_case *one_case, const struct compa
            coarse_solver_bytes(grid);
 }
 
-/* There are no such surfaces if they would have too many points, or take much more memory than the
- * case. */
-static bool plan_length(const struct contact_case *one_case, double length, uint64_t least,
-                        struct companion_plan *out) {
+/* Returns whether the grids of a cell so many times as long exist, and suit the memory. */
+static bool set_length(const struct contact_case *one_case, double length,
+                       struct companion_plan *out) {
     double own = surface_case_bytes(&one_case->surface) +
                  coarse_solver_bytes(&contact_case_finest(one_case)->grid);
-    out->length = length;
-    if (!choose_grids(one_case, out) || cell_bytes(one_case, out) > fmax(BYTES_LEAST, own))
-        return false;
-    out->series = 1;
-    out->due = subset_each(subset_interval(
-        cell_seconds(one_case, out), TIME_SHARE * contact_case_least_seconds(one_case), least));
-    return true;
+    *out = (struct companion_plan){.length = length};
+    return choose_grids(one_case, out) && cell_bytes(one_case, out) <= fmax(BYTES_LEAST, own);
 }
 
+/* Costs are counted as if the case had a usual number of loads: what is drawn hardly depends on the
+ * loads that a study lists. Very many loads have the work of twice as many at most. */
+static struct contact_case with_usual_loads(const struct contact_case *one_case) {
+    enum { LOADS = 10 };
+    struct contact_case usual = *one_case;
+    usual.load_count = one_case->load_count > 2 * LOADS ? one_case->load_count / 2 : LOADS;
+    return usual;
+}
+
+/* Returns how many draws a plan may have in the first realisations. */
+static double affordable(const struct contact_case *usual, const struct companion_plan *plan) {
+    double seconds =
+        fmax(FIRST_SECONDS, FIRST_SHARE * USUAL_STUDY * contact_case_least_seconds(usual));
+    return fmin(DRAWS_MOST, floor(seconds / cell_seconds(usual, plan)));
+}
+
+/* The first realisations have as many draws as a fixed amount of work allows. From then on
+ * the time is a share of that of the case. */
+static void set_draws(const struct contact_case *usual, struct companion_plan *out) {
+    double draws = affordable(usual, out);
+    uint64_t interval = subset_interval(cell_seconds(usual, out),
+                                        TIME_SHARE * contact_case_least_seconds(usual), 1);
+    out->series = 1;
+    out->draws = draws >= FIRST ? (uint64_t)draws / FIRST : 1;
+    out->due = (struct subset){FIRST, draws >= FIRST ? 1 : FIRST / DRAWS_LEAST, interval};
+}
+
+/* Takes the longest cell of which enough can be drawn, up to WAVES longest waves; twice the length
+ * where that is longer. */
 static bool plan_longer(const struct contact_case *one_case, struct companion_plan *out) {
-    return plan_length(one_case, 2, one_case->surface.dimension == 1 ? 2 : 4, out);
+    const struct contact_case usual = with_usual_loads(one_case);
+    const struct surface_case *surface = &one_case->surface;
+    double longest = fmax(surface->length_ratio, surface->length_ratio_y);
+    double most = surface->dimension == 1 ? PROFILE_WAVES : SURFACE_WAVES;
+    struct companion_plan plan;
+    if (!set_length(&usual, 2, out))
+        return false;
+    for (double length = 4; length * longest <= most && set_length(&usual, length, &plan) &&
+                            affordable(&usual, &plan) >= DRAWS_ENOUGH;
+         length *= 2)
+        *out = plan;
+    set_draws(&usual, out);
+    return true;
 }
 
 static bool holds_waves(const struct contact_case *one_case, double length) {
@@ -103,10 +150,26 @@ static bool holds_waves(const struct contact_case *one_case, double length) {
     return true;
 }
 
-/* Takes a quarter or half, whichever first holds whole longest waves. */
+/* Where longer cells would be too large, takes a quarter or half, whichever first holds whole
+ * longest waves. */
 static bool plan_shorter(const struct contact_case *one_case, struct companion_plan *out) {
+    const struct contact_case usual = with_usual_loads(one_case);
     double length = holds_waves(one_case, 0.25) ? 0.25 : 0.5;
-    return holds_waves(one_case, length) && plan_length(one_case, length, 1, out);
+    if (contact_case_has(one_case, COMPANION_LONGER) || !holds_waves(one_case, length) ||
+        !set_length(&usual, length, out))
+        return false;
+    set_draws(&usual, out);
+    return true;
+}
+
+static bool plan_equal(const struct contact_case *one_case, struct companion_plan *out) {
+    const struct contact_case usual = with_usual_loads(one_case);
+    bool other = contact_case_has(one_case, COMPANION_LONGER) ||
+                 contact_case_has(one_case, COMPANION_SHORTER);
+    if (!other || !set_length(&usual, 1, out))
+        return false;
+    set_draws(&usual, out);
+    return true;
 }
 
 /* --- one surface --- */
@@ -156,15 +219,22 @@ static void scale_measures(const struct cell *cell, double *series) {
             series[a * cell->one_case->load_count + k] *= measure_factor(MEASURES[a].cell, cells);
 }
 
-/* Sequences of cases have none of the bits by which these differ from them. */
+/* Returns the key of a draw. Sequences of cases have none of the bits by which these differ. */
+static struct random_key key_of(const struct companion_plan *plan, struct random_key key,
+                                size_t draw) {
+    enum { EQUAL_BIT = 61, SHORTER_BIT = 62, LONGER_BIT = 63, DRAW_BIT = 40 };
+    int bit = plan->length > 1 ? LONGER_BIT : plan->length < 1 ? SHORTER_BIT : EQUAL_BIT;
+    key.sequence ^= UINT64_C(1) << bit | (uint64_t)draw << DRAW_BIT;
+    return key;
+}
+
 static int cell_solve(void *workspace, const struct contact_surface *surface,
                       struct contact_tally *tally, struct companion_tally *out,
                       const struct contact_stopper *stopper, struct error *err) {
     const struct cell *cell = workspace;
     const struct companion_plan *plan = cell->plan;
-    struct random_key key = surface->key;
+    const struct random_key key = key_of(plan, surface->key, out->draw);
     double *series = companion_series(tally->one_case, out, 0);
-    key.sequence ^= UINT64_C(1) << (plan->length > 1 ? 63 : 62);
     int status = generator_run(cell->generator, key, cell->own, NULL, err);
     if (status == 0)
         status = contact_level_sample(&plan->level, &plan->surface, cell->rms_height, cell->own,
@@ -178,74 +248,62 @@ static int cell_solve(void *workspace, const struct contact_surface *surface,
 
 /* --- the error --- */
 
-/* Values are not monotone in the length, and some of their errors fall slower than 1/L: doubling
- * the length is assumed to leave this share of an error. Measured by
- * tests/validation/jobs/test_contact_cells.c. */
-static const double LEFT = 0.7;
-
-/* Returns the mean on another length less that on the case's own, over the latter. */
-static struct estimate change_of(const struct contact_tally *tally, enum contact_measure measure,
-                                 enum companion_name length, size_t load) {
-    if (!contact_case_has(tally->one_case, length))
-        return (struct estimate){NAN, NAN};
-    struct estimate own = contact_tally_controlled(tally, COMPANION_PROBE, 0, measure, load);
-    struct estimate other =
-        contact_tally_several(contact_tally_companion(tally, length, 0, measure, load));
-    return (struct estimate){(other.value - own.value) / own.value,
-                             fabs(hypot(own.standard_error, other.standard_error) / own.value)};
-}
-
-/* Until the bounds of all loads are known, an error holds the changes to both lengths in its order
- * and its bound. */
-static double *change_at(struct contact_error *error, enum companion_name length) {
-    return length == COMPANION_LONGER ? &error->order : &error->bound;
-}
-
-/* Returns the largest change of the loads around one: of those near it, and of its neighbours if
- * the sign changes in between. */
-static double change_around(const struct contact_case *one_case, struct contact_error *errors,
-                            enum companion_name length, size_t load) {
-    double most = 0, own = *change_at(&errors[load], length);
-    for (size_t k = 0; k < one_case->load_count; k++) {
-        double change = *change_at(&errors[k], length);
-        bool next = k + 1 >= load && k <= load + 1;
-        if ((next && change * own < 0) || contact_error_near(one_case->loads, k, load))
-            most = fmax(most, fabs(change));
-    }
-    return isnan(own) ? own : most;
-}
-
-/* A bound of the error at a load by one length. It includes the statistical error of the change of
- * few surfaces, which totals do not count otherwise. least: the part of the change beyond that. */
-struct verdict {
-    double bound, least, standard_error; /* NaN: not known */
+/* The mean on the own length less that on another one, over the former. */
+struct change {
+    double value, chance; /* within +- chance at 95 % */
+    double standard_error;
 };
 
-static struct verdict judge(const struct contact_tally *tally, enum contact_measure measure,
-                            enum companion_name length, size_t load, double y,
-                            struct contact_error *errors) {
-    const struct contact_case *one_case = tally->one_case;
-    if (!contact_case_has(one_case, length))
-        return (struct verdict){NAN, NAN, NAN};
-    double scale = contact_error_left(one_case->companions[length].length, LEFT) * fabs(y);
-    double change = scale * change_around(one_case, errors, length, load);
-    double standard_error = scale * change_of(tally, measure, length, load).standard_error;
-    return (struct verdict){hypot(change, standard_error), fmax(0, change - standard_error),
-                            standard_error};
+/* Returns the half width of the interval of 95 % of a difference of two means of na and nb draws
+ * (Welch 1947). */
+static double welch(struct estimate a, uint64_t na, struct estimate b, uint64_t nb) {
+    static const double QUANTILE = 0.975;
+    double va = a.standard_error * a.standard_error, vb = b.standard_error * b.standard_error;
+    double freedom =
+        (va + vb) * (va + vb) / (va * va / (double)(na - 1) + vb * vb / (double)(nb - 1));
+    return va + vb > 0 ? gsl_cdf_tdist_Pinv(QUANTILE, freedom) * sqrt(va + vb) : 0 * (va + vb);
 }
 
-/* The change on shorter cells is known precisely but says nothing about longer cells. Its bound is
- * used where it is smaller, but not below the part of the change on longer cells that exceeds its
- * statistical error. */
-static struct verdict weigh(struct verdict longer, struct verdict shorter) {
-    if (isnan(longer.bound) || shorter.bound >= longer.bound)
-        return isnan(longer.bound) ? shorter : longer;
-    if (isnan(shorter.bound))
-        return longer;
-    if (shorter.bound >= longer.least)
-        return shorter;
-    longer.bound = longer.least;
-    return longer;
+static struct change change_of(const struct contact_tally *tally, enum contact_measure measure,
+                               enum companion_name length, size_t load) {
+    static const struct change UNKNOWN = {NAN, NAN, NAN};
+    uint64_t owns = contact_tally_draws(tally, COMPANION_EQUAL, 0, measure, load);
+    uint64_t others = contact_tally_draws(tally, length, 0, measure, load);
+    if (owns < 2 || others < 2)
+        return UNKNOWN;
+    struct estimate own = contact_tally_companion(tally, COMPANION_EQUAL, 0, measure, load);
+    struct estimate other = contact_tally_companion(tally, length, 0, measure, load);
+    double y = fabs(own.value);
+    return (struct change){(own.value - other.value) / own.value,
+                           welch(own, owns, other, others) / y,
+                           hypot(own.standard_error, other.standard_error) / y};
+}
+
+/* Returns the part of the changes of the loads around one that exceeds their chance, or the own
+ * change if that is larger: a change vanishes at a load where its sign changes. */
+static double change_around(const struct contact_case *one_case, const struct change *changes,
+                            size_t load) {
+    double most = fabs(changes[load].value);
+    for (size_t k = 0; k < one_case->load_count; k++)
+        if (contact_error_near(one_case->loads, k, load))
+            most = fmax(most, fabs(changes[k].value) - changes[k].chance);
+    return most;
+}
+
+/* Returns the error over the value. What a longer cell leaves of an error bounds it on both sides;
+ * the change to a shorter one has no sign for longer ones. */
+static struct contact_error error_of(const struct contact_case *one_case,
+                                     const struct change *changes, double length, size_t load) {
+    const struct change *own = &changes[load];
+    double around = change_around(one_case, changes, load);
+    double whole =
+        contact_error_left(length, one_case->surface.dimension == 1 ? PROFILE_LEFT : SURFACE_LEFT);
+    double left = length > 1 ? fmax(whole - 1, TRANSFER) : whole;
+    double factor = length > 1 ? 1 : whole;
+    return (struct contact_error){.value = length > 1 ? own->value : 0 * own->value,
+                                  .bound = hypot(factor * own->chance, left * around),
+                                  .standard_error = factor * own->standard_error,
+                                  .order = NAN};
 }
 
 static bool cell_applies(const struct contact_case *one_case, size_t model) {
@@ -253,33 +311,27 @@ static bool cell_applies(const struct contact_case *one_case, size_t model) {
     return true;
 }
 
-/* The relative change of a half-space on a coarse mesh stands for that of other models and meshes.
- * As the sign of the error is not known, the bound is on both sides. */
+/* The relative change of a half-space on a coarse mesh stands for that of other models and
+ * meshes. */
 static bool cell_errors(const struct contact_tally *tally, enum contact_measure measure,
                         size_t model, struct contact_error *out) {
     const struct contact_case *one_case = tally->one_case;
     size_t n = one_case->load_count, finest = one_case->level_count - 1;
+    enum companion_name length =
+        contact_case_has(one_case, COMPANION_LONGER) ? COMPANION_LONGER : COMPANION_SHORTER;
+    struct change changes[CONTACT_LOADS_MOST];
     bool any = false;
-    for (size_t k = 0; k < n; k++) {
-        out[k] = (struct contact_error){.value = NAN};
-        *change_at(&out[k], COMPANION_LONGER) =
-            change_of(tally, measure, COMPANION_LONGER, k).value;
-        *change_at(&out[k], COMPANION_SHORTER) =
-            change_of(tally, measure, COMPANION_SHORTER, k).value;
-    }
+    if (!contact_case_has(one_case, COMPANION_EQUAL))
+        return false;
+    for (size_t k = 0; k < n; k++)
+        changes[k] = change_of(tally, measure, length, k);
     for (size_t k = 0; k < n; k++) {
         double y = contact_mean(tally, measure, model, finest, k).value;
-        struct verdict of = weigh(judge(tally, measure, COMPANION_LONGER, k, y, out),
-                                  judge(tally, measure, COMPANION_SHORTER, k, y, out));
-        out[k].value = of.bound;
-        out[k].standard_error = of.standard_error;
-    }
-    for (size_t k = 0; k < n; k++) {
-        bool known = !isnan(out[k].value);
-        out[k].bound = out[k].value;
-        out[k].value = known ? 0 : (double)NAN;
-        out[k].order = NAN;
-        any = any || known;
+        out[k] = error_of(one_case, changes, one_case->companions[length].length, k);
+        out[k].value *= y;
+        out[k].bound *= fabs(y);
+        out[k].standard_error *= fabs(y);
+        any = any || !isnan(out[k].value);
     }
     return any;
 }
@@ -288,5 +340,8 @@ COMPANION_DEFINE(LONGER, "a longer cell", "/contact/cell_error", ERROR_CELL, pla
                  struct cell, cell_create, cell_clear, cell_bytes, cell_seconds, cell_solve,
                  cell_applies, cell_errors, NULL)
 COMPANION_DEFINE(SHORTER, "a shorter cell", "/contact/cell_error", ERROR_CELL, plan_shorter,
+                 struct cell, cell_create, cell_clear, cell_bytes, cell_seconds, cell_solve,
+                 cell_applies, cell_errors, NULL)
+COMPANION_DEFINE(EQUAL, "another cell as long", "/contact/cell_error", ERROR_CELL, plan_equal,
                  struct cell, cell_create, cell_clear, cell_bytes, cell_seconds, cell_solve,
                  cell_applies, cell_errors, NULL)

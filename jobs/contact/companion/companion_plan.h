@@ -11,27 +11,28 @@
 /* All companions, in the order in which they are planned and solved. Each may use those before it.
  * A name needs a row, which its file defines by COMPANION_DEFINE (companion.h).
  *
- * LONGER, SHORTER: a surface on a cell of another length; one series.
+ * LONGER, SHORTER, EQUAL: a surface of its own on a cell of another length, or as long; one series.
  * PROBE: the half-space, series 0, and where blocks are low the block of each model; on the surface
  * of the case.
  * LAW: the surface of the case, series 0, and that of the other law of heights.
  * LIKE: the mirrored sub-map of a surface like a measured one; one series. */
-#define COMPANION_NAMES(NAME) NAME(LONGER) NAME(SHORTER) NAME(PROBE) NAME(LAW) NAME(LIKE)
+#define COMPANION_NAMES(NAME)                                                                      \
+    NAME(LONGER) NAME(SHORTER) NAME(EQUAL) NAME(PROBE) NAME(LAW) NAME(LIKE)
 #define COMPANION_ENTRY(name) COMPANION_##name,
 enum companion_name { COMPANION_NAMES(COMPANION_ENTRY) COMPANION_COUNT };
 #undef COMPANION_ENTRY
 
-/* A difference that is summed realisation by realisation: a series, or a model of the case on its
- * coarsest level, less another series. */
+/* A difference that is summed realisation by realisation: a series less another one. */
 struct companion_pair {
-    bool of_model;
     size_t of, less;
 };
-enum { COMPANION_PAIRS_MOST = CONTACT_MODELS_MOST + 1, COMPANION_FACTS_MOST = 1 };
+enum { COMPANION_PAIRS_MOST = CONTACT_MODELS_MOST, COMPANION_FACTS_MOST = 1 };
 
 struct companion_plan {
     size_t series;     /* how many surfaces or blocks are pressed to all loads; 0: there is none */
     struct subset due; /* the realisations that have it */
+    uint64_t draws; /* in each of the first realisations of `due`: surfaces of its own; 0: one, as
+                     * in all others */
     struct contact_level level; /* the mesh of all series */
     size_t pair_count;
     struct companion_pair pairs[COMPANION_PAIRS_MOST];
@@ -44,5 +45,16 @@ struct companion_plan {
     struct surface_band band;    /* of a surface on it */
     double length;               /* of its cell, over that of the case */
 };
+
+/* Returns how often the companion is solved in a realisation. */
+static inline uint64_t companion_draws(const struct companion_plan *plan, uint64_t realisation) {
+    if (!subset_has(&plan->due, realisation))
+        return 0;
+    return realisation < plan->due.first && plan->draws > 1 ? plan->draws : 1;
+}
+/* Returns the most of these. */
+static inline uint64_t companion_draws_most(const struct companion_plan *plan) {
+    return plan->draws > 1 ? plan->draws : 1;
+}
 
 #endif

@@ -1,26 +1,19 @@
-/* The probe: the cheap model on a coarse mesh. The surface is pressed on a half-space and, where
- * blocks of the case are low, on exact layers of their heights. These pairs have the same surface,
- * and differ by the height alone, of which they estimate the error. The half-space is also compared
- * with surfaces of another length (companion_cell.c) and with those of alternative generators
- * (companion_law.c). */
+/* The probe: the cheap model on a coarse mesh. Where blocks of the case are low, each surface is
+ * pressed on a half-space and on exact layers of their heights. These pairs have the same surface,
+ * and differ by the height alone, of which they estimate the error. All realisations have them, as
+ * a few with patches far from each other may make most of the error. */
 #include "jobs/contact/companion/block_error.h"
 #include "jobs/contact/companion/companion.h"
-#include "jobs/contact/model/model_linear.h"
 #include <stdlib.h>
 #include <string.h>
 
-/* Where blocks are low, the first sixteen realisations are probed, and then each fourth. */
-static const struct subset LOW_BLOCKS = {16, 1, 4};
-/* Else they are as few as the error of the cell needs: this is their time over that of the case
- * without. */
-static const double TIME_SHARE = 0.02;
+static const struct subset EACH = {0, 1, 1};
 /* The half-space, and a layer for each model. */
 enum { BLOCKS_MOST = CONTACT_MODELS_MOST + 1 };
 
 struct probe {
     const struct companion_plan *plan;
-    struct coarse_solver *blocks[BLOCKS_MOST]; /* owned; NULL where same[] is another one, or a
-                                                * model's values stand for the half-space */
+    struct coarse_solver *blocks[BLOCKS_MOST]; /* owned; NULL where same[] is another one */
     size_t same[BLOCKS_MOST];                  /* the first block of that height */
     double rms_height;                         /* of the surfaces */
     double *z;
@@ -38,28 +31,16 @@ static size_t first_of_height(const struct contact_case *one_case, size_t number
     return first;
 }
 
-/* Returns the position of the twin: the model that has solved the half-space of the probe already,
- * on the coarsest level; model_count without one. */
-static size_t twin_of(const struct contact_case *one_case, const struct companion_plan *plan) {
-    size_t m = 0;
-    while (m < one_case->model_count &&
-           (!linear_is_exact(one_case->models[m]) || isfinite(one_case->blocks[m].height)))
-        m++;
-    return plan->level.grid.nx == one_case->levels[0].grid.nx ? m : one_case->model_count;
-}
-
-/* Returns whether a block is solved: it is neither the twin nor as high as one before it. */
-static bool is_solved(const struct contact_case *one_case, const struct companion_plan *plan,
-                      size_t number) {
-    bool twin = twin_of(one_case, plan) < one_case->model_count;
-    return first_of_height(one_case, number) == number && (number > 0 || !twin);
+/* Returns whether a block is solved: none before it is as high. */
+static bool is_solved(const struct contact_case *one_case, size_t number) {
+    return first_of_height(one_case, number) == number;
 }
 
 static size_t solved_blocks(const struct contact_case *one_case,
                             const struct companion_plan *plan) {
     size_t count = 0;
     for (size_t b = 0; b < plan->series; b++)
-        count += is_solved(one_case, plan, b);
+        count += is_solved(one_case, b);
     return count;
 }
 
@@ -77,41 +58,17 @@ static double probe_seconds(const struct contact_case *one_case,
            coarse_solver_seconds(one_case, &plan->level.grid);
 }
 
-/* Returns the position of the cheapest model that has a value of every realisation; model_count
- * without one. */
-static size_t control_of(const struct contact_case *one_case) {
-    size_t found = one_case->model_count;
-    for (size_t m = 0; m < one_case->model_count; m++)
-        if (!one_case->models[m]->may_fail &&
-            (found == one_case->model_count ||
-             one_case->models[m]->rank < one_case->models[found]->rank))
-            found = m;
-    return found;
-}
-
-/* Sets the pairs: the block of each model less the half-space, and the control less that. */
-static void set_pairs(const struct contact_case *one_case, struct companion_plan *out) {
-    size_t control = control_of(one_case);
-    for (size_t b = 1; b < out->series; b++)
-        out->pairs[out->pair_count++] = (struct companion_pair){.of = b};
-    if (control < one_case->model_count)
-        out->pairs[out->pair_count++] = (struct companion_pair){.of_model = true, .of = control};
-}
-
 static bool probe_plan(const struct contact_case *one_case, struct companion_plan *out) {
     bool low = false;
     for (size_t m = 0; m < one_case->model_count; m++)
         low = low || block_is_low(contact_case_block_bound(one_case, m));
-    if (!low && !contact_case_has(one_case, COMPANION_LONGER) &&
-        !contact_case_has(one_case, COMPANION_SHORTER))
+    if (!low)
         return false;
     out->level = coarse_level(one_case);
-    out->series = low ? one_case->model_count + 1 : 1;
-    out->due =
-        low ? LOW_BLOCKS
-            : subset_each(subset_interval(probe_seconds(one_case, out),
-                                          TIME_SHARE * contact_case_least_seconds(one_case), 1));
-    set_pairs(one_case, out);
+    out->series = one_case->model_count + 1;
+    out->due = EACH;
+    for (size_t b = 1; b < out->series; b++)
+        out->pairs[out->pair_count++] = (struct companion_pair){.of = b};
     return true;
 }
 
@@ -127,7 +84,7 @@ static int probe_create(void *workspace, const struct contact_case *one_case,
     probe->rms_height = moments->rms_height;
     for (size_t b = 0; b < plan->series && status == 0; b++) {
         probe->same[b] = first_of_height(one_case, b);
-        if (is_solved(one_case, plan, b))
+        if (is_solved(one_case, b))
             status = coarse_solver_create(&probe->blocks[b], one_case, &plan->level.grid,
                                           height_of(one_case, b), moments, err);
     }
@@ -144,19 +101,6 @@ static void probe_clear(void *workspace) {
     free(probe->z);
 }
 
-/* Copies the values of the twin. It has areas undeformed and under load, the probe only
- * undeformed. */
-static void copy_twin(const struct companion_plan *plan, struct contact_tally *tally,
-                      double *series) {
-    const struct contact_case *one_case = tally->one_case;
-    size_t n = one_case->load_count;
-    size_t cell = contact_case_cell(one_case, twin_of(one_case, plan), 0, 0);
-    for (enum contact_measure a = 0; a < MEASURE_PAIRED; a++)
-        memcpy(series + a * n,
-               contact_tally_values(tally, a == MEASURE_EDGES_STRETCHED ? MEASURE_EDGES : a) + cell,
-               n * sizeof *series);
-}
-
 static int probe_solve(void *workspace, const struct contact_surface *surface,
                        struct contact_tally *tally, struct companion_tally *out,
                        const struct contact_stopper *stopper, struct error *err) {
@@ -168,8 +112,6 @@ static int probe_solve(void *workspace, const struct contact_surface *surface,
         double *series = companion_series(one_case, out, b);
         if (probe->blocks[b] != NULL)
             status = coarse_solver_press(probe->blocks[b], probe->z, series, stopper, err);
-        else if (b == 0)
-            copy_twin(probe->plan, tally, series);
         else
             memcpy(series, companion_series(one_case, out, probe->same[b]),
                    MEASURE_PAIRED * one_case->load_count * sizeof *series);

@@ -6,15 +6,17 @@
 int companion_tally_create(struct companion_tally *out, const struct contact_case *one_case,
                            const struct companion_plan *plan, struct error *err) {
     size_t cells = companion_cell(one_case, plan->series, 0, 0);
-    out->values = array_create(cells, sizeof *out->values);
+    size_t room = cells * companion_draws_most(plan);
+    out->values = array_create(room, sizeof *out->values);
     int status = out->values != NULL
                      ? contact_sums_create(&out->sums, cells, err)
-                     : error_memory(err, cells * sizeof *out->values, "a tally of a companion");
+                     : error_memory(err, room * sizeof *out->values, "a tally of a companion");
     if (status == 0)
         status = contact_sums_create(&out->differences,
                                      companion_cell(one_case, plan->pair_count, 0, 0), err);
     if (status == 0)
         status = contact_sums_create(&out->fact_sums, plan->fact_count, err);
+    out->draws = companion_draws_most(plan);
     if (status == 0)
         companion_tally_begin(out);
     return status;
@@ -32,13 +34,16 @@ double companion_tally_bytes(const struct contact_case *one_case,
                              const struct companion_plan *plan) {
     size_t cells = companion_cell(one_case, plan->series, 0, 0);
     size_t pairs = companion_cell(one_case, plan->pair_count, 0, 0);
-    return sizeof(double) * (double)cells + contact_sums_bytes(cells) + contact_sums_bytes(pairs) +
+    return sizeof(double) * (double)cells * (double)companion_draws_most(plan) +
+           contact_sums_bytes(cells) + contact_sums_bytes(pairs) +
            contact_sums_bytes(plan->fact_count);
 }
 
 void companion_tally_begin(struct companion_tally *tally) {
-    for (size_t a = 0; a < tally->sums.counts.size; a++)
+    for (size_t a = 0; a < tally->draws * tally->sums.counts.size; a++)
         tally->values[a] = NAN;
+    tally->draw = 0;
+    tally->draws = 1;
     for (size_t a = 0; a < COMPANION_FACTS_MOST; a++)
         tally->facts[a] = NAN;
 }
@@ -51,39 +56,48 @@ static void fill_fits(const struct contact_case *one_case, double *series) {
 }
 
 static void add_pair(struct companion_tally *tally, const struct contact_case *one_case,
-                     const struct companion_plan *plan, size_t pair, const double *case_values) {
-    const struct companion_pair *of = &plan->pairs[pair];
-    for (enum contact_measure a = 0; a < MEASURE_PAIRED; a++) {
-        const double *less = tally->values + companion_cell(one_case, of->less, a, 0);
-        const double *from = of->of_model ? case_values + a * contact_case_cells(one_case) +
-                                                contact_case_cell(one_case, of->of, 0, 0)
-                                          : tally->values + companion_cell(one_case, of->of, a, 0);
-        for (size_t k = 0; k < one_case->load_count; k++)
+                     const struct companion_plan *plan, size_t pair) {
+    const double *of = companion_series(one_case, tally, plan->pairs[pair].of);
+    const double *less = companion_series(one_case, tally, plan->pairs[pair].less);
+    for (enum contact_measure a = 0; a < MEASURE_PAIRED; a++)
+        for (size_t k = 0; k < one_case->load_count; k++) {
+            size_t cell = companion_cell(one_case, 0, a, k);
             contact_sums_add(&tally->differences, companion_cell(one_case, pair, a, k),
-                             (from[k] - less[k]) * contact_sums_scale(one_case, a, k));
+                             (of[cell] - less[cell]) * contact_sums_scale(one_case, a, k));
+        }
+}
+
+/* Adds the draw at which the tally stands. */
+static void add_draw(struct companion_tally *tally, const struct contact_case *one_case,
+                     const struct companion_plan *plan) {
+    for (size_t series = 0; series < plan->series; series++) {
+        double *values = companion_series(one_case, tally, series);
+        fill_fits(one_case, values);
+        for (enum contact_measure a = 0; a < MEASURE_PAIRED; a++)
+            for (size_t k = 0; k < one_case->load_count; k++)
+                contact_sums_add(&tally->sums, companion_cell(one_case, series, a, k),
+                                 values[companion_cell(one_case, 0, a, k)] *
+                                     contact_sums_scale(one_case, a, k));
     }
+    for (size_t pair = 0; pair < plan->pair_count; pair++)
+        add_pair(tally, one_case, plan, pair);
 }
 
 void companion_tally_add(struct companion_tally *tally, const struct contact_case *one_case,
-                         const struct companion_plan *plan, const double *case_values) {
-    for (size_t series = 0; series < plan->series; series++) {
-        fill_fits(one_case, companion_series(one_case, tally, series));
-        for (enum contact_measure a = 0; a < MEASURE_PAIRED; a++)
-            for (size_t k = 0; k < one_case->load_count; k++) {
-                size_t cell = companion_cell(one_case, series, a, k);
-                contact_sums_add(&tally->sums, cell,
-                                 tally->values[cell] * contact_sums_scale(one_case, a, k));
-            }
-    }
-    for (size_t pair = 0; pair < plan->pair_count; pair++)
-        add_pair(tally, one_case, plan, pair, case_values);
+                         const struct companion_plan *plan) {
+    for (tally->draw = 0; tally->draw < tally->draws; tally->draw++)
+        add_draw(tally, one_case, plan);
+    tally->draw = 0;
     for (size_t a = 0; a < plan->fact_count; a++)
         contact_sums_add(&tally->fact_sums, a, tally->facts[a]);
 }
 
-bool companion_tally_fits(const struct companion_tally *tally, uint64_t realisations) {
-    return contact_sums_fit(&tally->sums, realisations) &&
-           contact_sums_fit(&tally->differences, realisations) &&
+bool companion_tally_fits(const struct companion_tally *tally, const struct companion_plan *plan,
+                          uint64_t realisations) {
+    uint64_t extra = companion_draws_most(plan) - 1;
+    uint64_t many = realisations < plan->due.first ? realisations : plan->due.first;
+    uint64_t draws = realisations + many * extra;
+    return contact_sums_fit(&tally->sums, draws) && contact_sums_fit(&tally->differences, draws) &&
            contact_sums_fit(&tally->fact_sums, realisations);
 }
 

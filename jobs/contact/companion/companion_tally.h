@@ -6,7 +6,9 @@
 #include "jobs/contact/contact_sums.h"
 
 struct companion_tally {
-    double *values; /* owned: by series, measure below MEASURE_PAIRED and load; NaN: none */
+    double *values; /* owned: by draw, series, measure below MEASURE_PAIRED and load; NaN: none */
+    size_t draw;    /* that is being solved */
+    size_t draws;   /* of the present realisation, 1 until it has more */
     double facts[COMPANION_FACTS_MOST]; /* NaN: none */
     struct contact_sums sums;           /* by series, measure and load */
     struct contact_sums differences;    /* by pair of the plan, measure and load */
@@ -18,10 +20,11 @@ static inline size_t companion_cell(const struct contact_case *one_case, size_t 
                                     enum contact_measure measure, size_t load) {
     return (series * MEASURE_PAIRED + (size_t)measure) * one_case->load_count + load;
 }
-/* Returns the values of a series, by measure and load. */
+/* Returns the values of a series of the draw that is being solved, by measure and load. */
 static inline double *companion_series(const struct contact_case *one_case,
                                        const struct companion_tally *tally, size_t series) {
-    return tally->values + companion_cell(one_case, series, 0, 0);
+    return tally->values + tally->draw * tally->sums.counts.size +
+           companion_cell(one_case, series, 0, 0);
 }
 
 /* plan: that of the companion in the case. After a failure it is to be cleared. */
@@ -32,11 +35,11 @@ double companion_tally_bytes(const struct contact_case *one_case,
                              const struct companion_plan *plan);
 /* Empties the values of the present realisation. */
 void companion_tally_begin(struct companion_tally *tally);
-/* Adds the values of the present realisation. case_values: those of the case, by measure and cell
- * (contact_case_cell). */
+/* Adds the values of all draws of the present realisation. */
 void companion_tally_add(struct companion_tally *tally, const struct contact_case *one_case,
-                         const struct companion_plan *plan, const double *case_values);
-bool companion_tally_fits(const struct companion_tally *tally, uint64_t realisations);
+                         const struct companion_plan *plan);
+bool companion_tally_fits(const struct companion_tally *tally, const struct companion_plan *plan,
+                          uint64_t realisations);
 void companion_tally_put(struct bytes *bytes, const struct companion_tally *tally);
 void companion_tally_get(struct byte_reader *reader, struct companion_tally *tally);
 void companion_tally_merge(struct companion_tally *into, const struct companion_tally *from);

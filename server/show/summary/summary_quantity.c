@@ -62,10 +62,17 @@ static double number_at(const double *numbers, const struct curve *curve, size_t
 
 /* --- cells --- */
 
-/* In percent of the value, with its sign: above or below what is true, and within which bound. */
-static void error_cell(struct text_table *table, double error, double bound, double value) {
+/* In percent of the value, with its sign: above or below what is true, and within which bound; or
+ * below which size, where no more is known. */
+static void error_cell(struct text_table *table, const struct curve *curve, size_t k,
+                       enum error_source source) {
+    const struct curve_error *of = &curve->errors[source];
+    double value = number_at(curve->y, curve, k), error = number_at(of->value, curve, k);
+    double bound = number_at(of->bound, curve, k);
     if (isnan(error / value))
         table_cell(table, "-");
+    else if (error_is_unresolved(source, error, bound, number_at(of->standard_error, curve, k)))
+        table_cell(table, "<%.2g", 100 * (fabs(error) + bound) / fabs(value));
     else if (error == 0 && bound > 0)
         table_cell(table, "+-%.2g", 100 * bound / value);
     else if (bound > 0)
@@ -193,9 +200,7 @@ static void put_place(const struct case_result *one, const struct finest_curves 
         value_cell(table, one, curve, k);
         for (int source = 0; source < ERROR_SOURCES; source++)
             if (has_column(finest, (enum error_source)source))
-                error_cell(table, number_at(curve->errors[source].value, curve, k),
-                           number_at(curve->errors[source].bound, curve, k),
-                           number_at(curve->y, curve, k));
+                error_cell(table, curve, k, (enum error_source)source);
         if (has_law(finest))
             law_cell(table, number_at(curve->law_difference, curve, k),
                      number_at(curve->law_standard_error, curve, k), number_at(curve->y, curve, k));
