@@ -279,14 +279,17 @@ static struct change change_of(const struct contact_tally *tally, enum contact_m
                            hypot(own.standard_error, other.standard_error) / y};
 }
 
-/* Returns the part of the changes of the loads around one that exceeds their chance, or the own
- * change if that is larger: a change vanishes at a load where its sign changes. */
+/* Returns the own change of a load, or the part of that of a load around it that exceeds its chance
+ * if that is larger, since a change vanishes where its sign changes. That part counts the less the
+ * farther the load is, and from a factor of two on not at all. */
 static double change_around(const struct contact_case *one_case, const struct change *changes,
                             size_t load) {
     double most = fabs(changes[load].value);
-    for (size_t k = 0; k < one_case->load_count; k++)
-        if (contact_error_near(one_case->loads, k, load))
-            most = fmax(most, fabs(changes[k].value) - changes[k].chance);
+    for (size_t k = 0; k < one_case->load_count; k++) {
+        double weight = 1 - fabs(log2(one_case->loads[k] / one_case->loads[load]));
+        if (weight > 0)
+            most = fmax(most, weight * (fabs(changes[k].value) - changes[k].chance));
+    }
     return most;
 }
 

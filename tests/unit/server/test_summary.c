@@ -106,6 +106,26 @@ static void few_cases_have_a_table_each(void **state) {
     study_result_clear(&study);
 }
 
+/* Where chance makes up most of an error of the cell, the table has its largest size alone. */
+static void chance_is_shown_as_a_size(void **state) {
+    (void)state;
+    static const double ALL[] = {1, 1, 1, 1};
+    struct study_result study = built_study("contact", "pressed", 1);
+    struct case_result *one = &study.cases[0];
+    struct curve curve = built_points(one, "contact_area", 4, (const double[]){1, 2, 3, 4}, ALL,
+                                      (const double[]){0.01, 0.01, 0.01, 0.01});
+    curve.errors[ERROR_CELL] = (struct curve_error){
+        .applies = true,
+        .value = built_numbers(one, 4, (const double[]){0.01, -0.05, 0.01, 0}),
+        .bound = built_numbers(one, 4, (const double[]){0.03, 0.03, 0.03, 0.03}),
+        .standard_error = built_numbers(one, 4, (const double[]){0.015, 0.015, 0.001, 0.015})};
+    built_curve(one, &curve);
+    char *text = table_of(&study, NULL);
+    check_shown(text, (const char *[]){"<4", "-5+-3", "+1+-3", "+-3", NULL});
+    free(text);
+    study_result_clear(&study);
+}
+
 static void many_cases_have_a_row_each(void **state) {
     (void)state;
     struct study_result study = built_study("contact", "pressed", 6);
@@ -228,6 +248,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scalars_are_those_of_the_view),
         cmocka_unit_test(few_cases_have_a_table_each),
+        cmocka_unit_test(chance_is_shown_as_a_size),
         cmocka_unit_test(many_cases_have_a_row_each),
         cmocka_unit_test(a_report_tells_errors_by_source),
         cmocka_unit_test(failures_are_told),
