@@ -159,8 +159,8 @@ static const struct parameter ROWS[] = {
      .later = true,
      .example_json = "\"none\"",
      .help =
-         "what the length of the cell changes: probed (unless given) on some longer and shorter "
-         "surfaces, for about a tenth of the time; or none, and it is not known"},
+         "what the length of the cell changes: probed (unless given) on longer surfaces and ones as "
+         "long, for about a second or a tenth of the time; or none, and it is not known"},
     {.path = "/contact/law_difference",
      .type = PARAMETER_CHOICE,
      .choices = COMPANION_CHOICES,
