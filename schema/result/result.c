@@ -11,7 +11,7 @@
 const struct error_source_row ERROR_SOURCE_ROWS[ERROR_SOURCES] = {
     [ERROR_DISCRETISATION] = {SOURCE_KEYS("discretisation"), .order_key = "discretisation_order",
                               .order_from_key = "discretisation_order_from"},
-    [ERROR_CELL] = {SOURCE_KEYS("cell"), .bound_has_chance = true},
+    [ERROR_CELL] = {SOURCE_KEYS("cell"), .bound_has_interval = true},
     [ERROR_BLOCK] = {SOURCE_KEYS("block")},
     [ERROR_MODEL] = {.name = "model",
                      .key = "model_error",
@@ -24,7 +24,7 @@ const struct error_source_row ERROR_SOURCE_ROWS[ERROR_SOURCES] = {
 bool error_is_unresolved(enum error_source source, double value, double bound,
                          double standard_error) {
     static const double DEVIATIONS = 1.96, MOST = 0.5;
-    return ERROR_SOURCE_ROWS[source].bound_has_chance && value != 0 && fabs(value) <= bound &&
+    return ERROR_SOURCE_ROWS[source].bound_has_interval && value != 0 && fabs(value) <= bound &&
            DEVIATIONS * standard_error > MOST * (fabs(value) + bound);
 }
 

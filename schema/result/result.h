@@ -34,11 +34,11 @@ struct error_source_row {
     const char *standard_error_key; /* in JSON */
     const char *order_key;          /* in JSON; NULL: a source without an order */
     const char *order_from_key;     /* in JSON: "levels" or "assumed" */
-    bool bound_has_chance;          /* bounds have the chance of their values at 95 %, too */
+    bool bound_has_interval;        /* bounds include the interval of 95 % of the values */
 };
 extern const struct error_source_row ERROR_SOURCE_ROWS[ERROR_SOURCES];
-/* Returns whether an estimated error, whose bound has its chance, is mostly chance: all that is
- * known of it is its size, |value| + bound at most. */
+/* Returns whether most of an error, whose bound includes its interval of 95 %, is statistical: all
+ * that is known of it is its size, |value| + bound at most. */
 bool error_is_unresolved(enum error_source source, double value, double bound,
                          double standard_error);
 

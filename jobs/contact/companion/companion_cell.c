@@ -6,7 +6,8 @@
  * Such a surface is a function of the seed, its realisation and its number there, and cases that
  * share their random numbers share it. All else of it is that of the case. How many there are is
  * counted by the work that they take, as it is estimated, on any machine. Solves of small cells
- * are so cheap that the first realisations have many, and the difference a small chance. */
+ * are so cheap that the first realisations have many, and the difference a small statistical error.
+ */
 #include "core/cost.h"
 #include "jobs/contact/companion/companion.h"
 #include "jobs/contact/contact_measure.h"
@@ -250,7 +251,7 @@ static int cell_solve(void *workspace, const struct contact_surface *surface,
 
 /* The mean on the own length less that on another one, over the former. */
 struct change {
-    double value, chance; /* within +- chance at 95 % */
+    double value, interval; /* within +- interval at 95 % */
     double standard_error;
 };
 
@@ -274,21 +275,23 @@ static struct change change_of(const struct contact_tally *tally, enum contact_m
     struct estimate own = contact_tally_companion(tally, COMPANION_EQUAL, 0, measure, load);
     struct estimate other = contact_tally_companion(tally, length, 0, measure, load);
     double y = fabs(own.value);
+    if (!(y > 0))
+        return UNKNOWN;
     return (struct change){(own.value - other.value) / own.value,
                            welch(own, owns, other, others) / y,
                            hypot(own.standard_error, other.standard_error) / y};
 }
 
-/* Returns the own change of a load, or the part of that of a load around it that exceeds its chance
- * if that is larger, since a change vanishes where its sign changes. That part counts the less the
- * farther the load is, and from a factor of two on not at all. */
+/* Returns the own change of a load, or the part of that of a load around it that exceeds its
+ * interval if that is larger, since a change vanishes where its sign changes. That part counts the
+ * less the farther the load is, and from a factor of two on not at all. */
 static double change_around(const struct contact_case *one_case, const struct change *changes,
                             size_t load) {
     double most = fabs(changes[load].value);
     for (size_t k = 0; k < one_case->load_count; k++) {
         double weight = 1 - fabs(log2(one_case->loads[k] / one_case->loads[load]));
         if (weight > 0)
-            most = fmax(most, weight * (fabs(changes[k].value) - changes[k].chance));
+            most = fmax(most, weight * (fabs(changes[k].value) - changes[k].interval));
     }
     return most;
 }
@@ -304,7 +307,7 @@ static struct contact_error error_of(const struct contact_case *one_case,
     double left = length > 1 ? fmax(whole - 1, TRANSFER) : whole;
     double factor = length > 1 ? 1 : whole;
     return (struct contact_error){.value = length > 1 ? own->value : 0 * own->value,
-                                  .bound = hypot(factor * own->chance, left * around),
+                                  .bound = hypot(factor * own->interval, left * around),
                                   .standard_error = factor * own->standard_error,
                                   .order = NAN};
 }

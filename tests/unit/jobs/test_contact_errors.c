@@ -169,7 +169,7 @@ static void add_draws(struct errors_fixture *f, enum companion_name length, doub
  * with its sign. Its bound has the interval of 95 % by Welch, and what doubling the length six
  * times leaves if it leaves 7/10 each time, 0.133 of the largest change around, but a fifth at
  * least for other models. At the second load the change vanishes: there that of the load
- * behind it counts, as far as it exceeds its chance, by its distance of log2(3/2). */
+ * behind it counts, as far as it exceeds its interval, by its distance of log2(3/2). */
 static void a_short_cell_is_told(void **state) {
     (void)state;
     static const double OWN[DRAWS] = {0.399, 0.401, 0.398, 0.402},

@@ -106,8 +106,8 @@ static void few_cases_have_a_table_each(void **state) {
     study_result_clear(&study);
 }
 
-/* Where chance makes up most of an error of the cell, the table has its largest size alone. */
-static void chance_is_shown_as_a_size(void **state) {
+/* Where most of an error of the cell is statistical, the table has its largest size alone. */
+static void statistical_errors_are_shown_as_sizes(void **state) {
     (void)state;
     static const double ALL[] = {1, 1, 1, 1};
     struct study_result study = built_study("contact", "pressed", 1);
@@ -248,7 +248,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scalars_are_those_of_the_view),
         cmocka_unit_test(few_cases_have_a_table_each),
-        cmocka_unit_test(chance_is_shown_as_a_size),
+        cmocka_unit_test(statistical_errors_are_shown_as_sizes),
         cmocka_unit_test(many_cases_have_a_row_each),
         cmocka_unit_test(a_report_tells_errors_by_source),
         cmocka_unit_test(failures_are_told),

@@ -40,7 +40,7 @@ static void count_curve(const struct scene *scene, const cJSON *curve, const cJS
         double chance =
             hypot(at(curve, "/standard_error", k), scale * at(reference, "/standard_error", k));
         double error = at(curve, "/cell_error", k), bound = at(curve, "/cell_bound", k);
-        double room = bound + 2 * chance; /* the bound has the chance of the error itself */
+        double room = bound + 2 * chance; /* the bound has that of the error itself */
         if (isnan(y) || isnan(limit))
             continue;
         coverage->points++;
