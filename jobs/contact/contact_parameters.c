@@ -158,9 +158,9 @@ static const struct parameter ROWS[] = {
          "a target bounds the error of cells whose length is left out, and of no others",
      .later = true,
      .example_json = "\"none\"",
-     .help =
-         "what the length of the cell changes: probed (unless given) on longer surfaces and ones as "
-         "long, for about a second or a tenth of the time; or none, and it is not known"},
+     .help = "what the length of the cell changes: probed (unless given) on longer surfaces and "
+             "ones as long, for about a second or a tenth of the time; or none, and it is not "
+             "known"},
     {.path = "/contact/law_difference",
      .type = PARAMETER_CHOICE,
      .choices = COMPANION_CHOICES,
