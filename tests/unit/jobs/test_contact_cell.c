@@ -169,7 +169,7 @@ static void they_cost_little(void **state) {
         contact_case_estimate(&one_case, &cost);
         double beside = companions_seconds_but(&one_case, COMPANION_LAW);
         assert_true(beside > 0 && beside <= 0.14 * (cost.seconds - beside));
-        double first = companions_first_seconds_but(&one_case, COMPANION_GENERATION);
+        double first = companions_first_seconds_but(&one_case, COMPANION_LAW);
         assert_true(first > 0 && first <= fmax(1, 0.5 * 20 * cost.seconds));
         const struct companion_plan *plan = &one_case.companions[COMPANION_LONGER];
         assert_true(companion_draws(plan, 0) > 0 && companion_draws(plan, 6) > 0);
