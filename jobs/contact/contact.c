@@ -64,7 +64,7 @@ static int realise(void *workspace, const struct realisation *realisation, void 
     struct contact_workspace *work = workspace;
     struct contact_tally *contact = tally;
     contact->realisation = realisation->key.realisation;
-    const struct contact_surface surface = {realisation->key, realisation->z, &realisation->report};
+    const struct contact_surface surface = {realisation->key, realisation->z};
     int status = contact_scene_solve(work->scene, &surface, contact, realisation->stop,
                                      realisation->stop_context, err);
     if (status != 0)

@@ -311,11 +311,6 @@ struct estimate contact_tally_pair(const struct contact_tally *tally, enum compa
                              contact_sums_scale(tally->one_case, measure, load));
 }
 
-struct estimate contact_tally_fact(const struct contact_tally *tally, enum companion_name companion,
-                                   size_t fact) {
-    return contact_sums_mean(&tally->companions[companion].fact_sums, fact, 1);
-}
-
 size_t contact_tally_pressure_cell(const struct contact_tally *tally, size_t model, size_t level,
                                    size_t at) {
     const struct contact_case *one_case = tally->one_case;

@@ -89,15 +89,13 @@ struct estimate contact_tally_model(const struct contact_tally *tally, enum cont
 struct estimate contact_tally_model_level(const struct contact_tally *tally,
                                           enum contact_measure measure, size_t model, size_t level,
                                           size_t load);
-/* Return the means of a series of a companion of the case, of one of its pairs and of one of its
- * facts, over the realisations that have it. */
+/* Return the means of a series of a companion of the case and of one of its pairs, over the
+ * realisations that have it. */
 struct estimate contact_tally_companion(const struct contact_tally *tally,
                                         enum companion_name companion, size_t series,
                                         enum contact_measure measure, size_t load);
 struct estimate contact_tally_pair(const struct contact_tally *tally, enum companion_name companion,
                                    size_t pair, enum contact_measure measure, size_t load);
-struct estimate contact_tally_fact(const struct contact_tally *tally, enum companion_name companion,
-                                   size_t fact);
 /* Counts the values of a series of a companion of the case: one a draw. */
 uint64_t contact_tally_draws(const struct contact_tally *tally, enum companion_name companion,
                              size_t series, enum contact_measure measure, size_t load);

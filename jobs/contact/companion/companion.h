@@ -16,8 +16,7 @@
 /* The surface of a realisation; all borrowed. */
 struct contact_surface {
     struct random_key key;
-    const double *z;                     /* heights on the grid of the case */
-    const struct surface_report *report; /* of its generation; NULL: it has none */
+    const double *z; /* heights on the grid of the case */
 };
 
 /* plan: that of the companion in the case. All functions borrow their arguments. */

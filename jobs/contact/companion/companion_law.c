@@ -112,7 +112,7 @@ static int law_solve(void *workspace, const struct contact_surface *surface,
                      const struct contact_stopper *stopper, struct error *err) {
     struct law *law = workspace;
     const struct contact_case *one_case = tally->one_case;
-    if (other_law_surface(law->law) == NULL || surface->report == NULL)
+    if (other_law_surface(law->law) == NULL)
         return 0;
     int status = press_own(law, surface, tally, companion_series(one_case, out, OWN), stopper, err);
     return status != 0

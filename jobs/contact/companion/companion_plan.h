@@ -26,7 +26,7 @@ enum companion_name { COMPANION_NAMES(COMPANION_ENTRY) COMPANION_COUNT };
 struct companion_pair {
     size_t of, less;
 };
-enum { COMPANION_PAIRS_MOST = CONTACT_MODELS_MOST, COMPANION_FACTS_MOST = 1 };
+enum { COMPANION_PAIRS_MOST = CONTACT_MODELS_MOST };
 
 struct companion_plan {
     size_t series;     /* how many surfaces or blocks are pressed to all loads; 0: there is none */
@@ -36,7 +36,6 @@ struct companion_plan {
     struct contact_level level; /* the mesh of all series */
     size_t pair_count;
     struct companion_pair pairs[COMPANION_PAIRS_MOST];
-    size_t fact_count; /* numbers of a realisation that are summed beside its measures */
     size_t kept_count; /* measures of every series that stand in the rows of realisations */
     const enum contact_measure *kept;
     /* Of a companion with a surface of its own, else empty. */

@@ -14,8 +14,6 @@ int companion_tally_create(struct companion_tally *out, const struct contact_cas
     if (status == 0)
         status = contact_sums_create(&out->differences,
                                      companion_cell(one_case, plan->pair_count, 0, 0), err);
-    if (status == 0)
-        status = contact_sums_create(&out->fact_sums, plan->fact_count, err);
     out->draws = companion_draws_most(plan);
     if (status == 0)
         companion_tally_begin(out);
@@ -25,7 +23,6 @@ int companion_tally_create(struct companion_tally *out, const struct contact_cas
 void companion_tally_clear(struct companion_tally *tally) {
     contact_sums_clear(&tally->sums);
     contact_sums_clear(&tally->differences);
-    contact_sums_clear(&tally->fact_sums);
     free(tally->values);
     *tally = (struct companion_tally){0};
 }
@@ -35,8 +32,7 @@ double companion_tally_bytes(const struct contact_case *one_case,
     size_t cells = companion_cell(one_case, plan->series, 0, 0);
     size_t pairs = companion_cell(one_case, plan->pair_count, 0, 0);
     return sizeof(double) * (double)cells * (double)companion_draws_most(plan) +
-           contact_sums_bytes(cells) + contact_sums_bytes(pairs) +
-           contact_sums_bytes(plan->fact_count);
+           contact_sums_bytes(cells) + contact_sums_bytes(pairs);
 }
 
 void companion_tally_begin(struct companion_tally *tally) {
@@ -44,8 +40,6 @@ void companion_tally_begin(struct companion_tally *tally) {
         tally->values[a] = NAN;
     tally->draw = 0;
     tally->draws = 1;
-    for (size_t a = 0; a < COMPANION_FACTS_MOST; a++)
-        tally->facts[a] = NAN;
 }
 
 /* Computes the fits of a series of loads from its areas. */
@@ -88,8 +82,6 @@ void companion_tally_add(struct companion_tally *tally, const struct contact_cas
     for (tally->draw = 0; tally->draw < tally->draws; tally->draw++)
         add_draw(tally, one_case, plan);
     tally->draw = 0;
-    for (size_t a = 0; a < plan->fact_count; a++)
-        contact_sums_add(&tally->fact_sums, a, tally->facts[a]);
 }
 
 bool companion_tally_fits(const struct companion_tally *tally, const struct companion_plan *plan,
@@ -97,24 +89,20 @@ bool companion_tally_fits(const struct companion_tally *tally, const struct comp
     uint64_t extra = companion_draws_most(plan) - 1;
     uint64_t many = realisations < plan->due.first ? realisations : plan->due.first;
     uint64_t draws = realisations + many * extra;
-    return contact_sums_fit(&tally->sums, draws) && contact_sums_fit(&tally->differences, draws) &&
-           contact_sums_fit(&tally->fact_sums, realisations);
+    return contact_sums_fit(&tally->sums, draws) && contact_sums_fit(&tally->differences, draws);
 }
 
 void companion_tally_put(struct bytes *bytes, const struct companion_tally *tally) {
     contact_sums_put(bytes, &tally->sums);
     contact_sums_put(bytes, &tally->differences);
-    contact_sums_put(bytes, &tally->fact_sums);
 }
 
 void companion_tally_get(struct byte_reader *reader, struct companion_tally *tally) {
     contact_sums_get(reader, &tally->sums);
     contact_sums_get(reader, &tally->differences);
-    contact_sums_get(reader, &tally->fact_sums);
 }
 
 void companion_tally_merge(struct companion_tally *into, const struct companion_tally *from) {
     contact_sums_merge(&into->sums, &from->sums);
     contact_sums_merge(&into->differences, &from->differences);
-    contact_sums_merge(&into->fact_sums, &from->fact_sums);
 }

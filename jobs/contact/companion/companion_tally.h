@@ -1,5 +1,5 @@
-/* What a tally holds of a companion: the values of the present realisation, and sums of them, of
- * their differences and of its facts. A case without the companion has none of these. */
+/* What a tally holds of a companion: the values of the present realisation, and sums of them and
+ * of their differences. A case without the companion has none of these. */
 #ifndef RUGO_JOBS_CONTACT_COMPANION_COMPANION_TALLY_H
 #define RUGO_JOBS_CONTACT_COMPANION_COMPANION_TALLY_H
 
@@ -9,10 +9,8 @@ struct companion_tally {
     double *values; /* owned: by draw, series, measure below MEASURE_PAIRED and load; NaN: none */
     size_t draw;    /* that is being solved */
     size_t draws;   /* of the present realisation, 1 until it has more */
-    double facts[COMPANION_FACTS_MOST]; /* NaN: none */
-    struct contact_sums sums;           /* by series, measure and load */
-    struct contact_sums differences;    /* by pair of the plan, measure and load */
-    struct contact_sums fact_sums;      /* by fact */
+    struct contact_sums sums;        /* by series, measure and load */
+    struct contact_sums differences; /* by pair of the plan, measure and load */
 };
 
 /* Returns the index of a series or pair, a measure and a load. */

@@ -42,7 +42,7 @@ static void solve_case(const struct contact_case *one_case, struct random_key ke
     must(contact_compliances_create(&compliances, one_case, &err), &err);
     must(contact_scene_create(&scene, one_case, &moments, &compliances, &err), &err);
     must(contact_tally_create(tally, one_case, &err), &err);
-    const struct contact_surface whole = {key, z, NULL};
+    const struct contact_surface whole = {key, z};
     must(contact_scene_solve(scene, &whole, tally, go_on, NULL, &err), &err);
     contact_scene_destroy(&scene);
     contact_compliances_clear(&compliances);

@@ -65,9 +65,8 @@ static void check_series(struct contact_tally *tally, size_t series, const doubl
         check_relative(values[k], areas[k], 1e-9);
 }
 
-/* The surface of a case, with its report, moments and areas. */
+/* The surface of a case, with its moments and areas. */
 struct pressed {
-    struct surface_report report;
     struct moments moments;
     double *z, areas[LOADS];
 };
@@ -81,7 +80,7 @@ static struct pressed make(const struct contact_case *one_case, struct random_ke
     must(generator_create(&generator, &surface->spectrum, &surface->grid, &surface->options, &err),
          &err);
     modes_moments(generator_modes(generator), &out.moments);
-    must(generator_run(generator, key, out.z, &out.report, &err), &err);
+    must(generator_run(generator, key, out.z, NULL, &err), &err);
     press(one_case, &out.moments, out.z, out.areas);
     generator_destroy(&generator);
     return out;
@@ -100,7 +99,7 @@ static void surfaces_are_of_the_other_law(const char *text, const char *other_te
     struct pressed own = make(&one_case, key), other = make(&other_case, key);
     must(contact_tally_create(&tally, &one_case, &err), &err);
     must(companion_bench_create(&companions, &one_case, &own.moments, &err), &err);
-    const struct contact_surface whole = {key, own.z, &own.report};
+    const struct contact_surface whole = {key, own.z};
     must(companion_bench_solve(companions, &whole, &tally, &stopper, &err), &err);
     check_series(&tally, OWN, own.areas);
     check_series(&tally, OTHER, other.areas);
@@ -136,7 +135,7 @@ static void no_other_law_no_values(void **state) {
     struct pressed own = make(&one_case, key);
     must(contact_tally_create(&tally, &one_case, &err), &err);
     must(companion_bench_create(&companions, &one_case, &own.moments, &err), &err);
-    const struct contact_surface whole = {key, own.z, &own.report};
+    const struct contact_surface whole = {key, own.z};
     must(companion_bench_solve(companions, &whole, &tally, &stopper, &err), &err);
     const double *values = contact_tally_series(&tally, COMPANION_LAW, OTHER, MEASURE_EDGES);
     for (size_t k = 0; k < LOADS; k++)

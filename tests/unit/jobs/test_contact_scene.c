@@ -53,7 +53,7 @@ static void fixture_open(struct scene_fixture *f, const char *text) {
     must(contact_compliances_create(&f->compliances, &f->one_case, &err), &err);
     must(contact_scene_create(&f->scene, &f->one_case, &f->moments, &f->compliances, &err), &err);
     must(contact_tally_create(&f->tally, &f->one_case, &err), &err);
-    const struct contact_surface surface = {{4, 0, 0}, f->z, NULL};
+    const struct contact_surface surface = {{4, 0, 0}, f->z};
     must(contact_scene_solve(f->scene, &surface, &f->tally, go_on, NULL, &err), &err);
     cJSON_Delete(parameters);
 }
