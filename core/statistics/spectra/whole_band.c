@@ -50,12 +50,14 @@ void whole_band_destroy(struct whole_band **band) {
     *band = NULL;
 }
 
+static double waves_of(const struct grid *grid) {
+    size_t columns = grid->nx / 2 + 1;
+    return (double)columns * (double)(grid->ny + 1);
+}
+
 double whole_band_bytes(const struct grid *grid, const struct grid *coarser) {
-    double waves = (double)(grid->nx / 2 + 1) * (double)(grid->ny + 1);
-    double bytes = waves * (sizeof(double complex) + sizeof(double));
-    if (coarser != NULL)
-        bytes += (double)(coarser->nx / 2 + 1) * (double)(coarser->ny + 1) * sizeof(double);
-    return bytes;
+    double bytes = waves_of(grid) * (sizeof(double complex) + sizeof(double));
+    return coarser == NULL ? bytes : bytes + waves_of(coarser) * sizeof(double);
 }
 
 /* Replaces a column of ny amplitudes, my = 0, 1, ..., -2, -1, by its squares at rising my. */
