@@ -25,7 +25,7 @@ bool error_is_unresolved(enum error_source source, double value, double bound,
                          double standard_error) {
     static const double DEVIATIONS = 1.96, MOST = 0.5;
     return ERROR_SOURCE_ROWS[source].bound_has_interval && value != 0 && fabs(value) <= bound &&
-           DEVIATIONS * standard_error > MOST * (fabs(value) + bound);
+           DEVIATIONS * standard_error > MOST * bound;
 }
 
 const struct curve_attribute CURVE_ATTRIBUTES[CURVE_ATTRIBUTE_COUNT] = {

@@ -37,8 +37,8 @@ struct error_source_row {
     bool bound_has_interval;        /* bounds include the interval of 95 % of the values */
 };
 extern const struct error_source_row ERROR_SOURCE_ROWS[ERROR_SOURCES];
-/* Returns whether most of an error, whose bound includes its interval of 95 %, is statistical: all
- * that is known of it is its size, |value| + bound at most. */
+/* Returns whether the bound of an error, which includes its interval of 95 %, is mostly statistical
+ * and leaves its sign open: all that is known of it is its size, |value| + bound at most. */
 bool error_is_unresolved(enum error_source source, double value, double bound,
                          double standard_error);
 

@@ -17,7 +17,7 @@
 /* The first realisations, which have the work of FIRST_SECONDS on a 3 GHz core for each length, or
  * this share of a study of usual size. */
 enum { FIRST = 8, USUAL_STUDY = 20, DRAWS_LEAST = 4, DRAWS_ENOUGH = 16, DRAWS_MOST = 2048 };
-static const double FIRST_SECONDS = 0.5, FIRST_SHARE = 0.12;
+static const double FIRST_SECONDS = 0.5, FIRST_SHARE = 0.14;
 /* Time for the surfaces of one length from then on, over that of the case without. */
 static const double TIME_SHARE = 0.06;
 /* Lengths beyond which an error of the cell is small, in longest waves. */
@@ -120,7 +120,7 @@ static void set_draws(const struct contact_case *usual, struct companion_plan *o
     uint64_t interval = subset_interval(cell_seconds(usual, out),
                                         TIME_SHARE * contact_case_least_seconds(usual), 1);
     out->series = 1;
-    out->draws = draws >= FIRST ? (uint64_t)draws / FIRST : 1;
+    out->draws = draws >= FIRST ? (uint64_t)llround(draws / FIRST) : 1;
     out->due = (struct subset){FIRST, draws >= FIRST ? 1 : FIRST / DRAWS_LEAST, interval};
 }
 
@@ -255,31 +255,50 @@ struct change {
     double standard_error;
 };
 
-/* Returns the half width of the interval of 95 % of a difference of two means of na and nb draws
- * (Welch 1947). */
-static double welch(struct estimate a, uint64_t na, struct estimate b, uint64_t nb) {
+/* The mean of a measure over draws. */
+struct sample {
+    struct estimate mean;
+    double freedom; /* of its standard error */
+};
+
+static struct sample sample_of(const struct contact_tally *tally, enum contact_measure measure,
+                               enum companion_name length, size_t load) {
+    return (struct sample){contact_tally_companion(tally, length, 0, measure, load),
+                           (double)contact_tally_draws(tally, length, 0, measure, load) - 1};
+}
+
+/* Few draws show their scatter badly. It is at least that of the own length, which has more draws,
+ * over the root of the ratio of the cells' areas. */
+static void support(struct sample *few, const struct sample *many, double cells) {
+    enum { FREEDOM_ENOUGH = 7 };
+    double expected =
+        many->mean.standard_error * sqrt((many->freedom + 1) / (few->freedom + 1) / cells);
+    if (few->freedom >= FREEDOM_ENOUGH || many->freedom <= few->freedom)
+        return;
+    few->mean.standard_error = fmax(few->mean.standard_error, expected);
+    few->freedom = many->freedom;
+}
+
+/* Returns the half width of the interval of 95 % of a difference of two means (Welch 1947). */
+static double welch(const struct sample *a, const struct sample *b) {
     static const double QUANTILE = 0.975;
-    double va = a.standard_error * a.standard_error, vb = b.standard_error * b.standard_error;
-    double freedom =
-        (va + vb) * (va + vb) / (va * va / (double)(na - 1) + vb * vb / (double)(nb - 1));
+    double va = pow(a->mean.standard_error, 2), vb = pow(b->mean.standard_error, 2);
+    double freedom = (va + vb) * (va + vb) / (va * va / a->freedom + vb * vb / b->freedom);
     return va + vb > 0 ? gsl_cdf_tdist_Pinv(QUANTILE, freedom) * sqrt(va + vb) : 0 * (va + vb);
 }
 
 static struct change change_of(const struct contact_tally *tally, enum contact_measure measure,
                                enum companion_name length, size_t load) {
-    static const struct change UNKNOWN = {NAN, NAN, NAN};
-    uint64_t owns = contact_tally_draws(tally, COMPANION_EQUAL, 0, measure, load);
-    uint64_t others = contact_tally_draws(tally, length, 0, measure, load);
-    if (owns < 2 || others < 2)
-        return UNKNOWN;
-    struct estimate own = contact_tally_companion(tally, COMPANION_EQUAL, 0, measure, load);
-    struct estimate other = contact_tally_companion(tally, length, 0, measure, load);
-    double y = fabs(own.value);
-    if (!(y > 0))
-        return UNKNOWN;
-    return (struct change){(own.value - other.value) / own.value,
-                           welch(own, owns, other, others) / y,
-                           hypot(own.standard_error, other.standard_error) / y};
+    const struct contact_case *one_case = tally->one_case;
+    struct sample own = sample_of(tally, measure, COMPANION_EQUAL, load);
+    struct sample other = sample_of(tally, measure, length, load);
+    double y = fabs(own.mean.value);
+    if (!(own.freedom > 0 && other.freedom > 0 && y > 0))
+        return (struct change){NAN, NAN, NAN};
+    support(&other, &own, pow(one_case->companions[length].length, one_case->surface.dimension));
+    return (struct change){(own.mean.value - other.mean.value) / own.mean.value,
+                           welch(&own, &other) / y,
+                           hypot(own.mean.standard_error, other.mean.standard_error) / y};
 }
 
 /* Returns the own change of a load, or the part of that of a load around it that exceeds its
