@@ -227,13 +227,31 @@ static int put_law(cJSON *surface, struct fit *fit, struct error *err) {
     return put ? 0 : error_memory(err, sizeof law, "a fitted law");
 }
 
+/* Returns the heights of the study, which may name their law alone, or new ones; NULL when out of
+ * memory. */
+static cJSON *heights_of(cJSON *surface) {
+    cJSON *own = cJSON_GetObjectItemCaseSensitive(surface, "heights");
+    return own != NULL ? own : cJSON_AddObjectToObject(surface, "heights");
+}
+
+/* Returns whether a study says which heights it wants, and not only how they are made. */
+static bool heights_given(const cJSON *surface) {
+    static const char *const SAID[] = {"distribution", "shape", "samples", "probability",
+                                       "quantile"};
+    const cJSON *heights = cJSON_GetObjectItemCaseSensitive(surface, "heights");
+    bool given = heights != NULL && !cJSON_IsObject(heights); /* to be refused as they are */
+    for (size_t n = 0; n < sizeof SAID / sizeof *SAID; n++)
+        given = given || cJSON_GetObjectItemCaseSensitive(heights, SAID[n]) != NULL;
+    return given;
+}
+
 static int put_distribution(cJSON *surface, const struct fit *fit, struct error *err) {
     const char *name;
     double shape;
     int status = like_law_heights(&fit->map, &name, &shape, err);
     if (status != 0)
         return status;
-    cJSON *heights = cJSON_AddObjectToObject(surface, "heights");
+    cJSON *heights = heights_of(surface);
     bool put = heights != NULL && field_put_text(heights, "distribution", name) &&
                (isnan(shape) || field_put(heights, "shape", json_number(shape)));
     return put ? 0 : error_memory(err, sizeof shape, "fitted heights");
@@ -254,7 +272,7 @@ static int put_quantiles(cJSON *surface, const struct fit *fit, struct error *er
     int status = probability != NULL && quantile != NULL
                      ? height_quantiles_measure(&fit->map, n, probability, quantile, err)
                      : error_memory(err, 2 * count * sizeof *quantile, "quantiles");
-    cJSON *heights = status == 0 ? cJSON_AddObjectToObject(surface, "heights") : NULL;
+    cJSON *heights = status == 0 ? heights_of(surface) : NULL;
     for (size_t a = 0; a < count && status == 0; a++)
         quantile[a] /= fit->wavelength;
     if (status == 0 && !(field_put_text(heights, "distribution", "quantiles") &&
@@ -353,7 +371,7 @@ static void choose(struct fit *fit, const cJSON *surface) {
     bool own_spectrum = has(surface, "spectrum") || has(surface, "hurst");
     double points = field_number(surface, "points_per_wavelength");
     fit->spectrum = own_spectrum ? LIKE_SPECTRUM_GIVEN : fit->source->spectrum;
-    fit->heights = has(surface, "heights") ? LIKE_HEIGHTS_GIVEN : fit->source->heights;
+    fit->heights = heights_given(surface) ? LIKE_HEIGHTS_GIVEN : fit->source->heights;
     choose_cell(fit);
     if (own_spectrum && points > 0)
         fit->wavelength = points * grid_dx(fit->map.grid);

@@ -189,6 +189,24 @@ static void the_study_stands(void **state) {
     height_map_clear(&map);
 }
 
+/* A study that names how heights are made, and not which, keeps those of the map. */
+static void the_law_of_heights_stands(void **state) {
+    (void)state;
+    struct height_map map = patch(false, 5);
+    cJSON *plain = fitted("{}", &map);
+    cJSON *named = fitted("{\"heights\": {\"law\": \"translation\"}}", &map);
+    assert_string_equal(cJSON_GetStringValue(json_at(named, "/heights/law")), "translation");
+    assert_string_equal(cJSON_GetStringValue(json_at(named, "/like/heights")),
+                        cJSON_GetStringValue(json_at(plain, "/like/heights")));
+    assert_true(cJSON_Compare(json_at(named, "/heights/quantile"),
+                              json_at(plain, "/heights/quantile"), true));
+    assert_true(cJSON_Compare(json_at(named, "/heights/probability"),
+                              json_at(plain, "/heights/probability"), true));
+    cJSON_Delete(plain);
+    cJSON_Delete(named);
+    height_map_clear(&map);
+}
+
 /* The law of the surfaces, and Gaussian heights, by the fitted law. */
 static void laws(void **state) {
     (void)state;
@@ -292,6 +310,7 @@ int main(void) {
         cmocka_unit_test(makes_a_case),
         cmocka_unit_test(units_do_not_matter),
         cmocka_unit_test(the_study_stands),
+        cmocka_unit_test(the_law_of_heights_stands),
         cmocka_unit_test(maps_that_cannot_be_fitted),
         cmocka_unit_test(laws),
         cmocka_unit_test(grooves),
