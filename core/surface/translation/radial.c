@@ -6,9 +6,9 @@
 
 /* The lattice has so many points in the first wave number of the band, as far as LINE_MOST allows,
  * and ends at BEYOND times the last one: products of densities have waves beyond the band. */
-enum { BEYOND = 4, LINE_MOST = 1 << 15 };
+enum { BEYOND = 4, LINE_MOST = 8 * BEYOND * RADIAL_RATIO_MOST };
 static const double LINE_FINE[] = {[1] = 128, [2] = 32};
-static const double LINE_COARSE = 8, RATIO_MOST = LINE_MOST / (8.0 * BEYOND);
+static const double LINE_COARSE = 8;
 
 struct radial {
     int dimension;
@@ -130,11 +130,11 @@ static int fill(struct radial *r, const double *k, struct error *err) {
 
 int radial_create(struct radial **out, int dimension, size_t n, const double *k,
                   struct error *err) {
-    if (!(k[n - 1] <= RATIO_MOST * (1 + 1e-9) * k[0]))
+    if (!(k[n - 1] <= RADIAL_RATIO_MOST * (1 + 1e-9) * k[0]))
         return error_set(err, ERROR_INPUT,
                          "the longest wave of the spectrum is %.4g times the shortest one; the law "
-                         "\"translation\" allows up to %g",
-                         k[n - 1] / k[0], RATIO_MOST);
+                         "\"translation\" allows up to %d",
+                         k[n - 1] / k[0], RADIAL_RATIO_MOST);
     struct radial *r = array_create(1, sizeof *r);
     if (r == NULL)
         return error_memory(err, sizeof *r, "transforms of a law of heights");

@@ -12,8 +12,10 @@
 
 struct radial;
 
+enum { RADIAL_RATIO_MOST = 1024 };
+
 /* dimension 1 or 2; nodes k[n], n >= 2, rising, above 0: copied. ERROR_INPUT where the last is more
- * than 1024 times the first; ERROR_MEMORY. */
+ * than RADIAL_RATIO_MOST times the first; ERROR_MEMORY. */
 int radial_create(struct radial **out, int dimension, size_t n, const double *k, struct error *err);
 void radial_destroy(struct radial **radial);
 

@@ -34,9 +34,39 @@ static size_t plateau_nodes(const struct spectrum *spectrum, double low, double 
     return (size_t)fmin(fmax(part, NODES_LEAST), NODES - NODES_LEAST);
 }
 
+/* Returns the integral, over all directions but for their number, of the density in part of the
+ * band. */
+static double variance_between(const struct translation *t, const struct spectrum *spectrum,
+                               double low, double high) {
+    enum { STEPS = 1 << 12 };
+    double sum = 0, step = log(high / low) / STEPS;
+    for (int i = 0; i < STEPS; i++) {
+        double k = low * exp((i + 0.5) * step);
+        sum += spectrum_density(spectrum, t->dimension == 1, k) * pow(k, t->dimension) * step;
+    }
+    return sum;
+}
+
+/* Longer waves than the transforms hold have the factor of the longest that they do. As nothing is
+ * known of what z has there, all of it counts as misfit. A plateau has little of the variance. */
+static const double LONGER_MOST = 0.01;
+
+/* Returns where nodes begin: with the band, or later if next to nothing lies before. */
+static double first_node(struct translation *t, const struct spectrum *spectrum, double low,
+                         double high) {
+    double cut = high / RADIAL_RATIO_MOST;
+    if (low >= cut)
+        return low;
+    double longer = variance_between(t, spectrum, low, cut);
+    double share = longer / (longer + variance_between(t, spectrum, cut, high));
+    t->fit.misfit = share <= LONGER_MOST ? share : 0;
+    return share <= LONGER_MOST ? cut : low;
+}
+
 static int nodes_create(struct translation *t, const struct spectrum *spectrum, double low,
                         double high, struct error *err) {
     double least = high * (1 - 1e-3); /* a band of one ring has some width */
+    low = first_node(t, spectrum, low, high);
     t->k = array_create(NODES, sizeof *t->k);
     t->factor = array_create(NODES, sizeof *t->factor);
     if (t->k == NULL || t->factor == NULL)
@@ -145,7 +175,7 @@ static void judge(const struct translation *t, const struct solver *s, double *d
         }
     }
     fit->outside = fmax(1 - inside / all, 0);
-    fit->misfit = radial_integral(s->radial, difference) / 2;
+    fit->misfit += radial_integral(s->radial, difference) / 2;
 }
 
 static int solve(struct translation *t, const struct spectrum *spectrum, struct error *err) {

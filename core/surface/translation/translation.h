@@ -14,9 +14,9 @@
 struct translation;
 
 /* dimension 1 or 2. Of the spectrum only the shape counts, not the scale. Copies its arguments.
- * ERROR_INPUT as height_function_create and for waves too far apart (radial.h); ERROR_MEMORY. A
- * spectrum that no such field has is no error: the law is then that of least misfit
- * (translation_fit). */
+ * ERROR_INPUT as height_function_create, and where over 1 % of the variance is at waves longer than
+ * RADIAL_RATIO_MOST of the shortest (radial.h); ERROR_MEMORY. A spectrum that no such field has is
+ * no error: the law is then that of least misfit (translation_fit). */
 int translation_create(struct translation **out, const struct spectrum *spectrum, int dimension,
                        const struct heights *heights, struct error *err);
 void translation_destroy(struct translation **translation);
