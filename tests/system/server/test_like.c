@@ -127,8 +127,11 @@ static void check_shows_what_was_fitted(void **state) {
     assert_int_equal(run_shell("$RUGO check --study data/alike.json > fitted.json"), 0);
     assert_int_equal(run_shell("$RUGO check --study fitted.json > again.json"), 0);
     assert_int_equal(run_shell("cmp fitted.json again.json"), 0);
-    assert_int_equal(run_shell("$RUGO check data/bare.json --set surface/heights/keep=heights"), 0);
+    assert_int_equal(
+        run_shell("$RUGO check data/bare.json --set surface/heights/distribution=gaussian"), 0);
     assert_true(contains("shell.out", "/surface/like/heights                \"given\""));
+    assert_int_equal(run_shell("$RUGO check data/bare.json --set surface/heights/keep=heights"), 0);
+    assert_true(contains("shell.out", "/surface/like/heights                \"quantiles\""));
 }
 
 static void faults_are_named(void **state) {
