@@ -1,6 +1,7 @@
 /* Asperity theories: every summit above the separation d is pressed alone, as in Hertz, by its
  * height over d. Lengths in sqrt(m0); s = kappa_m sqrt(3/m4) is the mean curvature of a summit,
  * rho = (kappa_1 - kappa_2)/(kappa_1 + kappa_2) in [0, 1) its elongation. */
+#include "core/theory/asperities.h"
 #include "core/theory/contact.h"
 #include "core/theory/nayak.h"
 #include "core/theory/quadrature.h"
@@ -10,10 +11,6 @@
 #include <gsl/gsl_sf_erf.h>
 #include <math.h>
 #include <stdbool.h>
-
-struct asperity_contact {
-    double load, area;
-};
 
 /* An integrand is negligible in double precision where it is exp(-DEPTH) of its peak. */
 static const double DEPTH = 42;
@@ -81,11 +78,6 @@ static struct asperity_contact spheres_contact(const void *theory, double separa
  * kappa_1 - kappa_2 is independent of height and mean curvature but for the factor
  * kappa_1 kappa_2. */
 
-enum { SHAPE_PANELS = 5, SHAPES = SHAPE_PANELS * QUADRATURE_NODES };
-struct shapes { /* a rule over rho, rising; weights with (1 - rho^2) rho f or g */
-    double square[SHAPES], area[SHAPES], load[SHAPES];
-};
-
 static void shape_at(double theta, double weight, double *square, double *area, double *load) {
     double lambda = tanh(theta / 2), less = 2 / (1 + exp(theta)); /* 1 - lambda */
     double m = lambda * lambda, rest = less * (1 + lambda);       /* 1 - m */
@@ -100,12 +92,12 @@ static void shape_at(double theta, double weight, double *square, double *area, 
     *load = measure * M_PI_2 * sqrt(n * rest / first) / first;
 }
 
-static void shapes_fill(struct shapes *shapes) {
+void asperity_shapes_fill(struct asperity_shapes *shapes) {
     /* b/a = exp(-theta): as functions of theta the logarithms of thin ellipses are straight. Panels
      * grow from the round shapes, which alone matter at high curvature; exp(-3 theta) is negligible
      * at the end. */
-    static const double ENDS[SHAPE_PANELS + 1] = {0, 0.06, 0.3, 1.2, 4, 12.5};
-    for (size_t panel = 0; panel < SHAPE_PANELS; panel++) {
+    static const double ENDS[ASPERITY_PANELS + 1] = {0, 0.06, 0.3, 1.2, 4, 12.5};
+    for (size_t panel = 0; panel < ASPERITY_PANELS; panel++) {
         double theta[QUADRATURE_NODES], weight[QUADRATURE_NODES];
         quadrature_panel(ENDS[panel], ENDS[panel + 1], theta, weight);
         for (size_t node = 0; node < QUADRATURE_NODES; node++) {
@@ -116,16 +108,29 @@ static void shapes_fill(struct shapes *shapes) {
     }
 }
 
+struct asperity_contact asperity_shapes_at(const struct asperity_shapes *shapes, double s) {
+    struct asperity_contact sum = {0, 0};
+    for (size_t n = 0; n < ASPERITY_SHAPES; n++) {
+        double exponent = s * s / 2 * shapes->square[n];
+        if (exponent > DEPTH)
+            break;
+        double share = exp(-exponent);
+        sum.area += shapes->area[n] * share;
+        sum.load += shapes->load[n] * share;
+    }
+    return sum;
+}
+
 /* Given s, heights are normal about rise s with the deviation below. The density of s itself is
  * sqrt(3/pi)/2 exp(-s^2/4) times that of its shapes (nayak.c). */
 struct ellipses {
-    struct shapes shapes;
+    struct asperity_shapes shapes;
     double c1, rise, deviation;
     double load, area; /* factors of the integrals over s */
 };
 
 static void ellipses_fill(struct ellipses *t, double alpha) {
-    shapes_fill(&t->shapes);
+    asperity_shapes_fill(&t->shapes);
     t->c1 = alpha / (2 * alpha - 3);
     t->rise = sqrt(3 / (4 * alpha));
     t->deviation = sqrt(0.5 / t->c1);
@@ -138,19 +143,11 @@ static void ellipses_fill(struct ellipses *t, double alpha) {
 /* Returns both integrands over s, already integrated over heights and shapes. */
 static struct asperity_contact ellipses_of_curvature(const struct ellipses *t, double separation,
                                                      double s) {
-    double area = 0, load = 0;
-    for (size_t n = 0; n < SHAPES; n++) {
-        double exponent = s * s / 2 * t->shapes.square[n];
-        if (exponent > DEPTH)
-            break;
-        double share = exp(-exponent);
-        area += t->shapes.area[n] * share;
-        load += t->shapes.load[n] * share;
-    }
+    struct asperity_contact shapes = asperity_shapes_at(&t->shapes, s);
     double x = (separation - t->rise * s) / t->deviation;
     double common = s * s * s * exp(-s * s / 4);
-    return (struct asperity_contact){load * common * sqrt(s) * three_halves_moment(x),
-                                     area * common * first_moment(x)};
+    return (struct asperity_contact){shapes.load * common * sqrt(s) * three_halves_moment(x),
+                                     shapes.area * common * first_moment(x)};
 }
 
 /* ellipses_add adds the integrals between two curvatures. Their integrands change around the
@@ -199,14 +196,12 @@ static struct asperity_contact ellipses_contact(const void *theory, double separ
 
 /* --- curves and their inversion, for both theories --- */
 
-typedef struct asperity_contact contact_at(const void *theory, double separation);
-
 static bool in_domain(double alpha) {
     return alpha > 1.5 && isfinite(alpha);
 }
 
-static void curve(contact_at *at, const void *theory, size_t n, const double *separation,
-                  double *load, double *area) {
+void asperity_curve(asperity_contact_at *at, const void *theory, size_t n, const double *separation,
+                    double *load, double *area) {
     for (size_t i = 0; i < n; i++) {
         struct asperity_contact contact = {NAN, NAN};
         if (theory != NULL && isfinite(separation[i]))
@@ -220,16 +215,17 @@ void bgt_curve(double alpha, size_t n, const double *separation, double *load, d
     struct ellipses ellipses;
     if (in_domain(alpha))
         ellipses_fill(&ellipses, alpha);
-    curve(ellipses_contact, in_domain(alpha) ? &ellipses : NULL, n, separation, load, area);
+    asperity_curve(ellipses_contact, in_domain(alpha) ? &ellipses : NULL, n, separation, load,
+                   area);
 }
 
 void gw_mccool_curve(double alpha, size_t n, const double *separation, double *load, double *area) {
     struct spheres spheres = spheres_of(alpha);
-    curve(spheres_contact, in_domain(alpha) ? &spheres : NULL, n, separation, load, area);
+    asperity_curve(spheres_contact, in_domain(alpha) ? &spheres : NULL, n, separation, load, area);
 }
 
 struct inversion {
-    contact_at *at;
+    asperity_contact_at *at;
     const void *theory;
     double load;          /* required */
     double closest, area; /* smallest |logarithm of the load over it| so far, the area there */
@@ -267,7 +263,7 @@ static void approach(struct inversion *inversion, double low, double high) {
 /* Between these loads, separations are far from where loads underflow or overflow. */
 static const double LEAST_LOAD = 1e-250, GREATEST_LOAD = 1e6;
 
-static double area_at_load(contact_at *at, const void *theory, double load) {
+double asperity_area_at_load(asperity_contact_at *at, const void *theory, double load) {
     if (!(load >= LEAST_LOAD && load <= GREATEST_LOAD))
         return NAN;
     struct inversion inversion = {at, theory, load, INFINITY, NAN};
@@ -290,12 +286,12 @@ double bgt_area(double load, double alpha) {
         return NAN;
     struct ellipses ellipses;
     ellipses_fill(&ellipses, alpha);
-    return area_at_load(ellipses_contact, &ellipses, load);
+    return asperity_area_at_load(ellipses_contact, &ellipses, load);
 }
 
 double gw_mccool_area(double load, double alpha) {
     if (!in_domain(alpha))
         return NAN;
     struct spheres spheres = spheres_of(alpha);
-    return area_at_load(spheres_contact, &spheres, load);
+    return asperity_area_at_load(spheres_contact, &spheres, load);
 }

@@ -1,9 +1,11 @@
 #include "jobs/contact/contact_curves.h"
 #include "core/theory/bin_averages.h"
 #include "core/theory/contact.h"
+#include "core/theory/translated_asperities.h"
 #include "jobs/contact/companion/companion_law.h"
 #include "jobs/contact/contact_errors.h"
 #include "jobs/contact/contact_measure.h"
+#include "jobs/surface/translated_case.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,13 +25,11 @@ static bool is_one_wave(const struct contact_case *one_case, const struct modes 
     return one_case->surface.dimension == 1 && modes->count <= 2;
 }
 
-/* Returns whether theories of Gaussian isotropic asperities apply. Translated surfaces have other
- * heights and curvatures of summits (F6.12). */
+/* Returns whether theories of Gaussian isotropic asperities apply. */
 static bool has_asperities(const struct contact_case *one_case, const struct moments *moments) {
-    return one_case->surface.dimension == 2 && moments->nayak_alpha > 1.5 &&
+    return one_case->surface.dimension == 2 &&
            one_case->surface.options.heights.type == HEIGHTS_GAUSSIAN &&
-           one_case->surface.spectrum.type != SPECTRUM_EXPONENTIAL_ACF && /* no finite moments */
-           moments_isotropic(moments);
+           translated_case_applies(&one_case->surface, moments);
 }
 
 /* Returns p/p* of the wave sqrt(2 m0) cos: its RMS slope is pi sqrt(2) amplitude/wavelength, and p*
@@ -83,6 +83,41 @@ static void put_wave(struct theory_list *list) {
     put(list, THEORIES_GAP, "westergaard");
 }
 
+/* Adds the theory, unless it has none of the areas. */
+static int put_translated(struct theory_list *list, const struct translated_surface *surface,
+                          enum translated_theory theory, const char *name, struct error *err) {
+    struct translated_asperities *asperities = NULL;
+    int status = translated_asperities_create(&asperities, surface, theory, err);
+    bool any = false;
+    for (size_t k = 0; k < list->one_case->load_count && status == 0; k++) {
+        double fraction = translated_asperities_area(asperities, list->one_case->loads[k]);
+        list->values[k] = fraction <= 1 ? fraction : NAN;
+        any = any || fraction <= 1;
+    }
+    translated_asperities_destroy(&asperities);
+    if (any)
+        put(list, THEORIES_AREA, name);
+    return status;
+}
+
+/* Adds the theories by the summits of the translated surface: that of the case, or the one beside
+ * it. */
+static int put_summits(struct theory_list *list, const struct modes *modes, struct error *err) {
+    struct translated_case translated;
+    if (list->one_case->surface.dimension != 2)
+        return 0;
+    int status = translated_case_create(&translated, &list->one_case->surface, modes, err);
+    if (status != 0)
+        return status;
+    const struct translated_surface *surface = &translated.surface;
+    if (translated.exists)
+        status = put_translated(list, surface, TRANSLATED_GW, "gw_translation", err);
+    if (translated.exists && status == 0)
+        status = put_translated(list, surface, TRANSLATED_BGT, "bgt_translation", err);
+    translated_case_clear(&translated);
+    return status;
+}
+
 static void put_rough(struct theory_list *list, const struct moments *moments) {
     put_area(list, "persson", persson_at, 0);
     put_area(list, "persson_light_load", line_at, persson_light_load());
@@ -107,9 +142,10 @@ static int theories_make(struct theories *out, const struct contact_case *one_ca
     /* No theory here has the mean of a wave of random amplitude. */
     if (is_one_wave(one_case, modes) && surface_case_exact(&one_case->surface))
         put_wave(&list);
-    else if (!is_one_wave(one_case, modes))
-        put_rough(&list, moments);
-    return 0;
+    if (is_one_wave(one_case, modes))
+        return 0;
+    put_rough(&list, moments);
+    return put_summits(&list, modes, err);
 }
 
 /* Computes the mean density of the pressures in each bin; false without a theory. */

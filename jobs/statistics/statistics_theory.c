@@ -1,5 +1,4 @@
 #include "jobs/statistics/statistics_theory.h"
-#include "core/surface/translation/translation.h"
 #include "core/theory/bin_averages.h"
 
 const char STATISTICS_TRANSLATION[] = "translation";
@@ -12,81 +11,33 @@ int statistics_theory_heights(const struct statistics_case *one_case, double *pd
 
 /* --- the theories of a case --- */
 
-/* Returns whether theory of summits applies to a Gaussian field of these moments. */
-static bool applies(const struct surface_case *surface, const struct moments *moments) {
-    if (surface->spectrum.type == SPECTRUM_EXPONENTIAL_ACF)
-        return false; /* m2 and m4 grow without limit on finer grids */
-    if (surface->dimension == 1)
-        return moments->nayak_alpha > 1;
-    return moments->nayak_alpha > 1.5 && moments_isotropic(moments);
-}
-
-static void add_gaussian(struct summit_theories *out, const struct surface_case *surface,
-                         const struct moments *moments) {
-    if (applies(surface, moments))
-        out->of[out->count++] = (struct summit_theory){
-            .name = surface->dimension == 2 ? "nayak" : "longuet_higgins",
-            .surface = {.dimension = surface->dimension, .reached = *moments}};
-}
-
-/* Adds that of translated surfaces, whose field has these modes. */
-static void add_translated(struct summit_theories *out, const struct surface_case *surface,
-                           const struct modes *modes) {
-    struct translated_surface translated = {
-        .dimension = surface->dimension,
-        .heights = {.function = translation_function(modes->translation)}};
-    modes_gaussian_moments(modes, &translated.gaussian);
-    modes_moments(modes, &translated.reached);
-    if (applies(surface, &translated.gaussian))
-        out->of[out->count++] = (struct summit_theory){
-            .name = STATISTICS_TRANSLATION, .translated = true, .surface = translated};
-}
-
-/* A translated surface is that of an iterated one where its spectrum is within this share of the
- * variance, as studies of the law ask for. */
-static const double MISFIT_MOST = 0.01;
-
-/* Adds the translated surface beside an iterated one. Heights and spectra without one are no
- * error. */
-static int add_beside(struct summit_theories *out, const struct surface_case *surface,
-                      const struct grid *grid, struct error *err) {
-    struct spectrum spectrum = surface->spectrum;
-    struct modes *modes = NULL;
-    int status = translation_create(&out->translation, &spectrum, surface->dimension,
-                                    &surface->options.heights, err);
-    if (status != 0)
-        return status == ERROR_INPUT ? 0 : status;
-    if (!(translation_fit(out->translation)->misfit <= MISFIT_MOST))
-        return 0;
-    spectrum.translation = out->translation;
-    status = modes_create(&modes, &spectrum, grid, err);
-    if (status == 0)
-        add_translated(out, surface, modes);
-    modes_destroy(&modes);
-    return status == ERROR_INPUT ? 0 : status;
+static void add(struct summit_theories *out, struct summit_theory theory) {
+    out->of[out->count++] = theory;
 }
 
 int summit_theories_create(struct summit_theories *out, const struct statistics_case *one_case,
                            const struct surface_basis *basis, struct error *err) {
     const struct surface_case *surface = &one_case->surface;
-    struct error reason = {0};
+    bool surfaces = surface->dimension == 2;
+    bool gaussian =
+        !surface_case_translated(surface) && translated_case_applies(surface, &basis->moments);
     *out = (struct summit_theories){0};
-    if (surface_case_translated(surface)) {
-        add_translated(out, surface, basis->modes);
+    if (gaussian)
+        add(out, (struct summit_theory){
+                     .name = surfaces ? "nayak" : "longuet_higgins",
+                     .surface = {.dimension = surface->dimension, .reached = basis->moments}});
+    if (!gaussian && !surface_case_translated(surface))
         return 0;
-    }
-    add_gaussian(out, surface, &basis->moments);
-    if (out->count == 0 || !surface_is_iterated(&surface->options))
-        return 0;
-    int status = add_beside(out, surface, &surface->grid, &reason);
-    if (status == 0)
-        return 0;
-    summit_theories_clear(out);
-    return error_set(err, status, "%s", reason.text);
+    int status = translated_case_create(&out->translated, surface, basis->modes, err);
+    if (status == 0 && out->translated.exists)
+        add(out, (struct summit_theory){.name = STATISTICS_TRANSLATION,
+                                        .translated = true,
+                                        .surface = out->translated.surface});
+    return status;
 }
 
 void summit_theories_clear(struct summit_theories *theories) {
-    translation_destroy(&theories->translation);
+    translated_case_clear(&theories->translated);
     *theories = (struct summit_theories){0};
 }
 

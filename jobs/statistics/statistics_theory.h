@@ -5,6 +5,7 @@
 #include "core/theory/nayak.h"
 #include "core/theory/translated_summits.h"
 #include "jobs/statistics/statistics_case.h"
+#include "jobs/surface/translated_case.h"
 
 /* Fills the prescribed height distribution: mean density of each bin; cumulative at its upper
  * edge. */
@@ -29,7 +30,7 @@ enum { SUMMIT_THEORIES_MOST = 2 };
 struct summit_theories {
     size_t count;
     struct summit_theory of[SUMMIT_THEORIES_MOST];
-    struct translation *translation; /* owned: beside an iterated surface; NULL: none */
+    struct translated_case translated;
 };
 /* Borrows the case. Takes some tens of milliseconds beside iterated surfaces. ERROR_MEMORY alone.
  */

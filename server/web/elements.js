@@ -75,7 +75,7 @@ export function symbol(name) {
 
 /** "mean gap" of "mean_gap", with the capitals of people and of abbreviations. */
 export function words(name) {
-  return name.replaceAll("_", " ").replace(/\b(?:persson|nayak|weibull|gaussian|archard)\b/g, (one) => one[0].toUpperCase() + one.slice(1)).replace("gw mccool", "GW–McCool").replace(/\b(?:bgt|pdf|cdf|psd|acf)\b/g, (one) => one.toUpperCase());
+  return name.replaceAll("_", " ").replace(/\b(?:persson|nayak|weibull|gaussian|archard)\b/g, (one) => one[0].toUpperCase() + one.slice(1)).replace("gw mccool", "GW–McCool").replace(/\b(?:gw|bgt|pdf|cdf|psd|acf)\b/g, (one) => one.toUpperCase());
 }
 
 /** A label as people write it: "√m₀" of "sqrt(m0)". */

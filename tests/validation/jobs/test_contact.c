@@ -117,6 +117,37 @@ static void surfaces_against_theories(void **state) {
     cJSON_Delete(document);
 }
 
+/* Heights decide at light load, which Persson's theory does not see: at 0.01 the maximum of C = 2 has
+ * 2.8 times the area of the minimum. Theories by the exact summits follow within 35 %: 25 % by which
+ * asperities err, 5 % for twenty surfaces of 16 waves, 5 % for the mesh. */
+static void translated_surfaces_against_their_summits(void **state) {
+    (void)state;
+    static const struct {
+        const char *name;
+        const char *theory;
+        double shape;
+    } CASES[] = {{"weibull_max", "/theory/bgt_translation", 2},
+                 {"weibull_min", "/theory/bgt_translation", 2},
+                 {"weibull_min", "/theory/gw_translation", 1}};
+    double areas[3];
+    for (int c = 0; c < 3; c++) {
+        char study[500];
+        snprintf(study, sizeof study,
+                 "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 4,"
+                 " \"amplitudes\": \"random\", \"heights\": {\"distribution\": \"%s\", \"shape\": "
+                 "%g, \"law\":"
+                 " \"translation\"}}, \"contact\": {\"pressures\": {\"values\": [0.01]}}}",
+                 CASES[c].name, CASES[c].shape);
+        cJSON *document = solve(study, 20);
+        const cJSON *area = curve_of(document, "contact_area", "edges", "halfspace");
+        areas[c] = at(area, "/y", 0);
+assert_near(areas[c], at(area, CASES[c].theory, 0), 0.35 * areas[c], c);
+        assert_null(json_at(area, "/theory/bgt"));
+        cJSON_Delete(document);
+    }
+    assert_true(areas[0] > 2 * areas[1]);
+}
+
 /* Profiles lie above Persson at every load, the more so the lighter it is (line contacts are none
  * of his): about 2.2 times at 0.005, 1.5 at 0.1, 1.2 at 0.3 and 1.1 at 0.5. 15 % leave room for the
  * scatter of 40 profiles (5 % at the lightest load) and for what H and the ratio do. */
@@ -244,6 +275,7 @@ int main(void) {
         cmocka_unit_test(fine_layers_are_the_halfspace),
         cmocka_unit_test(levels_see_the_same_surface),
         cmocka_unit_test(surfaces_against_theories),
+        cmocka_unit_test(translated_surfaces_against_their_summits),
         cmocka_unit_test(profiles_against_persson),
         cmocka_unit_test(weibull_curves_cross),
         cmocka_unit_test(any_scale),

@@ -1,0 +1,234 @@
+#include "core/theory/translated_asperities.h"
+#include "core/theory/asperities.h"
+#include "core/theory/quadrature.h"
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+/* Area and load are integrals over values of g, from the one whose height is the separation d on,
+ * of area (f - d) and load (f - d)^(3/2), where `area` and `load` do not depend on d. They are kept
+ * at the nodes of panels, and are polynomials in between. */
+struct panel {
+    double low, high;
+    double node[QUADRATURE_NODES], area[QUADRATURE_NODES], load[QUADRATURE_NODES];
+};
+struct translated_asperities {
+    struct translated_heights heights;
+    size_t count;
+    bool has_area;
+    double basis[QUADRATURE_NODES]; /* barycentric weights of a panel's nodes */
+    struct panel *panels;           /* rising, without holes; owned */
+};
+
+/* Values of g from -SCORE_MOST to it. 1e-18 of all lie outside. */
+static const double SCORE_MOST = 9, PANEL_MOST = 0.5;
+
+/* --- panels --- */
+
+/* Panels are shorter near 0, where densities of alpha near 3/2 bend. */
+static double panel_end(double alpha, double at) {
+    double bend = sqrt(1 - 1.5 / alpha);
+    double end = at + fmin(PANEL_MOST, fmax(bend, 1e-3) + fabs(at) / 2);
+    return at < 0 && end > 0 ? 0 : end;
+}
+
+static int panels_create(struct translated_asperities *t, double alpha, struct error *err) {
+    for (double at = -SCORE_MOST; at < SCORE_MOST; at = panel_end(alpha, at))
+        t->count++;
+    t->panels = array_create(t->count, sizeof *t->panels);
+    if (t->panels == NULL)
+        return error_memory(err, t->count * sizeof *t->panels, "summits of a law of heights");
+    double at = -SCORE_MOST, weight[QUADRATURE_NODES];
+    for (size_t p = 0; p < t->count; p++) {
+        struct panel *panel = &t->panels[p];
+        panel->low = at;
+        panel->high = at = panel_end(alpha, at);
+        quadrature_panel(panel->low, panel->high, panel->node, weight);
+    }
+    return 0;
+}
+
+static void basis_fill(double *basis) {
+    double node[QUADRATURE_NODES], weight[QUADRATURE_NODES];
+    quadrature_panel(-2, 2, node, weight); /* of capacity 1: products stay near 1 */
+    for (size_t a = 0; a < QUADRATURE_NODES; a++) {
+        basis[a] = 1;
+        for (size_t b = 0; b < QUADRATURE_NODES; b++)
+            basis[a] /= a == b ? 1 : node[a] - node[b];
+    }
+}
+
+/* Returns the polynomials of a panel at a value of g. */
+static struct asperity_contact between(const struct translated_asperities *t,
+                                       const struct panel *panel, double score) {
+    double area = 0, load = 0, all = 0;
+    for (size_t q = 0; q < QUADRATURE_NODES; q++) {
+        double distance = score - panel->node[q];
+        if (distance == 0)
+            return (struct asperity_contact){.area = panel->area[q], .load = panel->load[q]};
+        double share = t->basis[q] / distance;
+        area += share * panel->area[q];
+        load += share * panel->load[q];
+        all += share;
+    }
+    return (struct asperity_contact){.area = area / all, .load = load / all};
+}
+
+/* --- elliptic summits --- */
+
+/* The density of height and curvature s of the summits of g (nayak.c), and the factors of Hertz's
+ * area and load, are those of asperities.c. */
+enum { CURVATURE_PANELS = 6 };
+static const double DEPTH = 42; /* exp(-DEPTH) of a peak is negligible */
+
+/* Returns the integrals over s, from 0, of the shapes' areas times s^3 and loads times s^(7/2),
+ * with the density of s and of the height of g. Their variable is sqrt(s). */
+static struct asperity_contact over_curvatures(const struct asperity_shapes *shapes, double alpha,
+                                               double score) {
+    double c1 = alpha / (2 * alpha - 3), rise = sqrt(3 / (4 * alpha));
+    double centre = 2 * rise * score, reach = sqrt(2 * DEPTH / c1);
+    double low = fmax(centre - reach, 0);
+    double b = c1 * centre; /* the exponent falls by DEPTH from s = 0, or from its peak */
+    double high = centre > 0 ? centre + reach : 2 * DEPTH / (sqrt(b * b + 2 * c1 * DEPTH) - b);
+    double from = sqrt(low), step = (sqrt(high) - from) / CURVATURE_PANELS;
+    struct asperity_contact sum = {0, 0};
+    for (int p = 0; p < CURVATURE_PANELS; p++) {
+        double root[QUADRATURE_NODES], weight[QUADRATURE_NODES];
+        quadrature_panel(from + p * step, from + (p + 1) * step, root, weight);
+        for (size_t q = 0; q < QUADRATURE_NODES; q++) {
+            double s = root[q] * root[q], away = score - rise * s;
+            double common =
+                2 * root[q] * weight[q] * s * s * s * exp(-s * s / 4 - c1 * away * away);
+            struct asperity_contact shape = asperity_shapes_at(shapes, s);
+            sum.area += common * shape.area;
+            sum.load += common * root[q] * shape.load;
+        }
+    }
+    double density = sqrt(3 / M_PI) / 2 * sqrt(c1 / M_PI);
+    return (struct asperity_contact){.area = density * sum.area, .load = density * sum.load};
+}
+
+/* Heights and curvatures of z over those of g are f - d and f': areas go with their ratio. */
+static void ellipses_fill(struct translated_asperities *t, double alpha, double slope_ratio) {
+    struct asperity_shapes shapes;
+    asperity_shapes_fill(&shapes);
+    double area = sqrt(alpha) / 6;
+    double load = 4 * sqrt(sqrt(3)) / (18 * M_PI * sqrt(6)) * pow(alpha, 0.75) * slope_ratio;
+    for (size_t p = 0; p < t->count; p++)
+        for (size_t q = 0; q < QUADRATURE_NODES; q++) {
+            struct panel *panel = &t->panels[p];
+            double slope = translated_heights_at(&t->heights, panel->node[q]).slope;
+            struct asperity_contact at = over_curvatures(&shapes, alpha, panel->node[q]);
+            bool flat = !(slope > 0);
+            panel->area[q] = flat ? INFINITY : area * at.area / slope;
+            panel->load[q] = flat ? 0 : load * at.load / sqrt(slope);
+        }
+}
+
+/* --- spheres --- */
+
+static void spheres_fill(struct translated_asperities *t, const struct translated_surface *surface,
+                         double slope_ratio) {
+    double alpha = surface->gaussian.nayak_alpha, mean = nayak_summit_mean(alpha);
+    double variance = nayak_summit_variance(alpha);
+    /* the mean curvature of summits of z over f' = 1 times that of g */
+    double bent = translated_summits_expectation(surface).curvature / translated_stretch(surface) /
+                  nayak_overall_curvature();
+    double area = sqrt(3 * M_PI * alpha) / 48 / bent;
+    double load = 4 / (18 * M_PI * sqrt(3)) * sqrt(3 * sqrt(M_PI) / 16) * pow(alpha, 0.75) /
+                  sqrt(bent) * slope_ratio;
+    for (size_t p = 0; p < t->count; p++)
+        for (size_t q = 0; q < QUADRATURE_NODES; q++) {
+            struct panel *panel = &t->panels[p];
+            double away = panel->node[q] - mean;
+            double density = exp(-away * away / (2 * variance)) / sqrt(2 * M_PI * variance);
+            panel->area[q] = area * density;
+            panel->load[q] = load * density;
+        }
+}
+
+/* --- integrals over summits --- */
+
+/* Adds the summits of a panel above `from`, whose height is at least d. Their variable is the
+ * square root of the distance from it: loads begin with its power 3/2. */
+static void panel_add(const struct translated_asperities *t, const struct panel *panel, double from,
+                      double d, struct asperity_contact *sum) {
+    double root[QUADRATURE_NODES], weight[QUADRATURE_NODES];
+    quadrature_panel(0, sqrt(panel->high - from), root, weight);
+    for (size_t q = 0; q < QUADRATURE_NODES; q++) {
+        double score = from + root[q] * root[q];
+        double over = fmax(translated_heights_at(&t->heights, score).height - d, 0);
+        struct asperity_contact at = between(t, panel, score);
+        double factor = 2 * root[q] * weight[q] * over;
+        sum->area += factor * at.area;
+        sum->load += factor * sqrt(over) * at.load;
+    }
+}
+
+static struct asperity_contact contact_at(const void *theory, double separation) {
+    const struct translated_asperities *t = theory;
+    double first = translated_heights_inverse(&t->heights, separation);
+    struct asperity_contact sum = {0, 0};
+    for (size_t p = 0; p < t->count; p++)
+        if (t->panels[p].high > first)
+            panel_add(t, &t->panels[p], fmax(first, t->panels[p].low), separation, &sum);
+    if (!t->has_area)
+        sum.area = NAN;
+    return sum;
+}
+
+/* The area of all summits above the mean plane converges where the last panel adds nothing. */
+static const double LAST_MOST = 1e-6;
+
+static bool area_converges(const struct translated_asperities *t) {
+    struct asperity_contact all = {0, 0}, last = {0, 0};
+    for (size_t p = 0; p < t->count; p++)
+        if (t->panels[p].low >= 0)
+            panel_add(t, &t->panels[p], t->panels[p].low, 0, &all);
+    panel_add(t, &t->panels[t->count - 1], t->panels[t->count - 1].low, 0, &last);
+    return last.area <= LAST_MOST * all.area;
+}
+
+/* --- the theories --- */
+
+int translated_asperities_create(struct translated_asperities **out,
+                                 const struct translated_surface *surface,
+                                 enum translated_theory theory, struct error *err) {
+    struct translated_asperities *t = array_create(1, sizeof *t);
+    if (t == NULL)
+        return error_memory(err, sizeof *t, "summits of a law of heights");
+    const struct moments *g = &surface->gaussian, *z = &surface->reached;
+    t->heights = surface->heights;
+    int status = panels_create(t, g->nayak_alpha, err);
+    if (status != 0) {
+        translated_asperities_destroy(&t);
+        return status;
+    }
+    basis_fill(t->basis);
+    /* the slope of g, were its deviation that of z, over that of z */
+    double slope_ratio = sqrt(z->m0 / g->m0 * (g->m2 / z->m2));
+    if (theory == TRANSLATED_BGT)
+        ellipses_fill(t, g->nayak_alpha, slope_ratio);
+    else
+        spheres_fill(t, surface, slope_ratio);
+    t->has_area = area_converges(t);
+    *out = t;
+    return 0;
+}
+
+void translated_asperities_destroy(struct translated_asperities **asperities) {
+    if (*asperities == NULL)
+        return;
+    free((*asperities)->panels);
+    free(*asperities);
+    *asperities = NULL;
+}
+
+void translated_asperities_curve(const struct translated_asperities *asperities, size_t n,
+                                 const double *separation, double *load, double *area) {
+    asperity_curve(contact_at, asperities, n, separation, load, area);
+}
+
+double translated_asperities_area(const struct translated_asperities *asperities, double load) {
+    return load >= 1e-15 ? asperity_area_at_load(contact_at, asperities, load) : NAN;
+}

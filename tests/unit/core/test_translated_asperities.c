@@ -1,0 +1,220 @@
+/* Protects: theories of asperities by the summits of translated surfaces. A field that is its own
+ * translation has the theories of Gaussian surfaces; others have the sums over drawn summits, each
+ * pressed by Hertz's solution in another form; and heights with a bound that summits flatten
+ * against have no area, rather than one of the quadrature. */
+#include "core/surface/spectrum.h"
+#include "core/surface/translation/translation.h"
+#include "core/theory/contact.h"
+#include "core/theory/translated_asperities.h"
+#include "tests/support/check.h"
+#include <gsl/gsl_randist.h>
+#include <gsl/gsl_rng.h>
+#include <gsl/gsl_sf_ellint.h>
+#include <stdlib.h>
+
+/* A field of unit variance and this alpha, translated; z has the deviation 1. */
+static struct translated_surface surface_of(const struct height_function *function, double alpha,
+                                            bool mirrored) {
+    const struct hermite_powers *powers = height_function_powers(function);
+    struct translated_surface surface = {.dimension = 2, .heights = {function, mirrored}};
+    surface.gaussian = (struct moments){.m0 = 1, .m2 = 1, .m4 = alpha, .nayak_alpha = alpha};
+    surface.reached = (struct moments){
+        .m0 = 1, .m2 = powers->slope, .m4 = powers->slope * alpha + 3 * powers->curvature};
+    return surface;
+}
+
+static struct height_function *function_of(enum heights_type type, double shape) {
+    const struct heights heights = {.type = type, .shape = shape};
+    struct height_function *function = NULL;
+    assert_int_equal(height_function_create(&function, &heights, NULL), 0);
+    return function;
+}
+
+static struct translated_asperities *theory_of(const struct translated_surface *surface,
+                                               enum translated_theory theory) {
+    struct translated_asperities *asperities = NULL;
+    assert_int_equal(translated_asperities_create(&asperities, surface, theory, NULL), 0);
+    return asperities;
+}
+
+/* f is exact to 1e-10 here, which counts in the integrals of the lightest loads. */
+static void gaussian_fields_have_the_gaussian_theories(void **state) {
+    (void)state;
+    static const double ALPHAS[] = {1.52, 2, 5.34, 40}, LOADS[] = {1e-8, 1e-4, 0.01, 0.1, 1};
+    struct height_function *function = function_of(HEIGHTS_GAUSSIAN, 0);
+    for (size_t a = 0; a < sizeof ALPHAS / sizeof *ALPHAS; a++) {
+        struct translated_surface surface = surface_of(function, ALPHAS[a], a % 2 == 1);
+        struct translated_asperities *bgt = theory_of(&surface, TRANSLATED_BGT);
+        struct translated_asperities *gw = theory_of(&surface, TRANSLATED_GW);
+        for (size_t k = 0; k < sizeof LOADS / sizeof *LOADS; k++) {
+            double elliptic = bgt_area(LOADS[k], ALPHAS[a]);
+            double spheres = gw_mccool_area(LOADS[k], ALPHAS[a]);
+            check_close(translated_asperities_area(bgt, LOADS[k]), elliptic, 1e-8 * elliptic);
+            check_close(translated_asperities_area(gw, LOADS[k]), spheres, 1e-8 * spheres);
+        }
+        translated_asperities_destroy(&bgt);
+        translated_asperities_destroy(&gw);
+    }
+    height_function_destroy(&function);
+}
+
+/* --- drawn summits --- */
+
+/* Hertz by Johnson (1985), 4.25 to 4.32: of gaps (kappa_1 x^2 + kappa_2 y^2)/2 closed by 1, at
+ * kappa_2 = 1, by kappa_1, which the eccentricity of the contact gives. */
+enum { ELLIPSES = 2000 };
+struct ellipse {
+    double kappa, area, load; /* load over E* */
+};
+
+static void ellipses_fill(struct ellipse *ellipses) {
+    for (int n = 0; n < ELLIPSES; n++) {
+        double short_axis = exp(-6.0 * (n + 0.02) / ELLIPSES); /* over the long one */
+        double e = sqrt(1 - short_axis * short_axis);
+        double k = gsl_sf_ellint_Kcomp(e, GSL_PREC_DOUBLE);
+        double second = gsl_sf_ellint_Ecomp(e, GSL_PREC_DOUBLE);
+        double axis = sqrt(2 * (k - second) / (e * e * k));
+        double kappa = (second / (short_axis * short_axis) - k) / (k - second);
+        ellipses[n] =
+            (struct ellipse){kappa, M_PI * axis * axis * short_axis, 2.0 / 3 * M_PI * axis / k};
+    }
+}
+
+static struct ellipse ellipse_at(const struct ellipse *ellipses, double kappa) {
+    int low = 0, high = ELLIPSES - 1;
+    while (high - low > 1) {
+        int middle = (low + high) / 2;
+        *(ellipses[middle].kappa <= kappa ? &low : &high) = middle;
+    }
+    double part =
+        fmin((kappa - ellipses[low].kappa) / (ellipses[high].kappa - ellipses[low].kappa), 1);
+    return (struct ellipse){kappa,
+                            ellipses[low].area + part * (ellipses[high].area - ellipses[low].area),
+                            ellipses[low].load + part * (ellipses[high].load - ellipses[low].load)};
+}
+
+struct mean {
+    double sum, squares;
+};
+static void mean_add(struct mean *mean, double value) {
+    mean->sum += value;
+    mean->squares += value * value;
+}
+/* Checks an expected mean of n values within 4 standard errors, which are exceeded once in 16 000. */
+static void mean_check(const struct mean *mean, double n, double expected) {
+    double value = mean->sum / n, error = sqrt((mean->squares / n - value * value) / n);
+    print_message("%.5f +- %.5f, theory %.5f\n", value, error, expected);
+    assert_true(fabs(value - expected) < 4 * error && error < 0.02 * expected);
+}
+
+/* Draws height and Hessian of the field at points without slope, which have the density 1/(2 pi)
+ * at m2 = 1, each with its determinant. */
+static void drawn_summits(const struct translated_surface *surface, double separation) {
+    enum { POINTS = 1000000, SEED = 5 };
+    double alpha = surface->gaussian.nayak_alpha, load, fraction;
+    struct ellipse *ellipses = malloc(ELLIPSES * sizeof *ellipses);
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_ranlxd1);
+    struct mean areas = {0, 0}, loads = {0, 0};
+    assert_true(ellipses != NULL && random != NULL);
+    ellipses_fill(ellipses);
+    gsl_rng_set(random, SEED);
+    for (int n = 0; n < POINTS; n++) {
+        double g = gsl_ran_ugaussian(random);
+        double trace = -2 * g + sqrt(8 * alpha / 3 - 4) * gsl_ran_ugaussian(random);
+        double half = sqrt(alpha / 3) * gsl_ran_ugaussian(random); /* (g_xx - g_yy)/2 */
+        double mixed = sqrt(alpha / 3) * gsl_ran_ugaussian(random);
+        double unlike = sqrt(half * half + mixed * mixed);
+        double sharp = -trace / 2 + unlike, blunt = -trace / 2 - unlike;
+        struct height_slope z = translated_heights_at(&surface->heights, g);
+        double over = z.height - separation, area = 0, force = 0;
+        if (blunt > 0 && over > 0) {
+            struct ellipse at = ellipse_at(ellipses, sharp / blunt);
+            double curvature = blunt * z.slope, weight = sharp * blunt / (2 * M_PI);
+            area = weight * at.area * over / curvature;
+            force =
+                weight * at.load * over * sqrt(over / curvature) / sqrt(2 * surface->reached.m2);
+        }
+        mean_add(&areas, area);
+        mean_add(&loads, force);
+    }
+    struct translated_asperities *bgt = theory_of(surface, TRANSLATED_BGT);
+    translated_asperities_curve(bgt, 1, &separation, &load, &fraction);
+    mean_check(&areas, POINTS, fraction);
+    mean_check(&loads, POINTS, load);
+    check_close(translated_asperities_area(bgt, load), fraction, 1e-9 * fraction);
+    translated_asperities_destroy(&bgt);
+    gsl_rng_free(random);
+    free(ellipses);
+}
+
+static void others_are_sums_over_summits(void **state) {
+    (void)state;
+    static const struct {
+        enum heights_type type;
+        double shape;
+        bool mirrored;
+        double separation;
+    } CASES[] = {{HEIGHTS_WEIBULL_MIN, 1, false, 1.5},
+                 {HEIGHTS_WEIBULL_MIN, 3.602, true, 0.5},
+                 {HEIGHTS_LOGNORMAL, 0.5, false, 1},
+                 {HEIGHTS_LOGNORMAL, 0.5, true, 0.3}};
+    for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
+        struct height_function *function = function_of(CASES[c].type, CASES[c].shape);
+        struct translated_surface surface = surface_of(function, 4, CASES[c].mirrored);
+        drawn_summits(&surface, CASES[c].separation);
+        height_function_destroy(&function);
+    }
+}
+
+/* Spheres of one curvature: their area at a load is that of equal heights f, whatever f' is. */
+static void spheres_have_the_mean_curvature(void **state) {
+    (void)state;
+    static const double SEPARATION = 0.8;
+    struct height_function *function = function_of(HEIGHTS_LOGNORMAL, 0.4);
+    struct translated_surface surface = surface_of(function, 6, false);
+    struct summit_expectation all = translated_summits_expectation(&surface);
+    struct translated_asperities *gw = theory_of(&surface, TRANSLATED_GW);
+    double mean = nayak_summit_mean(6), deviation = sqrt(nayak_summit_variance(6)), load, area;
+    double curvature = all.curvature * sqrt(surface.reached.m4), areas = 0, loads = 0;
+    for (double t = -8; t < 8; t += 1e-4) {
+        double z = translated_heights_at(&surface.heights, mean + deviation * t).height;
+        double over = fmax(z - SEPARATION, 0), share = 1e-4 * exp(-t * t / 2) / sqrt(2 * M_PI);
+        areas += share * M_PI * over / curvature;
+        loads += share * 4 / 3.0 * over * sqrt(over / curvature) / sqrt(2 * surface.reached.m2);
+    }
+    translated_asperities_curve(gw, 1, &SEPARATION, &load, &area);
+    check_close(area, all.density * areas, 1e-6 * area);
+    check_close(load, all.density * loads, 1e-6 * load);
+    translated_asperities_destroy(&gw);
+    height_function_destroy(&function);
+}
+
+static void flattened_summits_have_no_area(void **state) {
+    (void)state;
+    static const double SEPARATION = 0.2;
+    for (int mirrored = 0; mirrored <= 1; mirrored++) {
+        struct height_function *function =
+            function_of(mirrored ? HEIGHTS_WEIBULL_MIN : HEIGHTS_WEIBULL_MAX, 1);
+        struct translated_surface surface = surface_of(function, 5, mirrored);
+        struct translated_asperities *bgt = theory_of(&surface, TRANSLATED_BGT);
+        struct translated_asperities *gw = theory_of(&surface, TRANSLATED_GW);
+        double load, area;
+        translated_asperities_curve(bgt, 1, &SEPARATION, &load, &area);
+        assert_true(isnan(area) && load > 0 && isfinite(load));
+        assert_true(isnan(translated_asperities_area(bgt, 0.01)));
+        assert_true(translated_asperities_area(gw, 0.01) > 0.01);
+        translated_asperities_destroy(&bgt);
+        translated_asperities_destroy(&gw);
+        height_function_destroy(&function);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(gaussian_fields_have_the_gaussian_theories),
+        cmocka_unit_test(others_are_sums_over_summits),
+        cmocka_unit_test(spheres_have_the_mean_curvature),
+        cmocka_unit_test(flattened_summits_have_no_area),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
