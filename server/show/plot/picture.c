@@ -15,7 +15,11 @@ enum { CASES_MOST = 256 }; /* whose curves are read for one picture */
 static int draw_results(const struct study_result *study, const struct plot_request *request,
                         FILE *file, struct error *err) {
     for (size_t c = 0; c < study->case_count; c++) {
-        const struct curve *density = density_curve(&study->cases[c], request->lines.quantity);
+        const struct curve *density;
+        int status = density_curve(&study->cases[c], request->lines.quantity, request->lines.series,
+                                   &density, err);
+        if (status != 0)
+            return status;
         if (density != NULL)
             return plot_density(study, &study->cases[c], density, file, err);
     }
@@ -119,10 +123,12 @@ static int draw_case(const struct drawing *drawing, bool *done, struct error *er
     struct study_result study = {0};
     int status = read_curves(drawing, first_case(drawing), &study, err);
     const struct case_result *one = study.case_count > 0 ? &study.cases[0] : NULL;
-    const struct curve *density =
-        status == 0 && one != NULL ? density_curve(one, drawing->request->quantity) : NULL;
-    *done = density != NULL || drawing->request->case_number >= 0;
-    if (density != NULL)
+    const struct curve *density = NULL;
+    if (status == 0 && one != NULL)
+        status =
+            density_curve(one, drawing->request->quantity, drawing->request->series, &density, err);
+    *done = density != NULL || status != 0 || drawing->request->case_number >= 0;
+    if (status == 0 && density != NULL)
         status = plot_density(&drawing->table.study, one, density, drawing->file, err);
     else if (status == 0 && *done)
         status = plot_quantity(&study, &drawing->plot, drawing->file, err);

@@ -218,9 +218,24 @@ int plot_density(const struct study_result *study, const struct case_result *one
     return status;
 }
 
-const struct curve *density_curve(const struct case_result *one, const char *quantity) {
-    for (size_t a = 0; a < one->curve_count; a++)
-        if (one->curves[a].columns > 0 && strcmp(one->curves[a].quantity, quantity) == 0)
-            return &one->curves[a];
-    return NULL;
+int density_curve(const struct case_result *one, const char *quantity, const char *series,
+                  const struct curve **out, struct error *err) {
+    char words[160] = "";
+    *out = NULL;
+    for (size_t a = 0; a < one->curve_count; a++) {
+        const struct curve *curve = &one->curves[a];
+        if (curve->columns == 0 || strcmp(curve->quantity, quantity) != 0)
+            continue;
+        const char *own = curve->series != NULL ? curve->series : "";
+        if (series == NULL || strcmp(own, series) == 0) {
+            *out = curve;
+            return 0;
+        }
+        size_t used = strlen(words);
+        snprintf(words + used, sizeof words - used, "%s\"%.40s\"", used > 0 ? ", " : "", own);
+    }
+    if (*words == '\0')
+        return 0;
+    return error_set(err, ERROR_INPUT, "%.60s has no series \"%.60s\"; allowed: %s", quantity,
+                     series, words);
 }

@@ -14,7 +14,9 @@
 int plot_density(const struct study_result *study, const struct case_result *one,
                  const struct curve *curve, FILE *file, struct error *err);
 
-/* Returns the first matrix of a quantity that a case has; NULL: none. */
-const struct curve *density_curve(const struct case_result *one, const char *quantity);
+/* Finds the matrix of a quantity that a case has, of this series, or the first of any where series
+ * is NULL. *out: borrowed; NULL where the quantity is no matrix. ERROR_INPUT for another series. */
+int density_curve(const struct case_result *one, const char *quantity, const char *series,
+                  const struct curve **out, struct error *err);
 
 #endif

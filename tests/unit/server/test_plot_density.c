@@ -16,7 +16,8 @@ static char *draw(const struct study_result *study, int expected, struct error *
     size_t size = 0;
     FILE *file = open_memstream(&text, &size);
     assert_non_null(file);
-    const struct curve *curve = density_curve(&study->cases[0], "joint");
+    const struct curve *curve = NULL;
+    assert_int_equal(density_curve(&study->cases[0], "joint", NULL, &curve, err), 0);
     assert_non_null(curve);
     assert_int_equal(plot_density(study, &study->cases[0], curve, file, err), expected);
     assert_int_equal(fclose(file), 0);
@@ -155,7 +156,29 @@ static void nothing_is_told(void **state) {
     struct study_result study = study_of(ROWS, COLUMNS, values, 0);
     free(draw(&study, ERROR_ABSENT, &err));
     assert_non_null(strstr(err.text, "\"joint\" has no values yet"));
-    assert_null(density_curve(&study.cases[1], "joint"));
+    const struct curve *curve = &study.cases[0].curves[0];
+    assert_int_equal(density_curve(&study.cases[1], "joint", NULL, &curve, &err), 0);
+    assert_null(curve);
+    study_result_clear(&study);
+}
+
+static void series_are_told_apart(void **state) {
+    (void)state;
+    const double values[CELLS] = {[20] = 1};
+    struct error err = {0};
+    const struct curve *curve = NULL;
+    struct study_result study = study_of(ROWS, COLUMNS, values, 0);
+    struct case_result *one = &study.cases[0];
+    struct curve pits = one->curves[0];
+    pits.series = "pits";
+    one->curves[0].series = "summits";
+    assert_int_equal(result_add_curve(one, &pits, NULL), 0);
+    assert_int_equal(density_curve(one, "joint", "pits", &curve, NULL), 0);
+    assert_ptr_equal(curve, &one->curves[1]);
+    assert_int_equal(density_curve(one, "joint", NULL, &curve, NULL), 0);
+    assert_ptr_equal(curve, &one->curves[0]);
+    assert_int_equal(density_curve(one, "joint", "peaks", &curve, &err), ERROR_INPUT);
+    assert_non_null(strstr(err.text, "no series \"peaks\"; allowed: \"summits\", \"pits\""));
     study_result_clear(&study);
 }
 
@@ -166,6 +189,7 @@ int main(void) {
         cmocka_unit_test(contours_lie_between_cells),
         cmocka_unit_test(many_bins_are_joined),
         cmocka_unit_test(nothing_is_told),
+        cmocka_unit_test(series_are_told_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
