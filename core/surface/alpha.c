@@ -16,6 +16,7 @@ struct ring_sums {
     int dimension;
     double hurst, lowest, rolloff; /* |m| of lambda_l and lambda_r */
     double m0, m2, m4;             /* of the full plane, in units of 2 pi/L */
+    double quartic;                /* sum of |m|^4: m40 + 2 m22 + m04 */
 };
 
 struct ring_search {
@@ -49,6 +50,15 @@ static void ring_add(struct ring_sums *sums, double square, double points, doubl
     sums->m0 += points * power;
     sums->m2 += points * power * (sums->dimension == 2 ? square / 2 : square);
     sums->m4 += fourth * power;
+    sums->quartic += points * power * square * square;
+}
+
+/* The first rings of a plane have four or twelve modes, which are no isotropic surface: alpha of
+ * such sums is left out. */
+static const double ANISOTROPY_MOST = 0.1;
+static bool is_isotropic(const struct ring_sums *sums) {
+    double m22 = sums->quartic / 2 - sums->m4;
+    return sums->dimension == 1 || fabs(3 * m22 / sums->m4 - 1) <= ANISOTROPY_MOST;
 }
 
 static double ring_alpha(const struct ring_sums *sums) {
@@ -60,7 +70,8 @@ static bool ring_visit(struct ring_search *search, double square, double points,
     ring_add(&search->sums, square, points, fourth);
     double reached = ring_alpha(&search->sums);
     /* The shortest wave may not be longer than the roll-off. */
-    if (isnan(reached) || sqrt(square) < search->sums.rolloff * (1 - 1e-9))
+    if (isnan(reached) || sqrt(square) < search->sums.rolloff * (1 - 1e-9) ||
+        !is_isotropic(&search->sums))
         return false;
     search->least_alpha = fmin(search->least_alpha, reached); /* fmin and fmax pass over NaN */
     search->most_alpha = fmax(search->most_alpha, reached);
@@ -277,6 +288,8 @@ static void sums_add_annulus(struct ring_sums *sums, const struct annulus *annul
     sums->m0 += power * series(p, annulus->terms, annulus->points);
     sums->m2 += power * annulus->centre / 2 * series(p + 1, annulus->terms, annulus->points);
     sums->m4 += power * series(p, annulus->terms, annulus->fourths);
+    sums->quartic +=
+        power * annulus->centre * annulus->centre * series(p + 2, annulus->terms, annulus->points);
 }
 
 /* Returns a lower bound of the distance from the required alpha to that of any ring of an annulus,
@@ -334,7 +347,7 @@ static bool is_left_behind(const struct ring_search *search, size_t r) {
 static bool search_annuli(struct ring_search *search, struct lattice *lattice, bool pass) {
     search->passed_by = INFINITY;
     search->best_square = search->best_alpha = search->least_alpha = search->most_alpha = NAN;
-    search->sums.m0 = search->sums.m2 = search->sums.m4 = 0;
+    search->sums.m0 = search->sums.m2 = search->sums.m4 = search->sums.quartic = 0;
     lattice->rows = 0;
     search->left_behind = false;
     for (size_t r = (size_t)search->sums.lowest;
@@ -450,6 +463,9 @@ static double most_of(const struct ring_search *search, double ratio_rolloff) {
     return spectrum_alpha_continuous(2, search->sums.hurst, ratio, ratio_rolloff);
 }
 
+/* Rings of a plane are near each other, but for those of short cells. */
+static const double APART_MOST = 0.01;
+
 /* sides: of the cell, as the message prints them. */
 static int ratio_of(struct ring_search *search, double ratio_rolloff, const char *sides,
                     double *ratio, double *reached, struct error *err) {
@@ -480,6 +496,13 @@ static int ratio_of(struct ring_search *search, double ratio_rolloff, const char
                          "waves; allowed: %.6g to %.6g",
                          search->alpha, search->sums.hurst, sides, search->least_alpha,
                          search->most_alpha);
+    if (search->sums.dimension == 2 &&
+        fabs(search->best_alpha - search->alpha) > APART_MOST * search->alpha)
+        return error_set(err, ERROR_NUMERIC,
+                         "no wavelength ratio gives alpha = %g at hurst = %g and a cell of %s long "
+                         "waves within %g %%; the nearest is %.6g, and longer cells come nearer",
+                         search->alpha, search->sums.hurst, sides, 100 * APART_MOST,
+                         search->best_alpha);
     *ratio = sqrt(search->best_square) / search->sums.lowest;
     *reached = search->best_alpha;
     return 0;

@@ -55,7 +55,8 @@ int spectrum_ratio_continuous(int dimension, double hurst, double ratio_rolloff,
                               double *ratio, struct error *err);
 /* Finds that ratio by the discrete sums of a cell of length_ratio long waves (square). The discrete
  * alpha is a step function of the ratio. The returned ratio's lambda_s is that of the mode ring
- * whose alpha is nearest; *reached is that alpha. */
+ * whose alpha is nearest; *reached is that alpha. Surfaces: ERROR_NUMERIC where it differs by more
+ * than 1 %; sums of modes that are not isotropic (isotropy below 0.9 or above 1.1) are left out. */
 int spectrum_ratio_discrete(int dimension, double hurst, double ratio_rolloff, double length_ratio,
                             double alpha, double *ratio, double *reached, struct error *err);
 /* As above, of surfaces on a cell of length_x by length_y long waves. */
