@@ -82,7 +82,8 @@ static const struct parameter ROWS[] = {
      .sweep = true,
      .default_json = "\"standard\"",
      .example_json = "[\"standard\", \"dual\"]",
-     .help = "layered, full: mortar functions that weight the gap"},
+     .help = "layered, full: shape functions that weight the gap of a node: standard ones, over it "
+             "and its neighbours, or dual ones, at it alone; multipliers are dual in both"},
     {.path = "/contact/kinematics",
      .type = PARAMETER_CHOICE,
      .choices = KINEMATICS_CHOICES,
