@@ -225,6 +225,36 @@ int heights_moments(const struct heights *heights, struct height_moments *out, s
     return 0;
 }
 
+static double skewness_at(const struct distribution *row, double shape) {
+    struct height_moments moments;
+    row->moments(shape, &moments);
+    return moments.skewness;
+}
+
+/* The skewness of each distribution rises or falls over the whole range of its shape. */
+int heights_shape_of_skewness(enum heights_type type, double skewness, double *shape,
+                              struct error *err) {
+    enum { HALVINGS = 100 };
+    const struct distribution *row = heights_distribution(type);
+    if (row == NULL || row->shape_means == NULL)
+        return error_set(err, ERROR_INPUT, "these heights have no shape to be solved for");
+    double low = row->shape_low, high = row->shape_high;
+    double at_low = skewness_at(row, low), at_high = skewness_at(row, high);
+    double sign = at_high > at_low ? 1 : -1;
+    if (!(sign * skewness >= sign * at_low && sign * skewness <= sign * at_high))
+        return error_set(err, ERROR_INPUT, "no shape has the skewness %g; allowed: %.4g to %.4g",
+                         skewness, fmin(at_low, at_high), fmax(at_low, at_high));
+    for (int n = 0; n < HALVINGS; n++) {
+        double middle = (low + high) / 2;
+        if (sign * skewness_at(row, middle) < sign * skewness)
+            low = middle;
+        else
+            high = middle;
+    }
+    *shape = (low + high) / 2;
+    return 0;
+}
+
 double heights_quantile(const struct heights *heights, const struct height_moments *moments,
                         double probability) {
     const struct distribution *row = heights_distribution(heights->type);

@@ -45,6 +45,10 @@ const struct distribution *heights_distribution(enum heights_type type);
 /* Fails with ERROR_INPUT for a shape out of range, or a quantile function that does not rise or has
  * no finite moments. */
 int heights_moments(const struct heights *heights, struct height_moments *out, struct error *err);
+/* Finds the shape with which a distribution of the table has this skewness. ERROR_INPUT, with the
+ * skewness that it reaches, where none has. */
+int heights_shape_of_skewness(enum heights_type type, double skewness, double *shape,
+                              struct error *err);
 /* Returns the standardised quantile at a probability in (0, 1), given the moments above. */
 double heights_quantile(const struct heights *heights, const struct height_moments *moments,
                         double probability);

@@ -236,8 +236,8 @@ static cJSON *heights_of(cJSON *surface) {
 
 /* Returns whether a study says which heights it wants, and not only how they are made. */
 static bool heights_given(const cJSON *surface) {
-    static const char *const SAID[] = {"distribution", "shape", "samples", "probability",
-                                       "quantile"};
+    static const char *const SAID[] = {"distribution", "shape",       "skewness",
+                                       "samples",      "probability", "quantile"};
     const cJSON *heights = cJSON_GetObjectItemCaseSensitive(surface, "heights");
     bool given = heights != NULL && !cJSON_IsObject(heights); /* to be refused as they are */
     for (size_t n = 0; n < sizeof SAID / sizeof *SAID; n++)

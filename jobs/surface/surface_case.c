@@ -9,16 +9,33 @@ static const double ROUNDING = 1e-9; /* relative: guards integers behind divisio
 
 static const struct parameter_table *const TABLES[] = {&SURFACE_PARAMETERS, NULL};
 
+/* Returns the shape, or that of the skewness; NaN with a fault where it has none. */
+static double read_shape(enum heights_type type, struct values *values) {
+    static const char path[] = "/surface/heights/skewness";
+    struct error reason = {0};
+    double shape = values_number(values, "/surface/heights/shape");
+    double skewness = values_number(values, path);
+    if (isnan(skewness))
+        return shape;
+    if (!isnan(shape))
+        values_fault(values, path, "give shape or skewness, not both");
+    else if (heights_shape_of_skewness(type, skewness, &shape, &reason) != 0)
+        values_fault(values, path, "%s", reason.text);
+    return shape;
+}
+
 static void read_distribution(struct surface_case *out, struct values *values) {
     struct heights *heights = &out->options.heights;
     const struct distribution *distribution = heights_distribution(heights->type);
     out->heights_name = distribution->family;
     if (distribution->shape_means == NULL)
         return;
-    heights->shape = values_number(values, "/surface/heights/shape");
+    heights->shape = read_shape(heights->type, values);
+    if (!isnan(values_number(values, "/surface/heights/skewness")))
+        return; /* solved for, or at fault */
     if (!(heights->shape >= distribution->shape_low && heights->shape <= distribution->shape_high))
         values_fault(values, "/surface/heights/shape",
-                     "the distribution needs its shape (%s), a number in [%g, %g]",
+                     "the distribution needs its shape (%s), a number in [%g, %g], or its skewness",
                      distribution->shape_means, distribution->shape_low, distribution->shape_high);
 }
 

@@ -265,6 +265,7 @@ static void part_pairs(cJSON *document) {
         {"/target", "/realisations"},
         {"/surface/nayak_alpha", "/surface/wavelength_ratio"},
         {"/surface/rms_height", "/surface/rms_slope"},
+        {"/surface/heights/shape", "/surface/heights/skewness"},
         {"/contact/pressures/values", "/contact/pressures/steps"},
         {"/contact/pressures/values", "/contact/pressures/to"},
     };

@@ -298,9 +298,32 @@ static void nonsense_is_refused(void **state) {
     assert_non_null(strstr(err.text, "moment"));
 }
 
+/* Over the whole range of shapes, both signs; and what no shape has is refused with the range. */
+static void shapes_of_a_skewness(void **state) {
+    (void)state;
+    static const enum heights_type TYPES[] = {HEIGHTS_WEIBULL_MIN, HEIGHTS_WEIBULL_MAX,
+                                              HEIGHTS_LOGNORMAL};
+    struct error err = {0};
+    double shape = 0;
+    for (size_t t = 0; t < sizeof TYPES / sizeof *TYPES; t++) {
+        const struct distribution *row = heights_distribution(TYPES[t]);
+        for (int n = 0; n <= 20; n++) {
+            double asked = row->shape_low + (row->shape_high - row->shape_low) * n / 20;
+            double skewness = moments_of(TYPES[t], asked).skewness;
+            assert_int_equal(heights_shape_of_skewness(TYPES[t], skewness, &shape, NULL), 0);
+            check_relative(shape, asked, 1e-9);
+        }
+    }
+    assert_int_equal(heights_shape_of_skewness(HEIGHTS_WEIBULL_MIN, -1, &shape, &err), ERROR_INPUT);
+    assert_non_null(strstr(err.text, "no shape has the skewness -1; allowed: -0.8"));
+    assert_int_equal(heights_shape_of_skewness(HEIGHTS_LOGNORMAL, -0.1, &shape, &err), ERROR_INPUT);
+    assert_int_equal(heights_shape_of_skewness(HEIGHTS_GAUSSIAN, 0, &shape, &err), ERROR_INPUT);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(moments_are_those_of_the_table),
+        cmocka_unit_test(shapes_of_a_skewness),
         cmocka_unit_test(extreme_shapes_keep_their_digits),
         cmocka_unit_test(quantiles_invert_the_distribution),
         cmocka_unit_test(densities_are_slopes),

@@ -249,10 +249,26 @@ static void heights_of_ones_own(void **state) {
     assert_null(by_samples.height_table);
 }
 
+static void shape_of_a_skewness(void **state) {
+    (void)state;
+    struct surface_case surface = read("{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\":"
+                                       " {\"distribution\": \"weibull_max\", \"skewness\": -2}}");
+    check_close(surface.options.heights.shape, 1, 1e-12);
+    surface_case_clear(&surface);
+}
+
 struct broken_case {
     const char *surface, *pointer, *words;
 };
 static const struct broken_case BROKEN[] = {
+    {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"distribution\": \"weibull_min\","
+     " \"shape\": 1, \"skewness\": 2}}",
+     "/surface/heights/skewness", "not both"},
+    {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"distribution\": \"weibull_max\","
+     " \"skewness\": 2}}",
+     "/surface/heights/skewness", "no shape has the skewness 2; allowed: -6.6"},
+    {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"distribution\": \"lognormal\"}}",
+     "/surface/heights/shape", "or its skewness"},
     {"{\"wavelength_ratio\": 8}", "/surface/hurst", "needs it"},
     {"{\"hurst\": 0.8}", "/surface/wavelength_ratio", "or nayak_alpha"},
     {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"nayak_alpha\": 5}", "/surface/nayak_alpha",
@@ -366,6 +382,7 @@ static void all_faults_at_once(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(defaults),
+        cmocka_unit_test(shape_of_a_skewness),
         cmocka_unit_test(everything_given),
         cmocka_unit_test(what_is_exact),
         cmocka_unit_test(grids),
