@@ -33,12 +33,15 @@ static double panel_end(double alpha, double at) {
 }
 
 static int panels_create(struct translated_asperities *t, double alpha, struct error *err) {
-    for (double at = -SCORE_MOST; at < SCORE_MOST; at = panel_end(alpha, at))
+    double at = -SCORE_MOST, weight[QUADRATURE_NODES];
+    while (at < SCORE_MOST) {
+        at = panel_end(alpha, at);
         t->count++;
+    }
     t->panels = array_create(t->count, sizeof *t->panels);
     if (t->panels == NULL)
         return error_memory(err, t->count * sizeof *t->panels, "summits of a law of heights");
-    double at = -SCORE_MOST, weight[QUADRATURE_NODES];
+    at = -SCORE_MOST;
     for (size_t p = 0; p < t->count; p++) {
         struct panel *panel = &t->panels[p];
         panel->low = at;

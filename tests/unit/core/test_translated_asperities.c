@@ -100,7 +100,8 @@ static void mean_add(struct mean *mean, double value) {
     mean->sum += value;
     mean->squares += value * value;
 }
-/* Checks an expected mean of n values within 4 standard errors, which are exceeded once in 16 000. */
+/* Checks an expected mean of n values within 4 standard errors, which are exceeded once in 16 000.
+ */
 static void mean_check(const struct mean *mean, double n, double expected) {
     double value = mean->sum / n, error = sqrt((mean->squares / n - value * value) / n);
     print_message("%.5f +- %.5f, theory %.5f\n", value, error, expected);
@@ -150,14 +151,13 @@ static void drawn_summits(const struct translated_surface *surface, double separ
 static void others_are_sums_over_summits(void **state) {
     (void)state;
     static const struct {
+        double shape, separation;
         enum heights_type type;
-        double shape;
         bool mirrored;
-        double separation;
-    } CASES[] = {{HEIGHTS_WEIBULL_MIN, 1, false, 1.5},
-                 {HEIGHTS_WEIBULL_MIN, 3.602, true, 0.5},
-                 {HEIGHTS_LOGNORMAL, 0.5, false, 1},
-                 {HEIGHTS_LOGNORMAL, 0.5, true, 0.3}};
+    } CASES[] = {{1, 1.5, HEIGHTS_WEIBULL_MIN, false},
+                 {3.602, 0.5, HEIGHTS_WEIBULL_MIN, true},
+                 {0.5, 1, HEIGHTS_LOGNORMAL, false},
+                 {0.5, 0.3, HEIGHTS_LOGNORMAL, true}};
     for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
         struct height_function *function = function_of(CASES[c].type, CASES[c].shape);
         struct translated_surface surface = surface_of(function, 4, CASES[c].mirrored);

@@ -117,9 +117,9 @@ static void surfaces_against_theories(void **state) {
     cJSON_Delete(document);
 }
 
-/* Heights decide at light load, which Persson's theory does not see: at 0.01 the maximum of C = 2 has
- * 2.8 times the area of the minimum. Theories by the exact summits follow within 35 %: 25 % by which
- * asperities err, 5 % for twenty surfaces of 16 waves, 5 % for the mesh. */
+/* Heights decide at light load, which Persson's theory does not see: at 0.01 the maximum of C = 2
+ * has 2.8 times the area of the minimum. Theories by the exact summits follow within 35 %: 25 % by
+ * which asperities err, 5 % for twenty surfaces of 16 waves, 5 % for the mesh. */
 static void translated_surfaces_against_their_summits(void **state) {
     (void)state;
     static const struct {
@@ -141,7 +141,7 @@ static void translated_surfaces_against_their_summits(void **state) {
         cJSON *document = solve(study, 20);
         const cJSON *area = curve_of(document, "contact_area", "edges", "halfspace");
         areas[c] = at(area, "/y", 0);
-assert_near(areas[c], at(area, CASES[c].theory, 0), 0.35 * areas[c], c);
+        assert_near(areas[c], at(area, CASES[c].theory, 0), 0.35 * areas[c], c);
         assert_null(json_at(area, "/theory/bgt"));
         cJSON_Delete(document);
     }
