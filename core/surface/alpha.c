@@ -15,6 +15,7 @@
 struct ring_sums {
     int dimension;
     double hurst, lowest, rolloff; /* |m| of lambda_l and lambda_r */
+    double highest;                /* |m| of lambda_s; INFINITY while it is sought */
     double m0, m2, m4;             /* of the full plane, in units of 2 pi/L */
     double quartic;                /* sum of |m|^4: m40 + 2 m22 + m04 */
 };
@@ -42,7 +43,7 @@ enum { RINGS_MOST = 16384, LATTICE_MOST = 6000 };
 /* Adds a ring |m|^2 = square that holds `points` modes with sum of (mx^4 + my^4)/2 = fourth. */
 static void ring_add(struct ring_sums *sums, double square, double points, double fourth) {
     double m = sqrt(square);
-    if (m < sums->lowest * (1 - 1e-9))
+    if (m < sums->lowest * (1 - 1e-9) || m > sums->highest * (1 + 1e-9))
         return;
     double relative = m / sums->rolloff;
     double exponent = sums->dimension == 2 ? -2 * (sums->hurst + 1) : -1 - 2 * sums->hurst;
@@ -313,7 +314,8 @@ static bool annulus_pass(struct ring_search *search, size_t r, struct lattice *l
     struct annulus annulus;
     struct ring_sums after = search->sums;
     double m = (double)r, rolloff = search->sums.rolloff;
-    if (lattice->next == NULL || r < SERIES_FROM || m < search->sums.lowest + 1)
+    if (lattice->next == NULL || r < SERIES_FROM || m < search->sums.lowest + 1 ||
+        m + 1 > search->sums.highest)
         return false;
     if (lattice->rings != NULL)
         lattice_walk(lattice, r, search->times, &annulus);
@@ -512,7 +514,11 @@ int spectrum_ratio_discrete(int dimension, double hurst, double ratio_rolloff, d
                             double alpha, double *ratio, double *reached, struct error *err) {
     char sides[32];
     struct ring_search search = {
-        .sums = {dimension, hurst, length_ratio, length_ratio * ratio_rolloff, 0, 0, 0},
+        .sums = {.dimension = dimension,
+                 .hurst = hurst,
+                 .lowest = length_ratio,
+                 .rolloff = length_ratio * ratio_rolloff,
+                 .highest = INFINITY},
         .alpha = alpha,
         .times = 1,
         .largest = RINGS_MOST,
@@ -529,7 +535,11 @@ int spectrum_ratio_rectangle(double hurst, double ratio_rolloff, double length_x
     double longer = fmax(length_x, length_y), shorter = fmin(length_x, length_y);
     char sides[64];
     struct ring_search search = {
-        .sums = {2, hurst, longer, longer * ratio_rolloff, 0, 0, 0},
+        .sums = {.dimension = 2,
+                 .hurst = hurst,
+                 .lowest = longer,
+                 .rolloff = longer * ratio_rolloff,
+                 .highest = INFINITY},
         .alpha = alpha,
         .times = longer / shorter,
         .largest = LATTICE_MOST,
@@ -541,4 +551,79 @@ int spectrum_ratio_rectangle(double hurst, double ratio_rolloff, double length_x
         return status;
     snprintf(sides, sizeof sides, "%g by %g", length_x, length_y);
     return ratio_of(&search, ratio_rolloff, sides, ratio, reached, err);
+}
+
+/* --- the Hurst exponent of a required alpha --- */
+
+/* Alpha of a spectrum by its Hurst exponent. */
+struct alpha_of_hurst {
+    int dimension;
+    double ratio, rolloff;
+    double length_x, length_y; /* of the cell in longest waves; NaN: the continuous formula */
+};
+
+/* A search for this alpha goes through the whole band, and passes whole annuli. */
+static const double OUT_OF_REACH = 1e300;
+
+/* Sums all rings of the band. NaN in *alpha where it has no waves. ERROR_MEMORY. */
+static int alpha_at(const struct alpha_of_hurst *of, double hurst, double *alpha,
+                    struct error *err) {
+    double longer = fmax(of->length_x, of->length_y), highest = longer * of->ratio;
+    struct ring_search search = {.sums = {.dimension = of->dimension,
+                                          .hurst = hurst,
+                                          .lowest = longer,
+                                          .rolloff = longer * of->rolloff,
+                                          .highest = highest},
+                                 .alpha = OUT_OF_REACH,
+                                 .times = longer / fmin(of->length_x, of->length_y),
+                                 .largest = floor(highest) + 1};
+    bool found;
+    if (isnan(of->length_x)) {
+        *alpha = spectrum_alpha_continuous(of->dimension, hurst, of->ratio, of->rolloff);
+        return 0;
+    }
+    int status = ring_search_run(&search, &found, err);
+    *alpha = status == 0 ? ring_alpha(&search.sums) : NAN;
+    return status;
+}
+
+static const double HURST_LEAST = 1e-3;
+
+/* Alpha rises with the exponent. */
+static int hurst_of(const struct alpha_of_hurst *of, double alpha, double *hurst,
+                    struct error *err) {
+    enum { HURST_HALVINGS = 40 };
+    double low = HURST_LEAST, high = 1, least, most, middle;
+    int status = alpha_at(of, low, &least, err);
+    if (status == 0)
+        status = alpha_at(of, high, &most, err);
+    if (status == 0 && !(alpha >= least && alpha <= most))
+        return error_set(err, ERROR_NUMERIC,
+                         "no Hurst exponent gives alpha = %g at a wavelength ratio of %g; allowed: "
+                         "%.6g to %.6g",
+                         alpha, of->ratio, least, most);
+    for (int n = 0; n < HURST_HALVINGS && status == 0; n++) {
+        *hurst = (low + high) / 2;
+        status = alpha_at(of, *hurst, &middle, err);
+        *(middle < alpha ? &low : &high) = *hurst;
+    }
+    return status;
+}
+
+int spectrum_hurst_continuous(int dimension, double ratio, double ratio_rolloff, double alpha,
+                              double *hurst, struct error *err) {
+    const struct alpha_of_hurst of = {dimension, ratio, ratio_rolloff, NAN, NAN};
+    return hurst_of(&of, alpha, hurst, err);
+}
+
+int spectrum_hurst_discrete(int dimension, double ratio, double ratio_rolloff, double length_x,
+                            double length_y, double alpha, double *hurst, struct error *err) {
+    const struct alpha_of_hurst of = {dimension, ratio, ratio_rolloff, length_x, length_y};
+    double longer = fmax(length_x, length_y),
+           most = length_x == length_y ? RINGS_MOST : LATTICE_MOST;
+    if (!(longer * ratio < most))
+        return error_set(err, ERROR_INPUT,
+                         "the shortest wave is 1/%g of the cell; allowed: down to 1/%g",
+                         longer * ratio, most);
+    return hurst_of(&of, alpha, hurst, err);
 }

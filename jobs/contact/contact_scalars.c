@@ -299,6 +299,9 @@ static int add_scalars(const struct contact_case *one_case, const struct moments
     for (size_t a = 0; a < CONTACT_FIT_COUNT && status == 0; a++)
         status = contact_scalars_put_range(
             &CONTACT_FITS[a], one_case, loads_within(tally, CONTACT_FITS[a].area_most), out, err);
+    const struct scalar hurst = scalar_named("hurst", one_case->surface.spectrum.hurst, 0, NAN);
+    if (status == 0 && one_case->surface.hurst_solved)
+        status = result_add_scalar(out, &hurst, err);
     if (status != 0)
         return status;
     /* as given, or as solved for nayak_alpha */

@@ -171,6 +171,7 @@ static int add_moments(struct expectation *e, struct error *err) {
     bool few_waves = surface->options.heights.type == HEIGHTS_GAUSSIAN &&
                      surface->options.amplitudes == AMPLITUDES_FIXED;
     const struct expected_scalar list[] = {
+        {"hurst", surface->hurst_solved ? surface->spectrum.hurst : (double)NAN, NAN},
         {"wavelength_ratio", surface->wavelength_ratio, NAN},
         {"nayak_alpha", m->nayak_alpha, grid.nayak_alpha},
         {"nayak_alpha_continuous", continuous_alpha(surface), NAN},

@@ -327,6 +327,9 @@ static int add_scalars(struct case_result *out, const struct statistics_case *on
             estimate = random_estimate(columns, a);
         status = add_scalar(out, NAMES[a], estimate, theory[a], err);
     }
+    if (status == 0 && one_case->surface.hurst_solved)
+        status = add_scalar(out, "hurst", (struct estimate){one_case->surface.spectrum.hurst, 0},
+                            NAN, err);
     if (status != 0)
         return status;
     /* as given, or as solved for nayak_alpha */

@@ -214,25 +214,60 @@ static void read_anisotropy(struct surface_case *out, struct values *values) {
                      "%g: nayak_alpha is of isotropic surfaces; give wavelength_ratio", anisotropy);
 }
 
-static int read_self_affine(struct surface_case *out, struct values *values, struct error *err) {
+/* Solves for the hurst of nayak_alpha and wavelength_ratio; NaN with a fault where none gives it.
+ */
+static int solve_hurst(struct surface_case *out, struct values *values, double alpha,
+                       double rolloff, struct error *err) {
+    struct error reason = {0};
+    double ratio = out->wavelength_ratio;
+    if (isnan(rolloff) || isnan(out->length_ratio) || isnan(out->length_ratio_y) || rolloff > ratio)
+        return 0; /* at fault */
+    int status =
+        values_choice(values, "/surface/alpha_formula") == ALPHA_CONTINUOUS
+            ? spectrum_hurst_continuous(out->dimension, ratio, rolloff, alpha, &out->spectrum.hurst,
+                                        &reason)
+            : spectrum_hurst_discrete(out->dimension, ratio, rolloff, out->length_ratio,
+                                      out->length_ratio_y, alpha, &out->spectrum.hurst, &reason);
+    if (status == ERROR_MEMORY)
+        return error_set(err, status, "%s", reason.text);
+    if (status != 0)
+        values_fault(values, "/surface/nayak_alpha", "%s", reason.text);
+    return 0;
+}
+
+/* Reads two of hurst, wavelength_ratio and nayak_alpha, and solves for the third of the first two.
+ */
+static int read_bandwidth(struct surface_case *out, struct values *values, double rolloff,
+                          struct error *err) {
     double alpha = values_number(values, "/surface/nayak_alpha");
-    double rolloff = values_number(values, "/surface/rolloff_ratio");
-    read_anisotropy(out, values);
-    out->spectrum.hurst = values_number(values, "/surface/hurst");
-    if (isnan(out->spectrum.hurst))
+    double hurst = values_number(values, "/surface/hurst");
+    bool has_ratio = !isnan(out->wavelength_ratio);
+    out->spectrum.hurst = hurst;
+    out->hurst_solved = isnan(hurst) && has_ratio && !isnan(alpha);
+    if (out->hurst_solved)
+        return solve_hurst(out, values, alpha, rolloff, err);
+    if (isnan(hurst))
         values_fault(values, "/surface/hurst",
-                     "a self-affine spectrum needs it: a number in (0, 1]");
-    if (!isnan(alpha) && !isnan(out->wavelength_ratio)) {
+                     "a self-affine spectrum needs it: a number in (0, 1]; or wavelength_ratio and "
+                     "nayak_alpha, which give it");
+    if (!isnan(alpha) && !has_ratio)
+        return solve_ratio(out, values, alpha, rolloff, err);
+    if (!isnan(alpha)) {
         values_fault(values, "/surface/nayak_alpha",
-                     "give wavelength_ratio or nayak_alpha, not both");
+                     "give two of hurst, wavelength_ratio and nayak_alpha, not all");
         out->wavelength_ratio = NAN;
-    } else if (!isnan(alpha)) {
-        int status = solve_ratio(out, values, alpha, rolloff, err);
-        if (status != 0)
-            return status;
-    } else if (isnan(out->wavelength_ratio))
+    } else if (!has_ratio)
         values_fault(values, "/surface/wavelength_ratio",
                      "give wavelength_ratio, or nayak_alpha in its place");
+    return 0;
+}
+
+static int read_self_affine(struct surface_case *out, struct values *values, struct error *err) {
+    double rolloff = values_number(values, "/surface/rolloff_ratio");
+    read_anisotropy(out, values);
+    int status = read_bandwidth(out, values, rolloff, err);
+    if (status != 0)
+        return status;
     double ratio = out->wavelength_ratio;
     if (rolloff > ratio * (1 + ROUNDING))
         values_fault(values, "/surface/rolloff_ratio",

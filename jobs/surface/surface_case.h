@@ -14,6 +14,7 @@ struct surface_case {
     struct spectrum spectrum;
     struct surface_options options;
     double wavelength_ratio;             /* as given, or solved for nayak_alpha */
+    bool hurst_solved;                   /* for nayak_alpha and wavelength_ratio */
     double length_ratio, length_ratio_y; /* sides of the cell in longest waves; of profiles both are
                                             the length */
     double *table;                       /* owned: memory behind a table spectrum */

@@ -40,7 +40,8 @@ static const struct parameter ROWS[] = {
      .above_minimum = true,
      .sweep = true,
      .example_json = "[0.2, 0.5, 0.8]",
-     .help = "Hurst exponent H of a self-affine spectrum"},
+     .help = "Hurst exponent H of a self-affine spectrum; solved for where wavelength_ratio and "
+             "nayak_alpha are both given"},
     {.path = "/surface/wavelength_ratio",
      .symbol = "lambda_l/lambda_s",
      .type = PARAMETER_NUMBER,
@@ -59,14 +60,16 @@ static const struct parameter ROWS[] = {
      .sweep = true,
      .example_json = "[5, 10]",
      .help =
-         "Nayak parameter m0 m4/m2^2, solved for lambda_l/lambda_s, in place of wavelength_ratio"},
+         "Nayak parameter m0 m4/m2^2, solved for lambda_l/lambda_s, in place of wavelength_ratio, "
+         "or for H, in place of hurst"},
     {.path = "/surface/alpha_formula",
      .type = PARAMETER_CHOICE,
      .choices = ALPHA_FORMULAS,
      .sweep = true,
      .default_json = "\"discrete\"",
      .example_json = "\"continuous\"",
-     .help = "how nayak_alpha is solved: the discrete sums of the cell, or the continuous formula"},
+     .help =
+         "how nayak_alpha is solved for: the discrete sums of the cell, or the continuous formula"},
     {.path = "/surface/rolloff_ratio",
      .symbol = "lambda_l/lambda_r",
      .type = PARAMETER_NUMBER,

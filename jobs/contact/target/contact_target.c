@@ -45,8 +45,9 @@ struct choices {
     double length_ratio, mesh_length_ratio, fine_length_ratio, model_length_ratio;
     double sides[2];         /* of a rectangle that the study names, along x and y; else 0 */
     double transition_depth; /* of columns */
-    double wavelength_ratio; /* in place of nayak_alpha, which would give another on each cell; or
-                              * NaN */
+    /* In place of nayak_alpha, which would give others on each cell; or NaN, and the exponent also
+     * where it is given. */
+    double wavelength_ratio, hurst;
 };
 
 /* How a component differs from the case. */
@@ -215,6 +216,8 @@ static cJSON *variant_parameters(const struct study_case *one, const struct choi
         status =
             put(all, "surface", "wavelength_ratio", cJSON_CreateNumber(choices->wavelength_ratio));
     }
+    if (status == 0 && !isnan(choices->hurst))
+        status = put(all, "surface", "hurst", cJSON_CreateNumber(choices->hurst));
     if (status == 0 && !choices->own_grid)
         status = put(all, "surface", "points_per_wavelength",
                      cJSON_CreateNumber(ladder[variant->count - 1]));
@@ -342,11 +345,11 @@ static void read_transition(struct choices *out, const cJSON *document, const cJ
         out->transition_depth *= TIMES;
 }
 
-/* Solves for the wavelength ratio of nayak_alpha on the cell of the base. */
+/* Solves for the wavelength ratio or the Hurst exponent of nayak_alpha on the cell of the base. */
 static int read_alpha(struct choices *out, const cJSON *parameters, struct fault_list *faults,
                       struct error *err) {
     struct surface_case surface;
-    out->wavelength_ratio = NAN;
+    out->wavelength_ratio = out->hurst = NAN;
     if (json_at(parameters, "/surface/nayak_alpha") == NULL)
         return 0;
     cJSON *all = cJSON_Duplicate(parameters, true);
@@ -357,6 +360,7 @@ static int read_alpha(struct choices *out, const cJSON *parameters, struct fault
         status = surface_case_read(&surface, all, faults, err);
     if (status == 0) {
         out->wavelength_ratio = surface.wavelength_ratio;
+        out->hurst = surface.hurst_solved ? surface.spectrum.hurst : NAN;
         surface_case_clear(&surface);
     }
     cJSON_Delete(all);

@@ -93,6 +93,43 @@ static void small_alpha_is_that_of_isotropic_surfaces(void **state) {
     }
 }
 
+/* Back from alpha to the exponent that gave it: profiles, squares, rectangles, a plateau, and more
+ * rings than are visited singly. */
+static void hurst_of_given_alpha(void **state) {
+    (void)state;
+    static const struct {
+        int dimension;
+        double hurst, ratio, rolloff, length_x, length_y;
+    } CASES[] = {{2, 0.8, 8, 1, 8, 8},  {2, 0.2, 16, 2, 8, 8},    {1, 0.5, 32, 1, 4, 4},
+                 {2, 0.6, 8, 1, 3, 12}, {2, 0.99, 40, 1.5, 8, 8}, {2, 0.05, 8, 1, 4, 4}};
+    struct error err = {0};
+    double hurst;
+    for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
+        double x = CASES[c].length_x * CASES[c].ratio, y = CASES[c].length_y * CASES[c].ratio;
+        struct spectrum spectrum = self_affine(CASES[c].hurst, CASES[c].ratio);
+        struct moments moments;
+        size_t nx = 4 * (size_t)x, ny = CASES[c].dimension == 2 ? 4 * (size_t)y : 1;
+        spectrum.wavelength_rolloff = CASES[c].ratio / CASES[c].rolloff;
+        const struct grid grid = {nx, ny, x, CASES[c].dimension == 2 ? y : x};
+        assert_int_equal(spectrum_moments(&spectrum, &grid, &moments, NULL), 0);
+        assert_int_equal(spectrum_hurst_discrete(CASES[c].dimension, CASES[c].ratio,
+                                                 CASES[c].rolloff, CASES[c].length_x,
+                                                 CASES[c].length_y, moments.nayak_alpha, &hurst,
+                                                 &err),
+                         0);
+        check_close(hurst, CASES[c].hurst, 1e-8);
+        double alpha = spectrum_alpha_continuous(CASES[c].dimension, CASES[c].hurst, CASES[c].ratio,
+                                                 CASES[c].rolloff);
+        assert_int_equal(spectrum_hurst_continuous(CASES[c].dimension, CASES[c].ratio,
+                                                   CASES[c].rolloff, alpha, &hurst, NULL),
+                         0);
+        check_close(hurst, CASES[c].hurst, 1e-8);
+    }
+    assert_int_equal(spectrum_hurst_discrete(2, 8, 1, 8, 8, 20, &hurst, &err), ERROR_NUMERIC);
+    assert_non_null(strstr(err.text, "allowed: "));
+    assert_int_equal(spectrum_hurst_discrete(2, 1e5, 1, 8, 8, 20, &hurst, &err), ERROR_INPUT);
+}
+
 static void alpha_out_of_reach(void **state) {
     (void)state;
     struct error err = {0};
@@ -393,6 +430,7 @@ int main(void) {
         cmocka_unit_test(continuous_alpha),
         cmocka_unit_test(ratios_of_given_alpha),
         cmocka_unit_test(small_alpha_is_that_of_isotropic_surfaces),
+        cmocka_unit_test(hurst_of_given_alpha),
         cmocka_unit_test(alpha_out_of_reach),
         cmocka_unit_test(exponential_spectrum),
         cmocka_unit_test(short_cells_are_clipped),
