@@ -20,6 +20,26 @@ struct ring_sums {
     double quartic;                /* sum of |m|^4: m40 + 2 m22 + m04 */
 };
 
+/* With TERMS (FEW_TERMS) terms the series has 15 digits where |m| is at least SERIES_FROM
+ * (FEW_FROM). */
+enum { TERMS = 8, SERIES_FROM = 64, FEW_TERMS = 4, FEW_FROM = 4096 };
+
+/* Sums of u^k over the points of an annulus, with |m|^2 = centre (1 + u), and of (mx^4 + my^4)/2
+ * times u^k. A ring is an annulus of one term. */
+struct annulus {
+    double inner, outer;  /* |m|^2 */
+    double centre, scale; /* and 1/centre */
+    size_t terms;         /* TERMS or FEW_TERMS */
+    double points[TERMS], fourths[TERMS];
+};
+
+/* Annuli and rings that were added to sums; failed: there was no memory for one. */
+struct annulus_list {
+    size_t count, room;
+    struct annulus *of; /* owned */
+    bool failed;
+};
+
 struct ring_search {
     struct ring_sums sums;
     double alpha;   /* required */
@@ -30,6 +50,7 @@ struct ring_search {
     bool left_behind; /* the search ended before `largest`: alpha is less than that of all rings */
     double
         passed_by; /* lower bound of the distance to alpha of rings that were not visited singly */
+    struct annulus_list *visited; /* takes what is added; NULL: nobody asks */
 };
 
 /* Largest |m| tried of squares and lines: a grid of 8 points a wave would have 131072 a side. Of
@@ -66,9 +87,37 @@ static double ring_alpha(const struct ring_sums *sums) {
     return sums->m2 > 0 ? sums->m0 / sums->m2 * (sums->m4 / sums->m2) : NAN;
 }
 
+static void visited_add(struct annulus_list *list, const struct annulus *annulus) {
+    if (list == NULL || list->failed)
+        return;
+    if (list->count == list->room) {
+        size_t room = 2 * list->room + 1024;
+        struct annulus *of = realloc(list->of, room * sizeof *of);
+        list->failed = of == NULL;
+        if (of == NULL)
+            return;
+        list->of = of;
+        list->room = room;
+    }
+    list->of[list->count++] = *annulus;
+}
+
+static void visited_add_ring(const struct ring_search *search, double square, double points,
+                             double fourth) {
+    double m = sqrt(square);
+    if (m >= search->sums.lowest * (1 - 1e-9) && m <= search->sums.highest * (1 + 1e-9))
+        visited_add(search->visited, &(struct annulus){.inner = square,
+                                                       .centre = square,
+                                                       .terms = 1,
+                                                       .points = {points},
+                                                       .fourths = {fourth}});
+}
+
 /* Visits the next ring; returns true once alpha lies between those of the rings so far. */
 static bool ring_visit(struct ring_search *search, double square, double points, double fourth) {
     ring_add(&search->sums, square, points, fourth);
+    if (search->visited != NULL)
+        visited_add_ring(search, square, points, fourth);
     double reached = ring_alpha(&search->sums);
     /* The shortest wave may not be longer than the roll-off. */
     if (isnan(reached) || sqrt(square) < search->sums.rolloff * (1 - 1e-9) ||
@@ -191,19 +240,6 @@ static bool annulus_visit(struct ring_search *search, size_t r, struct lattice *
 }
 
 /* --- annuli as a whole --- */
-
-/* With TERMS (FEW_TERMS) terms the series has 15 digits where |m| is at least SERIES_FROM
- * (FEW_FROM). */
-enum { TERMS = 8, SERIES_FROM = 64, FEW_TERMS = 4, FEW_FROM = 4096 };
-
-/* Sums of u^k over the points of an annulus, with |m|^2 = centre (1 + u), and of (mx^4 + my^4)/2
- * times u^k. */
-struct annulus {
-    double inner, outer;  /* |m|^2 */
-    double centre, scale; /* and 1/centre */
-    size_t terms;         /* TERMS or FEW_TERMS */
-    double points[TERMS], fourths[TERMS];
-};
 
 static void annulus_begin(struct annulus *annulus, double r) {
     *annulus = (struct annulus){.inner = r * r,
@@ -333,6 +369,7 @@ static bool annulus_pass(struct ring_search *search, size_t r, struct lattice *l
         search->most_alpha = fmax(search->most_alpha, ring_alpha(&after));
     }
     search->sums = after;
+    visited_add(search->visited, &annulus);
     return true;
 }
 
@@ -555,75 +592,81 @@ int spectrum_ratio_rectangle(double hurst, double ratio_rolloff, double length_x
 
 /* --- the Hurst exponent of a required alpha --- */
 
+/* A search for this alpha goes through the whole band, and passes whole annuli. */
+static const double OUT_OF_REACH = 1e300;
+
 /* Alpha of a spectrum by its Hurst exponent. */
 struct alpha_of_hurst {
     int dimension;
     double ratio, rolloff;
-    double length_x, length_y; /* of the cell in longest waves; NaN: the continuous formula */
+    struct ring_search search;  /* of a cell: what its rings are summed to */
+    struct annulus_list annuli; /* of a cell, owned; none: the continuous formula */
 };
 
-/* A search for this alpha goes through the whole band, and passes whole annuli. */
-static const double OUT_OF_REACH = 1e300;
-
-/* Sums all rings of the band. NaN in *alpha where it has no waves. ERROR_MEMORY. */
-static int alpha_at(const struct alpha_of_hurst *of, double hurst, double *alpha,
-                    struct error *err) {
-    double longer = fmax(of->length_x, of->length_y), highest = longer * of->ratio;
-    struct ring_search search = {.sums = {.dimension = of->dimension,
-                                          .hurst = hurst,
-                                          .lowest = longer,
-                                          .rolloff = longer * of->rolloff,
-                                          .highest = highest},
-                                 .alpha = OUT_OF_REACH,
-                                 .times = longer / fmin(of->length_x, of->length_y),
-                                 .largest = floor(highest) + 1};
-    bool found;
-    if (isnan(of->length_x)) {
-        *alpha = spectrum_alpha_continuous(of->dimension, hurst, of->ratio, of->rolloff);
-        return 0;
+static double alpha_at(struct alpha_of_hurst *of, double hurst) {
+    struct ring_sums *sums = &of->search.sums;
+    if (of->annuli.count == 0)
+        return spectrum_alpha_continuous(of->dimension, hurst, of->ratio, of->rolloff);
+    sums->hurst = hurst;
+    sums->m0 = sums->m2 = sums->m4 = sums->quartic = 0;
+    for (size_t a = 0; a < of->annuli.count; a++) {
+        const struct annulus *annulus = &of->annuli.of[a];
+        if (annulus->terms == 1)
+            ring_add(sums, annulus->centre, annulus->points[0], annulus->fourths[0]);
+        else
+            sums_add_annulus(sums, annulus);
     }
-    int status = ring_search_run(&search, &found, err);
-    *alpha = status == 0 ? ring_alpha(&search.sums) : NAN;
-    return status;
+    return ring_alpha(sums);
 }
 
 static const double HURST_LEAST = 1e-3;
 
 /* Alpha rises with the exponent. */
-static int hurst_of(const struct alpha_of_hurst *of, double alpha, double *hurst,
-                    struct error *err) {
+static int hurst_of(struct alpha_of_hurst *of, double alpha, double *hurst, struct error *err) {
     enum { HURST_HALVINGS = 40 };
-    double low = HURST_LEAST, high = 1, least, most, middle;
-    int status = alpha_at(of, low, &least, err);
-    if (status == 0)
-        status = alpha_at(of, high, &most, err);
-    if (status == 0 && !(alpha >= least && alpha <= most))
+    double low = HURST_LEAST, high = 1;
+    double least = alpha_at(of, low), most = alpha_at(of, high);
+    if (!(alpha >= least && alpha <= most))
         return error_set(err, ERROR_NUMERIC,
                          "no Hurst exponent gives alpha = %g at a wavelength ratio of %g; allowed: "
                          "%.6g to %.6g",
                          alpha, of->ratio, least, most);
-    for (int n = 0; n < HURST_HALVINGS && status == 0; n++) {
+    for (int n = 0; n < HURST_HALVINGS; n++) {
         *hurst = (low + high) / 2;
-        status = alpha_at(of, *hurst, &middle, err);
-        *(middle < alpha ? &low : &high) = *hurst;
+        *(alpha_at(of, *hurst) < alpha ? &low : &high) = *hurst;
     }
-    return status;
+    return 0;
 }
 
 int spectrum_hurst_continuous(int dimension, double ratio, double ratio_rolloff, double alpha,
                               double *hurst, struct error *err) {
-    const struct alpha_of_hurst of = {dimension, ratio, ratio_rolloff, NAN, NAN};
+    struct alpha_of_hurst of = {.dimension = dimension, .ratio = ratio, .rolloff = ratio_rolloff};
     return hurst_of(&of, alpha, hurst, err);
 }
 
 int spectrum_hurst_discrete(int dimension, double ratio, double ratio_rolloff, double length_x,
                             double length_y, double alpha, double *hurst, struct error *err) {
-    const struct alpha_of_hurst of = {dimension, ratio, ratio_rolloff, length_x, length_y};
-    double longer = fmax(length_x, length_y),
-           most = length_x == length_y ? RINGS_MOST : LATTICE_MOST;
+    double longer = fmax(length_x, length_y), shorter = fmin(length_x, length_y);
+    double most = longer == shorter ? RINGS_MOST : LATTICE_MOST;
+    struct alpha_of_hurst of = {.dimension = dimension, .ratio = ratio, .rolloff = ratio_rolloff};
+    bool found;
     if (!(longer * ratio < most))
         return error_set(err, ERROR_INPUT,
                          "the shortest wave is 1/%g of the cell; allowed: down to 1/%g",
                          longer * ratio, most);
-    return hurst_of(&of, alpha, hurst, err);
+    of.search = (struct ring_search){.sums = {.dimension = dimension,
+                                              .lowest = longer,
+                                              .rolloff = longer * ratio_rolloff,
+                                              .highest = longer * ratio},
+                                     .alpha = OUT_OF_REACH,
+                                     .times = longer / shorter,
+                                     .largest = floor(longer * ratio) + 1,
+                                     .visited = &of.annuli};
+    int status = ring_search_run(&of.search, &found, err);
+    if (status == 0 && of.annuli.failed)
+        status = error_memory(err, 2 * of.annuli.count * sizeof *of.annuli.of, "rings of modes");
+    if (status == 0)
+        status = hurst_of(&of, alpha, hurst, err);
+    free(of.annuli.of);
+    return status;
 }
