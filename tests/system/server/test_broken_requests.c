@@ -137,7 +137,7 @@ static void broken_studies_are_told_what_is_wrong(void **state) {
         {STUDY("\"surface\":{\"hurst\":0.8}"), 422, "/surface/wavelength_ratio",
          "give wavelength_ratio, or nayak_alpha in its place"},
         {SURFACE("\"nayak_alpha\":5"), 422, "/surface/nayak_alpha",
-         "give wavelength_ratio or nayak_alpha, not both"},
+         "give two of hurst, wavelength_ratio and nayak_alpha, not all"},
         {STUDY("\"surface\":{\"hurst\":0.8,\"wavelength_ratio\":8000}"), 422,
          "/surface/points_per_wavelength",
          "a grid of 512000 points a side is too large: at most 46340"},
