@@ -46,6 +46,7 @@ struct ring_search {
     double times;   /* ratio of the distances of waves along y and along x; 1: a square */
     double largest; /* |m| tried */
     double best_square, best_alpha; /* ring whose alpha is nearest so far; NaN before the first */
+    double between_square;          /* the first ring with alpha between those so far; or NaN */
     double least_alpha, most_alpha; /* of all rings so far; NaN before the first */
     bool left_behind; /* the search ended before `largest`: alpha is less than that of all rings */
     double
@@ -113,7 +114,12 @@ static void visited_add_ring(const struct ring_search *search, double square, do
                                                        .fourths = {fourth}});
 }
 
-/* Visits the next ring; returns true once alpha lies between those of the rings so far. */
+/* Rings of a plane are near each other, but for those of short cells: there alpha rises and falls
+ * from ring to ring, and those up to twice as far out may come nearer. */
+static const double APART_MOST = 0.01, FARTHER = 4;
+
+/* Visits the next ring; returns true once alpha lies between those of the rings so far, of which
+ * one is near. */
 static bool ring_visit(struct ring_search *search, double square, double points, double fourth) {
     ring_add(&search->sums, square, points, fourth);
     if (search->visited != NULL)
@@ -129,7 +135,12 @@ static bool ring_visit(struct ring_search *search, double square, double points,
         search->best_alpha = reached;
         search->best_square = square;
     }
-    return search->least_alpha <= search->alpha && search->alpha <= search->most_alpha;
+    bool between = search->least_alpha <= search->alpha && search->alpha <= search->most_alpha;
+    if (between && isnan(search->between_square))
+        search->between_square = square;
+    bool near = search->sums.dimension == 1 ||
+                fabs(search->best_alpha - search->alpha) <= APART_MOST * search->alpha;
+    return between && (near || square > FARTHER * search->between_square);
 }
 
 /* --- rings of an annulus, one by one --- */
@@ -386,6 +397,7 @@ static bool is_left_behind(const struct ring_search *search, size_t r) {
 static bool search_annuli(struct ring_search *search, struct lattice *lattice, bool pass) {
     search->passed_by = INFINITY;
     search->best_square = search->best_alpha = search->least_alpha = search->most_alpha = NAN;
+    search->between_square = NAN;
     search->sums.m0 = search->sums.m2 = search->sums.m4 = search->sums.quartic = 0;
     lattice->rows = 0;
     search->left_behind = false;
@@ -502,9 +514,6 @@ static double most_of(const struct ring_search *search, double ratio_rolloff) {
     return spectrum_alpha_continuous(2, search->sums.hurst, ratio, ratio_rolloff);
 }
 
-/* Rings of a plane are near each other, but for those of short cells. */
-static const double APART_MOST = 0.01;
-
 /* sides: of the cell, as the message prints them. */
 static int ratio_of(struct ring_search *search, double ratio_rolloff, const char *sides,
                     double *ratio, double *reached, struct error *err) {
@@ -599,13 +608,14 @@ static const double OUT_OF_REACH = 1e300;
 struct alpha_of_hurst {
     int dimension;
     double ratio, rolloff;
+    bool of_cell;               /* else by the continuous formula */
     struct ring_search search;  /* of a cell: what its rings are summed to */
-    struct annulus_list annuli; /* of a cell, owned; none: the continuous formula */
+    struct annulus_list annuli; /* of a cell; owned */
 };
 
 static double alpha_at(struct alpha_of_hurst *of, double hurst) {
     struct ring_sums *sums = &of->search.sums;
-    if (of->annuli.count == 0)
+    if (!of->of_cell)
         return spectrum_alpha_continuous(of->dimension, hurst, of->ratio, of->rolloff);
     sums->hurst = hurst;
     sums->m0 = sums->m2 = sums->m4 = sums->quartic = 0;
@@ -620,21 +630,59 @@ static double alpha_at(struct alpha_of_hurst *of, double hurst) {
 }
 
 static const double HURST_LEAST = 1e-3;
+enum { HURST_SCAN = 64 };
 
-/* Alpha rises with the exponent. */
-static int hurst_of(struct alpha_of_hurst *of, double alpha, double *hurst, struct error *err) {
-    enum { HURST_HALVINGS = 40 };
-    double low = HURST_LEAST, high = 1;
-    double least = alpha_at(of, low), most = alpha_at(of, high);
-    if (!(alpha >= least && alpha <= most))
+static double scanned(int n) {
+    return HURST_LEAST + (1 - HURST_LEAST) * n / HURST_SCAN;
+}
+
+/* Alpha rises with the exponent, but in short cells, where it may fall near 1 or throughout. Finds
+ * the first interval of a scan that holds the required one, and the range of all. */
+static int scan(struct alpha_of_hurst *of, double alpha, double *low, double *high,
+                struct error *err) {
+    double last = NAN, least = NAN, most = NAN;
+    bool found = false;
+    for (int n = 0; n <= HURST_SCAN; n++) {
+        double at = alpha_at(of, scanned(n));
+        if (!found && (last - alpha) * (at - alpha) <= 0) {
+            found = true;
+            *low = scanned(n - 1);
+            *high = scanned(n);
+        }
+        least = fmin(least, at);
+        most = fmax(most, at);
+        last = at;
+    }
+    bool sloped = most > least * (1 + 1e-9);
+    if (sloped && found)
+        return 0;
+    if (sloped)
         return error_set(err, ERROR_NUMERIC,
                          "no Hurst exponent gives alpha = %g at a wavelength ratio of %g; allowed: "
                          "%.6g to %.6g",
                          alpha, of->ratio, least, most);
+    return error_set(err, ERROR_NUMERIC,
+                     "a band of this wavelength ratio, %g, has no waves shorter than the roll-off "
+                     "whose power depends on the Hurst exponent",
+                     of->ratio);
+}
+
+static int hurst_of(struct alpha_of_hurst *of, double alpha, double *hurst, struct error *err) {
+    enum { HURST_HALVINGS = 34 };
+    double low = NAN, high = NAN;
+    int status = scan(of, alpha, &low, &high, err);
+    if (status != 0)
+        return status;
+    bool rises = alpha_at(of, high) >= alpha_at(of, low);
     for (int n = 0; n < HURST_HALVINGS; n++) {
         *hurst = (low + high) / 2;
-        *(alpha_at(of, *hurst) < alpha ? &low : &high) = *hurst;
+        *((alpha_at(of, *hurst) < alpha) == rises ? &low : &high) = *hurst;
     }
+    if (of->of_cell && !is_isotropic(&of->search.sums))
+        return error_set(err, ERROR_NUMERIC,
+                         "the few waves of this cell at a wavelength ratio of %g are no isotropic "
+                         "surface; longer cells are",
+                         of->ratio);
     return 0;
 }
 
@@ -648,7 +696,8 @@ int spectrum_hurst_discrete(int dimension, double ratio, double ratio_rolloff, d
                             double length_y, double alpha, double *hurst, struct error *err) {
     double longer = fmax(length_x, length_y), shorter = fmin(length_x, length_y);
     double most = longer == shorter ? RINGS_MOST : LATTICE_MOST;
-    struct alpha_of_hurst of = {.dimension = dimension, .ratio = ratio, .rolloff = ratio_rolloff};
+    struct alpha_of_hurst of = {
+        .dimension = dimension, .ratio = ratio, .rolloff = ratio_rolloff, .of_cell = true};
     bool found;
     if (!(longer * ratio < most))
         return error_set(err, ERROR_INPUT,
@@ -660,7 +709,7 @@ int spectrum_hurst_discrete(int dimension, double ratio, double ratio_rolloff, d
                                               .highest = longer * ratio},
                                      .alpha = OUT_OF_REACH,
                                      .times = longer / shorter,
-                                     .largest = floor(longer * ratio) + 1,
+                                     .largest = floor(longer * ratio * (1 + 1e-9)) + 1,
                                      .visited = &of.annuli};
     int status = ring_search_run(&of.search, &found, err);
     if (status == 0 && of.annuli.failed)

@@ -62,7 +62,7 @@ int spectrum_ratio_discrete(int dimension, double hurst, double ratio_rolloff, d
 /* As above, of surfaces on a cell of length_x by length_y long waves. */
 int spectrum_ratio_rectangle(double hurst, double ratio_rolloff, double length_x, double length_y,
                              double alpha, double *ratio, double *reached, struct error *err);
-/* Find the Hurst exponent, from 0.001 to 1, that gives alpha at a wavelength ratio: by the
+/* Find the least Hurst exponent, from 0.001 to 1, that gives alpha at a wavelength ratio: by the
  * continuous formula, or by the sums of a cell of length_x by length_y long waves (profiles: twice
  * the same). ERROR_NUMERIC, with the range that can be reached; ERROR_INPUT for cells of too many
  * waves; ERROR_MEMORY. */

@@ -227,14 +227,14 @@ void gw_mccool_curve(double alpha, size_t n, const double *separation, double *l
 struct inversion {
     asperity_contact_at *at;
     const void *theory;
-    double load;          /* required */
+    double load, close;   /* required, and how near its logarithm must be */
     double closest, area; /* smallest |logarithm of the load over it| so far, the area there */
 };
 
 static double excess(double separation, void *context) {
     struct inversion *inversion = context;
     struct asperity_contact contact = inversion->at(inversion->theory, separation);
-    /* Loads underflow at separations near 38. */
+    /* Loads of Gaussian heights underflow at separations near 38. */
     double logarithm = log(fmax(contact.load, DBL_MIN) / inversion->load);
     if (fabs(logarithm) < inversion->closest) {
         inversion->closest = fabs(logarithm);
@@ -242,10 +242,6 @@ static double excess(double separation, void *context) {
     }
     return logarithm;
 }
-
-/* Tolerance on the logarithm of the load: the fraction changes no faster than the load, so that its
- * relative error is no larger. */
-static const double CLOSE = 1e-12;
 
 /* Finds the separation of the required load between one whose load is not below it and one whose
  * load is not above it. */
@@ -255,43 +251,48 @@ static void approach(struct inversion *inversion, double low, double high) {
         return;
     gsl_function function = {excess, inversion};
     int status = gsl_root_fsolver_set(solver, &function, low, high);
-    for (int step = 0; status == 0 && inversion->closest > CLOSE && step < 100; step++)
+    for (int step = 0; status == 0 && inversion->closest > inversion->close && step < 100; step++)
         status = gsl_root_fsolver_iterate(solver);
     gsl_root_fsolver_free(solver);
 }
 
-/* Between these loads, separations are far from where loads underflow or overflow. */
-static const double LEAST_LOAD = 1e-250, GREATEST_LOAD = 1e6;
+/* Between these loads, separations of Gaussian heights are far from where loads underflow or
+ * overflow, and below the last of these. */
+static const double LEAST_LOAD = 1e-250, GREATEST_LOAD = 1e6, GAUSSIAN_MOST = 40;
 
-double asperity_area_at_load(asperity_contact_at *at, const void *theory, double load) {
+double asperity_area_at_load(asperity_contact_at *at, const void *theory, double load,
+                             double close) {
     if (!(load >= LEAST_LOAD && load <= GREATEST_LOAD))
         return NAN;
-    struct inversion inversion = {at, theory, load, INFINITY, NAN};
+    struct inversion inversion = {at, theory, load, close, INFINITY, NAN};
     double low = 0, high = 0;
     while (excess(high, &inversion) > 0) {
         low = high;
-        high += 1;
+        high = high < GAUSSIAN_MOST ? high + 1 : 2 * high;
     }
     while (excess(low, &inversion) < 0) {
         high = low;
         low = 2 * low - 1;
     }
-    if (inversion.closest > CLOSE)
+    if (inversion.closest > close)
         approach(&inversion, low, high);
-    return inversion.closest <= CLOSE ? inversion.area : NAN;
+    return inversion.closest <= close ? inversion.area : NAN;
 }
+
+/* The fraction changes no faster than the load, so that its relative error is no larger. */
+static const double CLOSE = 1e-12;
 
 double bgt_area(double load, double alpha) {
     if (!in_domain(alpha))
         return NAN;
     struct ellipses ellipses;
     ellipses_fill(&ellipses, alpha);
-    return asperity_area_at_load(ellipses_contact, &ellipses, load);
+    return asperity_area_at_load(ellipses_contact, &ellipses, load, CLOSE);
 }
 
 double gw_mccool_area(double load, double alpha) {
     if (!in_domain(alpha))
         return NAN;
     struct spheres spheres = spheres_of(alpha);
-    return asperity_area_at_load(spheres_contact, &spheres, load);
+    return asperity_area_at_load(spheres_contact, &spheres, load, CLOSE);
 }

@@ -25,8 +25,9 @@ struct asperity_contact asperity_shapes_at(const struct asperity_shapes *shapes,
 /* Fills load and area at n separations; NaN where theory is NULL or a separation not finite. */
 void asperity_curve(asperity_contact_at *at, const void *theory, size_t n, const double *separation,
                     double *load, double *area);
-/* Returns the fraction at a load from 1e-250 to 1e6, by inversion to 1e-11 relative; NaN where
- * there is none, and when a few hundred bytes cannot be allocated. */
-double asperity_area_at_load(asperity_contact_at *at, const void *theory, double load);
+/* Returns the fraction at a load from 1e-250 to 1e6, whose logarithm is met but for `close`; NaN
+ * where there is none, and when a few hundred bytes cannot be allocated. */
+double asperity_area_at_load(asperity_contact_at *at, const void *theory, double load,
+                             double close);
 
 #endif

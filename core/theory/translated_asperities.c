@@ -6,8 +6,9 @@
 #include <stdlib.h>
 
 /* Area and load are integrals over values of g, from the one whose height is the separation d on,
- * of area (f - d) and load (f - d)^(3/2), where `area` and `load` do not depend on d. They are kept
- * at the nodes of panels, and are polynomials in between. */
+ * of area (f - d)/f' and load (f - d)^(3/2)/f'^(1/2); of spheres a constant stands for f'. `area`
+ * and `load` are as smooth as the densities of g. They are kept at the nodes of panels, and are
+ * polynomials in between. */
 struct panel {
     double low, high;
     double node[QUADRATURE_NODES], area[QUADRATURE_NODES], load[QUADRATURE_NODES];
@@ -15,6 +16,7 @@ struct panel {
 struct translated_asperities {
     struct translated_heights heights;
     size_t count;
+    bool flattens; /* curvatures go with f' */
     bool has_area;
     double basis[QUADRATURE_NODES]; /* barycentric weights of a panel's nodes */
     struct panel *panels;           /* rising, without holes; owned */
@@ -29,7 +31,7 @@ static const double SCORE_MOST = 9, PANEL_MOST = 0.5;
 static double panel_end(double alpha, double at) {
     double bend = sqrt(1 - 1.5 / alpha);
     double end = at + fmin(PANEL_MOST, fmax(bend, 1e-3) + fabs(at) / 2);
-    return at < 0 && end > 0 ? 0 : end;
+    return fmin(at < 0 && end > 0 ? 0 : end, SCORE_MOST);
 }
 
 static int panels_create(struct translated_asperities *t, double alpha, struct error *err) {
@@ -111,7 +113,6 @@ static struct asperity_contact over_curvatures(const struct asperity_shapes *sha
     return (struct asperity_contact){.area = density * sum.area, .load = density * sum.load};
 }
 
-/* Heights and curvatures of z over those of g are f - d and f': areas go with their ratio. */
 static void ellipses_fill(struct translated_asperities *t, double alpha, double slope_ratio) {
     struct asperity_shapes shapes;
     asperity_shapes_fill(&shapes);
@@ -120,11 +121,9 @@ static void ellipses_fill(struct translated_asperities *t, double alpha, double 
     for (size_t p = 0; p < t->count; p++)
         for (size_t q = 0; q < QUADRATURE_NODES; q++) {
             struct panel *panel = &t->panels[p];
-            double slope = translated_heights_at(&t->heights, panel->node[q]).slope;
             struct asperity_contact at = over_curvatures(&shapes, alpha, panel->node[q]);
-            bool flat = !(slope > 0);
-            panel->area[q] = flat ? INFINITY : area * at.area / slope;
-            panel->load[q] = flat ? 0 : load * at.load / sqrt(slope);
+            panel->area[q] = area * at.area;
+            panel->load[q] = load * at.load;
         }
 }
 
@@ -152,20 +151,32 @@ static void spheres_fill(struct translated_asperities *t, const struct translate
 
 /* --- integrals over summits --- */
 
-/* Adds the summits of a panel above `from`, whose height is at least d. Their variable is the
- * square root of the distance from it: loads begin with its power 3/2. */
-static void panel_add(const struct translated_asperities *t, const struct panel *panel, double from,
-                      double d, struct asperity_contact *sum) {
+/* Adds the summits of a panel between two values of g, whose height is at least d. */
+static void piece_add(const struct translated_asperities *t, const struct panel *panel, double from,
+                      double to, double d, struct asperity_contact *sum) {
     double root[QUADRATURE_NODES], weight[QUADRATURE_NODES];
-    quadrature_panel(0, sqrt(panel->high - from), root, weight);
+    quadrature_panel(0, sqrt(to - from), root, weight);
     for (size_t q = 0; q < QUADRATURE_NODES; q++) {
         double score = from + root[q] * root[q];
-        double over = fmax(translated_heights_at(&t->heights, score).height - d, 0);
+        struct height_slope z = translated_heights_at(&t->heights, score);
+        double over = fmax(z.height - d, 0), slope = t->flattens ? fmax(z.slope, 0) : 1;
         struct asperity_contact at = between(t, panel, score);
         double factor = 2 * root[q] * weight[q] * over;
-        sum->area += factor * at.area;
-        sum->load += factor * sqrt(over) * at.load;
+        sum->area += factor * at.area / slope;
+        sum->load += slope > 0 ? factor * at.load * sqrt(over / slope) : 0;
     }
+}
+
+/* Adds the summits of a panel above `from`. The variable of a piece is the square root of the
+ * distance from its lower end: loads begin with the power 3/2 of it. Pieces are short, as slopes of
+ * heights that are given by numbers have kinks. */
+enum { PIECES = 4 };
+static void panel_add(const struct translated_asperities *t, const struct panel *panel, double from,
+                      double d, struct asperity_contact *sum) {
+    double step = (panel->high - from) / PIECES;
+    for (int p = 0; p < PIECES; p++)
+        piece_add(t, panel, from + p * step, p + 1 < PIECES ? from + (p + 1) * step : panel->high,
+                  d, sum);
 }
 
 static struct asperity_contact contact_at(const void *theory, double separation) {
@@ -180,16 +191,20 @@ static struct asperity_contact contact_at(const void *theory, double separation)
     return sum;
 }
 
-/* The area of all summits above the mean plane converges where the last panel adds nothing. */
-static const double LAST_MOST = 1e-6;
+/* The area of all summits above the mean plane converges where the last ones add nothing. */
+static const double LAST_FROM = 8.5, LAST_MOST = 1e-6;
 
 static bool area_converges(const struct translated_asperities *t) {
     struct asperity_contact all = {0, 0}, last = {0, 0};
-    for (size_t p = 0; p < t->count; p++)
-        if (t->panels[p].low >= 0)
-            panel_add(t, &t->panels[p], t->panels[p].low, 0, &all);
-    panel_add(t, &t->panels[t->count - 1], t->panels[t->count - 1].low, 0, &last);
-    return last.area <= LAST_MOST * all.area;
+    double first = translated_heights_inverse(&t->heights, 0);
+    for (size_t p = 0; p < t->count; p++) {
+        const struct panel *panel = &t->panels[p];
+        if (panel->high > first)
+            panel_add(t, panel, fmax(first, panel->low), 0, &all);
+        if (panel->high > LAST_FROM)
+            panel_add(t, panel, fmax(LAST_FROM, panel->low), 0, &last);
+    }
+    return isfinite(all.area) && last.area <= LAST_MOST * all.area;
 }
 
 /* --- the theories --- */
@@ -214,6 +229,7 @@ int translated_asperities_create(struct translated_asperities **out,
         ellipses_fill(t, g->nayak_alpha, slope_ratio);
     else
         spheres_fill(t, surface, slope_ratio);
+    t->flattens = theory == TRANSLATED_BGT;
     t->has_area = area_converges(t);
     *out = t;
     return 0;
@@ -233,5 +249,6 @@ void translated_asperities_curve(const struct translated_asperities *asperities,
 }
 
 double translated_asperities_area(const struct translated_asperities *asperities, double load) {
-    return load >= 1e-15 ? asperity_area_at_load(contact_at, asperities, load) : NAN;
+    static const double CLOSE = 1e-9; /* near a bound separations have few digits of the load */
+    return load >= 1e-15 ? asperity_area_at_load(contact_at, asperities, load, CLOSE) : NAN;
 }

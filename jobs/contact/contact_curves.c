@@ -91,8 +91,9 @@ static int put_translated(struct theory_list *list, const struct translated_surf
     bool any = false;
     for (size_t k = 0; k < list->one_case->load_count && status == 0; k++) {
         double fraction = translated_asperities_area(asperities, list->one_case->loads[k]);
-        list->values[k] = fraction <= 1 ? fraction : NAN;
-        any = any || fraction <= 1;
+        bool within = fraction > 0 && fraction <= 1;
+        list->values[k] = within ? fraction : NAN;
+        any = any || within;
     }
     translated_asperities_destroy(&asperities);
     if (any)
@@ -102,9 +103,11 @@ static int put_translated(struct theory_list *list, const struct translated_surf
 
 /* Adds the theories by the summits of the translated surface: that of the case, or the one beside
  * it. */
-static int put_summits(struct theory_list *list, const struct modes *modes, struct error *err) {
+static int put_summits(struct theory_list *list, const struct modes *modes,
+                       const struct moments *moments, struct error *err) {
     struct translated_case translated;
-    if (list->one_case->surface.dimension != 2)
+    if (list->one_case->surface.dimension != 2 ||
+        !translated_case_applies(&list->one_case->surface, moments))
         return 0;
     int status = translated_case_create(&translated, &list->one_case->surface, modes, err);
     if (status != 0)
@@ -145,7 +148,7 @@ static int theories_make(struct theories *out, const struct contact_case *one_ca
     if (is_one_wave(one_case, modes))
         return 0;
     put_rough(&list, moments);
-    return put_summits(&list, modes, err);
+    return put_summits(&list, modes, moments, err);
 }
 
 /* Computes the mean density of the pressures in each bin; false without a theory. */

@@ -368,7 +368,8 @@ static int fit_spectrum(cJSON *surface, struct fit *fit, struct error *err) {
 /* Chooses what is fitted: not what the study gives of the spectrum and of the heights. If the study
  * has a shortest wave, its points are those of that wave. */
 static void choose(struct fit *fit, const cJSON *surface) {
-    bool own_spectrum = has(surface, "spectrum") || has(surface, "hurst");
+    bool own_spectrum = has(surface, "spectrum") || has(surface, "hurst") ||
+                        (has(surface, "nayak_alpha") && has(surface, "wavelength_ratio"));
     double points = field_number(surface, "points_per_wavelength");
     fit->spectrum = own_spectrum ? LIKE_SPECTRUM_GIVEN : fit->source->spectrum;
     fit->heights = heights_given(surface) ? LIKE_HEIGHTS_GIVEN : fit->source->heights;

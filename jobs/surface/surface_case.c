@@ -24,12 +24,25 @@ static double read_shape(enum heights_type type, struct values *values) {
     return shape;
 }
 
+/* A skewness beside heights that have another would be overlooked; a shape is known to be none. */
+static void refuse_skewness(struct values *values) {
+    static const char path[] = "/surface/heights/skewness";
+    double skewness = values_number(values, path);
+    if (!isnan(skewness))
+        values_fault(values, path,
+                     "%g: these heights have no shape to be solved for; name a distribution that "
+                     "has one",
+                     skewness);
+}
+
 static void read_distribution(struct surface_case *out, struct values *values) {
     struct heights *heights = &out->options.heights;
     const struct distribution *distribution = heights_distribution(heights->type);
     out->heights_name = distribution->family;
-    if (distribution->shape_means == NULL)
+    if (distribution->shape_means == NULL) {
+        refuse_skewness(values);
         return;
+    }
     heights->shape = read_shape(heights->type, values);
     if (!isnan(values_number(values, "/surface/heights/skewness")))
         return; /* solved for, or at fault */
@@ -56,6 +69,7 @@ static int read_samples(struct surface_case *out, struct values *values, struct 
     if (status != 0)
         return status;
     out->heights_name = "samples";
+    refuse_skewness(values);
     if (samples == NULL) {
         values_fault(values, path, "the distribution needs its samples, heights in any order");
         return 0;
@@ -71,6 +85,7 @@ static int read_quantiles(struct surface_case *out, struct values *values, struc
     size_t n = 0, quantiles = 0;
     struct error reason = {0};
     out->heights_name = "quantiles";
+    refuse_skewness(values);
     int status = values_numbers(values, at, &probability, &n, err);
     if (status == 0)
         status = values_numbers(values, path, &quantile, &quantiles, err);
@@ -220,8 +235,10 @@ static int solve_hurst(struct surface_case *out, struct values *values, double a
                        double rolloff, struct error *err) {
     struct error reason = {0};
     double ratio = out->wavelength_ratio;
-    if (isnan(rolloff) || isnan(out->length_ratio) || isnan(out->length_ratio_y) || rolloff > ratio)
+    if (isnan(rolloff) || isnan(out->length_ratio) || isnan(out->length_ratio_y) ||
+        rolloff > ratio * (1 + ROUNDING))
         return 0; /* at fault */
+    rolloff = fmin(rolloff, ratio);
     int status =
         values_choice(values, "/surface/alpha_formula") == ALPHA_CONTINUOUS
             ? spectrum_hurst_continuous(out->dimension, ratio, rolloff, alpha, &out->spectrum.hurst,

@@ -133,7 +133,8 @@ int radial_create(struct radial **out, int dimension, size_t n, const double *k,
     if (!(k[n - 1] <= RADIAL_RATIO_MOST * (1 + 1e-9) * k[0]))
         return error_set(err, ERROR_INPUT,
                          "the longest wave of the spectrum is %.4g times the shortest one; the law "
-                         "\"translation\" allows up to %d",
+                         "\"translation\" allows up to %d, and more where those waves have less "
+                         "than 1 %% of the variance",
                          k[n - 1] / k[0], RADIAL_RATIO_MOST);
     struct radial *r = array_create(1, sizeof *r);
     if (r == NULL)

@@ -91,6 +91,15 @@ static void small_alpha_is_that_of_isotropic_surfaces(void **state) {
         assert_true(ratio >= last);
         last = ratio;
     }
+    /* in short cells not the first ring beyond alpha is near, but a later one */
+    static const double SHORT[][3] = {
+        {3, 0.2, 1.72}, {4, 0.2, 1.715}, {2, 0.8, 2.26}, {1, 0.2, 3.72}};
+    for (size_t c = 0; c < sizeof SHORT / sizeof *SHORT; c++) {
+        assert_int_equal(spectrum_ratio_discrete(2, SHORT[c][1], 1, SHORT[c][0], SHORT[c][2],
+                                                 &ratio, &reached, NULL),
+                         0);
+        check_relative(reached, SHORT[c][2], 0.01);
+    }
 }
 
 /* Back from alpha to the exponent that gave it: profiles, squares, rectangles, a plateau, and more
@@ -127,6 +136,15 @@ static void hurst_of_given_alpha(void **state) {
     }
     assert_int_equal(spectrum_hurst_discrete(2, 8, 1, 8, 8, 20, &hurst, &err), ERROR_NUMERIC);
     assert_non_null(strstr(err.text, "allowed: "));
+    /* in short cells alpha falls towards H = 1, or throughout: the least exponent of the two */
+    assert_int_equal(spectrum_hurst_discrete(1, 16, 1, 1, 1, 14.4, &hurst, &err), 0);
+    assert_true(hurst > 0.8 && hurst < 0.95);
+    assert_int_equal(spectrum_hurst_discrete(1, 2, 1, 1, 1, 1.51, &hurst, &err), 0);
+    assert_true(hurst < 0.1);
+    assert_int_equal(spectrum_hurst_discrete(2, 1, 1, 8, 8, 2, &hurst, &err), ERROR_NUMERIC);
+    assert_non_null(strstr(err.text, "no waves shorter than the roll-off"));
+    assert_int_equal(spectrum_hurst_discrete(2, 2, 1, 1, 1, 2.25, &hurst, &err), ERROR_NUMERIC);
+    assert_non_null(strstr(err.text, "no isotropic surface"));
     assert_int_equal(spectrum_hurst_discrete(2, 1e5, 1, 8, 8, 20, &hurst, &err), ERROR_INPUT);
 }
 
@@ -136,7 +154,7 @@ static void alpha_out_of_reach(void **state) {
     double ratio, reached;
     assert_int_equal(spectrum_ratio_discrete(2, 0.8, 1, 1, 1.9, &ratio, &reached, &err),
                      ERROR_NUMERIC);
-    assert_non_null(strstr(err.text, "within 1 %; the nearest is 1.6"));
+    assert_non_null(strstr(err.text, "within 1 %; the nearest is "));
     assert_int_equal(spectrum_ratio_continuous(2, 0.8, 1, 1.2, &ratio, &err), ERROR_NUMERIC);
     assert_non_null(strstr(err.text, "alpha = 1.2"));
     assert_non_null(strstr(err.text, "allowed: 1.5 to"));

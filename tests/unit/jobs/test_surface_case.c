@@ -267,6 +267,10 @@ static const struct broken_case BROKEN[] = {
     {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"distribution\": \"weibull_max\","
      " \"skewness\": 2}}",
      "/surface/heights/skewness", "no shape has the skewness 2; allowed: -6.6"},
+    {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"skewness\": 1}}",
+     "/surface/heights/skewness", "these heights have no shape"},
+    {"{\"nayak_alpha\": 1.6, \"wavelength_ratio\": 2, \"rolloff_ratio\": 3}",
+     "/surface/rolloff_ratio", "more than wavelength_ratio"},
     {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"distribution\": \"lognormal\"}}",
      "/surface/heights/shape", "or its skewness"},
     {"{\"wavelength_ratio\": 8}", "/surface/hurst", "needs it"},
