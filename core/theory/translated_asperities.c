@@ -152,8 +152,8 @@ static void spheres_fill(struct translated_asperities *t, const struct translate
 /* --- integrals over summits --- */
 
 /* Adds the summits of a panel between two values of g, whose height is at least d. */
-static void piece_add(const struct translated_asperities *t, const struct panel *panel, double from,
-                      double to, double d, struct asperity_contact *sum) {
+static void part_add(const struct translated_asperities *t, const struct panel *panel, double from,
+                     double to, double d, struct asperity_contact *sum) {
     double root[QUADRATURE_NODES], weight[QUADRATURE_NODES];
     quadrature_panel(0, sqrt(to - from), root, weight);
     for (size_t q = 0; q < QUADRATURE_NODES; q++) {
@@ -167,16 +167,16 @@ static void piece_add(const struct translated_asperities *t, const struct panel 
     }
 }
 
-/* Adds the summits of a panel above `from`. The variable of a piece is the square root of the
- * distance from its lower end: loads begin with the power 3/2 of it. Pieces are short, as slopes of
+/* Adds the summits of a panel above `from`. The variable of a part is the square root of the
+ * distance from its lower end: loads begin with the power 3/2 of it. Parts are short, as slopes of
  * heights that are given by numbers have kinks. */
-enum { PIECES = 4 };
+enum { PARTS = 4 };
 static void panel_add(const struct translated_asperities *t, const struct panel *panel, double from,
                       double d, struct asperity_contact *sum) {
-    double step = (panel->high - from) / PIECES;
-    for (int p = 0; p < PIECES; p++)
-        piece_add(t, panel, from + p * step, p + 1 < PIECES ? from + (p + 1) * step : panel->high,
-                  d, sum);
+    double step = (panel->high - from) / PARTS;
+    for (int p = 0; p < PARTS; p++)
+        part_add(t, panel, from + p * step, p + 1 < PARTS ? from + (p + 1) * step : panel->high, d,
+                 sum);
 }
 
 static struct asperity_contact contact_at(const void *theory, double separation) {
