@@ -4,6 +4,9 @@
 #include "tests/support/effort.h"
 #include <stdio.h>
 
+/* Errors of cells and other laws are none of this file. */
+#define MESHES_ALONE "\"law_difference\": \"none\", \"cell_error\": \"none\", "
+
 struct scene {
     int dimension;
     const char *heights, *weighting;
@@ -16,8 +19,8 @@ static cJSON *solve_levels(const struct scene *scene, const char *levels) {
     snprintf(study, sizeof study,
              "{\"surface\": {\"dimension\": %d, \"hurst\": 0.8, \"wavelength_ratio\": %d,"
              " \"length_ratio\": %d, \"points_per_wavelength\": %d, \"heights\":"
-             " {\"distribution\": \"%s\", \"shape\": 1}}, \"contact\": {\"model\":"
-             " [\"halfspace\", \"layered\"], \"gap_weighting\": \"%s\", \"levels\": %s,"
+             " {\"distribution\": \"%s\", \"shape\": 1}}, \"contact\": {" MESHES_ALONE
+             "\"model\": [\"halfspace\", \"layered\"], \"gap_weighting\": \"%s\", \"levels\": %s,"
              " \"pressures\": {\"values\": [0.003, 0.01, 0.03, 0.1, 0.3]}, \"pressure_pdf\":"
              " {\"at\": [0.01, 0.1, 0.3]}}}",
              scene->dimension, profile ? 8 : 4, profile ? 4 : 2, profile ? 64 : 32, scene->heights,
@@ -184,8 +187,8 @@ static void lowest_pressures_are_near_their_limit(void **state) {
 #define BLOCK(heights, contact)                                                                    \
     "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 8, \"length_ratio\":"  \
     " 8, \"rms_slope\": 0.1, \"points_per_wavelength\": 8, \"heights\": {\"distribution\":"        \
-    " \"" heights "\", \"shape\": 1}}, \"contact\": {" contact                                     \
-    " \"pressures\": {\"values\": [0.01, 0.03, 0.1]}}}"
+    " \"" heights "\", \"shape\": 1}}, \"contact\": {" contact " " MESHES_ALONE                    \
+    "\"pressures\": {\"values\": [0.01, 0.03, 0.1]}}}"
 
 /* 160 root mean square heights are worth up to 11 % of the area at the lightest load. The reported
  * error is that of the realisations that were probed, the true one that of all. */
@@ -221,7 +224,7 @@ static void errors_of_blocks_cover(void **state) {
     "{\"surface\": {\"dimension\": " dimension ", \"hurst\": 0.8, \"wavelength_ratio\": 4,"        \
     " \"length_ratio\": 2, \"rms_slope\": 0.1, \"points_per_wavelength\": 4}, \"contact\":"        \
     " {\"model\": [\"halfspace\", \"layered\", \"full\"], \"tolerance\": " tolerance ","           \
-    " \"pressures\": {\"values\": [0.003, 0.03, 0.3]}}}"
+    " " MESHES_ALONE "\"pressures\": {\"values\": [0.003, 0.03, 0.3]}}}"
 
 /* 1e-11 is as good as exact beside the others. */
 static void errors_of_solvers_cover(void **state) {
@@ -260,7 +263,7 @@ static void errors_of_solvers_cover(void **state) {
     " \"length_ratio\": 2, \"rms_slope\": 0.1, \"points_per_wavelength\": 16, \"heights\":"        \
     " {\"distribution\": \"" heights "\", \"shape\": 1}}, \"contact\": {\"model\": \"full\","      \
     " \"poisson\": " poisson ", \"gap_weighting\": \"dual\", \"levels\": [8, 16],"                 \
-    " \"law_difference\": \"none\", \"cell_error\": \"none\", \"transition_depth\": " depth ","    \
+    " " MESHES_ALONE "\"transition_depth\": " depth ","                                            \
     " \"pressures\": {\"values\": [0.03, 0.1, 0.3]}}}"
 
 /* What columns of elements change that widen with depth, which levels do not show, is within its
