@@ -62,10 +62,14 @@ enum { RINGS_MOST = 16384, LATTICE_MOST = 6000 };
  * added. In an annulus of inner radius r the lengths of waves differ by 1/r of themselves. So a
  * power of the length is a short series over them, whose moments need no power of each wave. */
 
+static bool is_in_band(const struct ring_sums *sums, double m) {
+    return m >= sums->lowest * (1 - 1e-9) && m <= sums->highest * (1 + 1e-9);
+}
+
 /* Adds a ring |m|^2 = square that holds `points` modes with sum of (mx^4 + my^4)/2 = fourth. */
 static void ring_add(struct ring_sums *sums, double square, double points, double fourth) {
     double m = sqrt(square);
-    if (m < sums->lowest * (1 - 1e-9) || m > sums->highest * (1 + 1e-9))
+    if (!is_in_band(sums, m))
         return;
     double relative = m / sums->rolloff;
     double exponent = sums->dimension == 2 ? -2 * (sums->hurst + 1) : -1 - 2 * sums->hurst;
@@ -105,8 +109,7 @@ static void visited_add(struct annulus_list *list, const struct annulus *annulus
 
 static void visited_add_ring(const struct ring_search *search, double square, double points,
                              double fourth) {
-    double m = sqrt(square);
-    if (m >= search->sums.lowest * (1 - 1e-9) && m <= search->sums.highest * (1 + 1e-9))
+    if (is_in_band(&search->sums, sqrt(square)))
         visited_add(search->visited, &(struct annulus){.inner = square,
                                                        .centre = square,
                                                        .terms = 1,

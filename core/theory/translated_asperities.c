@@ -23,21 +23,15 @@ struct translated_asperities {
 };
 
 /* Values of g from -SCORE_MOST to it. 1e-18 of all lie outside. */
-static const double SCORE_MOST = 9, PANEL_MOST = 0.5;
+static const double SCORE_MOST = 9;
 
 /* --- panels --- */
 
-/* Panels are shorter near 0, where densities of alpha near 3/2 bend. */
-static double panel_end(double alpha, double at) {
-    double bend = sqrt(1 - 1.5 / alpha);
-    double end = at + fmin(PANEL_MOST, fmax(bend, 1e-3) + fabs(at) / 2);
-    return fmin(at < 0 && end > 0 ? 0 : end, SCORE_MOST);
-}
-
-static int panels_create(struct translated_asperities *t, double alpha, struct error *err) {
+static int panels_create(struct translated_asperities *t, const struct translated_surface *surface,
+                         struct error *err) {
     double at = -SCORE_MOST, weight[QUADRATURE_NODES];
     while (at < SCORE_MOST) {
-        at = panel_end(alpha, at);
+        at = translated_panel_end(surface, at, SCORE_MOST);
         t->count++;
     }
     t->panels = array_create(t->count, sizeof *t->panels);
@@ -47,7 +41,7 @@ static int panels_create(struct translated_asperities *t, double alpha, struct e
     for (size_t p = 0; p < t->count; p++) {
         struct panel *panel = &t->panels[p];
         panel->low = at;
-        panel->high = at = panel_end(alpha, at);
+        panel->high = at = translated_panel_end(surface, at, SCORE_MOST);
         quadrature_panel(panel->low, panel->high, panel->node, weight);
     }
     return 0;
@@ -84,18 +78,16 @@ static struct asperity_contact between(const struct translated_asperities *t,
 /* The density of height and curvature s of the summits of g (nayak.c), and the factors of Hertz's
  * area and load, are those of asperities.c. */
 enum { CURVATURE_PANELS = 6 };
-static const double DEPTH = 42; /* exp(-DEPTH) of a peak is negligible */
 
 /* Returns the integrals over s, from 0, of the shapes' areas times s^3 and loads times s^(7/2),
  * with the density of s and of the height of g. Their variable is sqrt(s). */
-static struct asperity_contact over_curvatures(const struct asperity_shapes *shapes, double alpha,
+static struct asperity_contact over_curvatures(const struct asperity_shapes *shapes,
+                                               const struct translated_surface *surface,
                                                double score) {
+    struct curvature_range range = translated_curvatures_at(surface, score);
+    double alpha = surface->gaussian.nayak_alpha;
     double c1 = alpha / (2 * alpha - 3), rise = sqrt(3 / (4 * alpha));
-    double centre = 2 * rise * score, reach = sqrt(2 * DEPTH / c1);
-    double low = fmax(centre - reach, 0);
-    double b = c1 * centre; /* the exponent falls by DEPTH from s = 0, or from its peak */
-    double high = centre > 0 ? centre + reach : 2 * DEPTH / (sqrt(b * b + 2 * c1 * DEPTH) - b);
-    double from = sqrt(low), step = (sqrt(high) - from) / CURVATURE_PANELS;
+    double from = sqrt(range.low), step = (sqrt(range.high) - from) / CURVATURE_PANELS;
     struct asperity_contact sum = {0, 0};
     for (int p = 0; p < CURVATURE_PANELS; p++) {
         double root[QUADRATURE_NODES], weight[QUADRATURE_NODES];
@@ -113,7 +105,9 @@ static struct asperity_contact over_curvatures(const struct asperity_shapes *sha
     return (struct asperity_contact){.area = density * sum.area, .load = density * sum.load};
 }
 
-static void ellipses_fill(struct translated_asperities *t, double alpha, double slope_ratio) {
+static void ellipses_fill(struct translated_asperities *t, const struct translated_surface *surface,
+                          double slope_ratio) {
+    double alpha = surface->gaussian.nayak_alpha;
     struct asperity_shapes shapes;
     asperity_shapes_fill(&shapes);
     double area = sqrt(alpha) / 6;
@@ -121,7 +115,7 @@ static void ellipses_fill(struct translated_asperities *t, double alpha, double 
     for (size_t p = 0; p < t->count; p++)
         for (size_t q = 0; q < QUADRATURE_NODES; q++) {
             struct panel *panel = &t->panels[p];
-            struct asperity_contact at = over_curvatures(&shapes, alpha, panel->node[q]);
+            struct asperity_contact at = over_curvatures(&shapes, surface, panel->node[q]);
             panel->area[q] = area * at.area;
             panel->load[q] = load * at.load;
         }
@@ -217,7 +211,7 @@ int translated_asperities_create(struct translated_asperities **out,
         return error_memory(err, sizeof *t, "summits of a law of heights");
     const struct moments *g = &surface->gaussian, *z = &surface->reached;
     t->heights = surface->heights;
-    int status = panels_create(t, g->nayak_alpha, err);
+    int status = panels_create(t, surface, err);
     if (status != 0) {
         translated_asperities_destroy(&t);
         return status;
@@ -226,7 +220,7 @@ int translated_asperities_create(struct translated_asperities **out,
     /* the slope of g, were its deviation that of z, over that of z */
     double slope_ratio = sqrt(z->m0 / g->m0 * (g->m2 / z->m2));
     if (theory == TRANSLATED_BGT)
-        ellipses_fill(t, g->nayak_alpha, slope_ratio);
+        ellipses_fill(t, surface, slope_ratio);
     else
         spheres_fill(t, surface, slope_ratio);
     t->flattens = theory == TRANSLATED_BGT;

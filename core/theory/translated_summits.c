@@ -23,7 +23,7 @@ static double alpha_least(const struct translated_surface *surface) {
     return is_surface(surface) ? 1.5 : 1;
 }
 
-static double panel_end(const struct translated_surface *surface, double at, double high) {
+double translated_panel_end(const struct translated_surface *surface, double at, double high) {
     double bend = sqrt(fmax(1 - alpha_least(surface) / surface->gaussian.nayak_alpha, 0));
     double end = at + fmin(PANEL_MOST, bend + fabs(at) / 2);
     return end < high && end > at ? end : high;
@@ -76,7 +76,7 @@ static struct summit_sums sums_between(const struct translated_surface *surface,
     double at = low, end;
     while (at < high) {
         struct rule rule;
-        end = panel_end(surface, at, high);
+        end = translated_panel_end(surface, at, high);
         rule_fill(&rule, at, end, NARROW);
         for (size_t q = 0; q < rule.n; q++) {
             struct summit_at summit = summit_at(surface, rule.node[q]);
@@ -150,14 +150,10 @@ void translated_summits_heights(const struct translated_surface *surface, const 
 
 /* --- curvatures at a value of g --- */
 
-/* Given the height of g, its s = -t1 has the density of a normal variable times a power of s. It is
- * negligible outside of these bounds. */
-struct curvature_range {
-    double low, high;
-};
 static const double DEPTH = 45; /* exp(-DEPTH) of the peak */
 
-static struct curvature_range range_at(const struct translated_surface *surface, double score) {
+struct curvature_range translated_curvatures_at(const struct translated_surface *surface,
+                                                double score) {
     double alpha = surface->gaussian.nayak_alpha;
     double sharp = is_surface(surface) ? alpha / (2 * alpha - 3) : alpha / (alpha - 1);
     double centre = score * sqrt((is_surface(surface) ? 3 : 1) / alpha);
@@ -190,7 +186,7 @@ static double joint_between(const struct translated_surface *surface, double sco
 /* Adds the summits at a value of g, times a weight, to bins of t1, as densities. */
 static void curvatures_add(const struct translated_surface *surface, double score, double weight,
                            const struct bins *t1, double *pdf) {
-    struct curvature_range range = range_at(surface, score);
+    struct curvature_range range = translated_curvatures_at(surface, score);
     double unit =
         translated_stretch(surface) * translated_heights_at(&surface->heights, score).slope;
     double width = bins_width(t1);
@@ -211,7 +207,7 @@ static void curvatures_between(const struct translated_surface *surface, double 
     double at = low, end;
     while (at < high) {
         struct rule rule;
-        end = panel_end(surface, at, high);
+        end = translated_panel_end(surface, at, high);
         rule_fill(&rule, at, end, NARROW);
         for (size_t q = 0; q < rule.n; q++)
             curvatures_add(surface, rule.node[q], weight * rule.weight[q], t1, pdf);

@@ -24,6 +24,18 @@ struct translated_surface {
 double translated_stretch(const struct translated_surface *surface);
 struct summit_expectation translated_summits_expectation(const struct translated_surface *surface);
 
+/* For sums over the summits of a surface, by values of g: */
+/* Returns where the panel of quadrature ends that begins at a value of g, at most at `high`: as far
+ * on as densities are smooth, which bend near 0 where alpha is near its bound. */
+double translated_panel_end(const struct translated_surface *surface, double at, double high);
+/* Given the height of g, its s = -t1 has the density of a normal variable times a power of s. It is
+ * negligible outside of these bounds. */
+struct curvature_range {
+    double low, high;
+};
+struct curvature_range translated_curvatures_at(const struct translated_surface *surface,
+                                                double score);
+
 /* Averages over bins as in bin_averages.h. Heights that the law does not have have no mean
  * curvature (NaN). */
 void translated_summits_heights(const struct translated_surface *surface, const struct bins *bins,

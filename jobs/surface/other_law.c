@@ -18,16 +18,15 @@ static struct surface_options options_of(const struct surface_case *surface) {
     return options;
 }
 
-/* Translates the surface; leaves *translation NULL where no field comes near the spectrum. */
-static int translate(struct other_law *law, struct error *err) {
-    struct surface_case *surface = &law->surface;
+int other_law_translate(struct translation **out, const struct surface_case *surface,
+                        struct error *err) {
     struct error reason = {0};
-    int status = translation_create(&law->translation, &surface->spectrum, surface->dimension,
+    int status = translation_create(out, &surface->spectrum, surface->dimension,
                                     &surface->options.heights, &reason);
     if (status != 0)
         return status == ERROR_INPUT ? 0 : error_set(err, status, "%s", reason.text);
-    if (translation_fit(law->translation)->misfit > OTHER_LAW_MISFIT)
-        translation_destroy(&law->translation);
+    if (!(translation_fit(*out)->misfit <= OTHER_LAW_MISFIT))
+        translation_destroy(out);
     return 0;
 }
 
@@ -55,7 +54,7 @@ int other_law_create(struct other_law **out, const struct surface_case *surface,
     law->surface.translation = NULL;
     law->surface.spectrum.translation = NULL;
     bool translated = law->surface.options.law == LAW_TRANSLATION;
-    int status = translated ? translate(law, err) : 0;
+    int status = translated ? other_law_translate(&law->translation, &law->surface, err) : 0;
     if (status == 0 && (!translated || law->translation != NULL))
         status = make_generator(law, err);
     if (status != 0)

@@ -13,6 +13,11 @@ static inline bool other_law_applies(const struct surface_case *surface) {
     return surface->options.heights.type != HEIGHTS_GAUSSIAN;
 }
 
+/* Makes the translation with the spectrum and the heights of an iterated surface. *out, NULL
+ * before, stays so where none comes within OTHER_LAW_MISFIT. ERROR_MEMORY alone. */
+int other_law_translate(struct translation **out, const struct surface_case *surface,
+                        struct error *err);
+
 struct other_law;
 /* Borrows the surface, to which other_law_applies. */
 int other_law_create(struct other_law **out, const struct surface_case *surface, struct error *err);

@@ -9,47 +9,44 @@ static const double ROUNDING = 1e-9; /* relative: guards integers behind divisio
 
 static const struct parameter_table *const TABLES[] = {&SURFACE_PARAMETERS, NULL};
 
-/* Returns the shape, or that of the skewness; NaN with a fault where it has none. */
-static double read_shape(enum heights_type type, struct values *values) {
-    static const char path[] = "/surface/heights/skewness";
-    struct error reason = {0};
-    double shape = values_number(values, "/surface/heights/shape");
-    double skewness = values_number(values, path);
-    if (isnan(skewness))
-        return shape;
-    if (!isnan(shape))
-        values_fault(values, path, "give shape or skewness, not both");
-    else if (heights_shape_of_skewness(type, skewness, &shape, &reason) != 0)
-        values_fault(values, path, "%s", reason.text);
-    return shape;
-}
+static const char SKEWNESS[] = "/surface/heights/skewness";
 
 /* A skewness beside heights that have another would be overlooked; a shape is known to be none. */
 static void refuse_skewness(struct values *values) {
-    static const char path[] = "/surface/heights/skewness";
-    double skewness = values_number(values, path);
+    double skewness = values_number(values, SKEWNESS);
     if (!isnan(skewness))
-        values_fault(values, path,
+        values_fault(values, SKEWNESS,
                      "%g: these heights have no shape to be solved for; name a distribution that "
                      "has one",
                      skewness);
+}
+
+/* Returns the shape; NaN, or what is at fault, with a fault. */
+static double read_shape(enum heights_type type, const struct distribution *distribution,
+                         struct values *values) {
+    struct error reason = {0};
+    double shape = values_number(values, "/surface/heights/shape");
+    double skewness = values_number(values, SKEWNESS);
+    if (!isnan(shape) && !isnan(skewness))
+        values_fault(values, SKEWNESS, "give shape or skewness, not both");
+    else if (!isnan(skewness) && heights_shape_of_skewness(type, skewness, &shape, &reason) != 0)
+        values_fault(values, SKEWNESS, "%s", reason.text);
+    else if (isnan(skewness) &&
+             !(shape >= distribution->shape_low && shape <= distribution->shape_high))
+        values_fault(values, "/surface/heights/shape",
+                     "the distribution needs its shape (%s), a number in [%g, %g], or its skewness",
+                     distribution->shape_means, distribution->shape_low, distribution->shape_high);
+    return shape;
 }
 
 static void read_distribution(struct surface_case *out, struct values *values) {
     struct heights *heights = &out->options.heights;
     const struct distribution *distribution = heights_distribution(heights->type);
     out->heights_name = distribution->family;
-    if (distribution->shape_means == NULL) {
+    if (distribution->shape_means != NULL)
+        heights->shape = read_shape(heights->type, distribution, values);
+    else
         refuse_skewness(values);
-        return;
-    }
-    heights->shape = read_shape(heights->type, values);
-    if (!isnan(values_number(values, "/surface/heights/skewness")))
-        return; /* solved for, or at fault */
-    if (!(heights->shape >= distribution->shape_low && heights->shape <= distribution->shape_high))
-        values_fault(values, "/surface/heights/shape",
-                     "the distribution needs its shape (%s), a number in [%g, %g], or its skewness",
-                     distribution->shape_means, distribution->shape_low, distribution->shape_high);
 }
 
 /* Adds a fault for an invalid table; any other failure is returned. */
@@ -252,8 +249,8 @@ static int solve_hurst(struct surface_case *out, struct values *values, double a
     return 0;
 }
 
-/* Reads two of hurst, wavelength_ratio and nayak_alpha, and solves for the third of the first two.
- */
+/* Reads two of hurst, wavelength_ratio and nayak_alpha. Where one of the first two is not given, it
+ * is solved for. */
 static int read_bandwidth(struct surface_case *out, struct values *values, double rolloff,
                           struct error *err) {
     double alpha = values_number(values, "/surface/nayak_alpha");

@@ -25,9 +25,8 @@ static int create_beside(struct translated_case *out, const struct surface_case 
                          struct error *err) {
     struct spectrum spectrum = surface->spectrum;
     struct modes *modes = NULL;
-    int status = translation_create(&out->beside, &spectrum, surface->dimension,
-                                    &surface->options.heights, err);
-    if (status != 0 || !(translation_fit(out->beside)->misfit <= OTHER_LAW_MISFIT))
+    int status = other_law_translate(&out->beside, surface, err);
+    if (status != 0 || out->beside == NULL)
         return status;
     spectrum.translation = out->beside;
     status = modes_create(&modes, &spectrum, &surface->grid, err);

@@ -1,15 +1,12 @@
 /* Protects: theories of asperities by the summits of translated surfaces. A field that is its own
  * translation has the theories of Gaussian surfaces; others have the sums over drawn summits, each
- * pressed by Hertz's solution in another form; and heights with a bound that summits flatten
+ * pressed by Hertz's own solution; and heights with a bound that summits flatten
  * against have no area, rather than one of the quadrature. */
-#include "core/surface/spectrum.h"
-#include "core/surface/translation/translation.h"
 #include "core/theory/contact.h"
 #include "core/theory/translated_asperities.h"
-#include "tests/support/check.h"
+#include "tests/support/drawn_summits.h"
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
-#include <gsl/gsl_sf_ellint.h>
 #include <stdlib.h>
 
 /* A field of unit variance and this alpha, translated; z has the deviation 1. */
@@ -58,94 +55,16 @@ static void gaussian_fields_have_the_gaussian_theories(void **state) {
     height_function_destroy(&function);
 }
 
-/* --- drawn summits --- */
-
-/* Hertz by Johnson (1985), 4.25 to 4.32: of gaps (kappa_1 x^2 + kappa_2 y^2)/2 closed by 1, at
- * kappa_2 = 1, by kappa_1, which the eccentricity of the contact gives. */
-enum { ELLIPSES = 2000 };
-struct ellipse {
-    double kappa, area, load; /* load over E* */
-};
-
-static void ellipses_fill(struct ellipse *ellipses) {
-    for (int n = 0; n < ELLIPSES; n++) {
-        double short_axis = exp(-6.0 * (n + 0.02) / ELLIPSES); /* over the long one */
-        double e = sqrt(1 - short_axis * short_axis);
-        double k = gsl_sf_ellint_Kcomp(e, GSL_PREC_DOUBLE);
-        double second = gsl_sf_ellint_Ecomp(e, GSL_PREC_DOUBLE);
-        double axis = sqrt(2 * (k - second) / (e * e * k));
-        double kappa = (second / (short_axis * short_axis) - k) / (k - second);
-        ellipses[n] =
-            (struct ellipse){kappa, M_PI * axis * axis * short_axis, 2.0 / 3 * M_PI * axis / k};
-    }
-}
-
-static struct ellipse ellipse_at(const struct ellipse *ellipses, double kappa) {
-    int low = 0, high = ELLIPSES - 1;
-    while (high - low > 1) {
-        int middle = (low + high) / 2;
-        *(ellipses[middle].kappa <= kappa ? &low : &high) = middle;
-    }
-    double part =
-        fmin((kappa - ellipses[low].kappa) / (ellipses[high].kappa - ellipses[low].kappa), 1);
-    return (struct ellipse){kappa,
-                            ellipses[low].area + part * (ellipses[high].area - ellipses[low].area),
-                            ellipses[low].load + part * (ellipses[high].load - ellipses[low].load)};
-}
-
-struct mean {
-    double sum, squares;
-};
-static void mean_add(struct mean *mean, double value) {
-    mean->sum += value;
-    mean->squares += value * value;
-}
-/* Checks an expected mean of n values within 4 standard errors, which are exceeded once in 16 000.
- */
-static void mean_check(const struct mean *mean, double n, double expected) {
-    double value = mean->sum / n, error = sqrt((mean->squares / n - value * value) / n);
-    print_message("%.5f +- %.5f, theory %.5f\n", value, error, expected);
-    assert_true(fabs(value - expected) < 4 * error && error < 0.02 * expected);
-}
-
-/* Draws height and Hessian of the field at points without slope, which have the density 1/(2 pi)
- * at m2 = 1, each with its determinant. */
-static void drawn_summits(const struct translated_surface *surface, double separation) {
-    enum { POINTS = 1000000, SEED = 5 };
-    double alpha = surface->gaussian.nayak_alpha, load, fraction;
-    struct ellipse *ellipses = malloc(ELLIPSES * sizeof *ellipses);
-    gsl_rng *random = gsl_rng_alloc(gsl_rng_ranlxd1);
-    struct mean areas = {0, 0}, loads = {0, 0};
-    assert_true(ellipses != NULL && random != NULL);
-    ellipses_fill(ellipses);
-    gsl_rng_set(random, SEED);
-    for (int n = 0; n < POINTS; n++) {
-        double g = gsl_ran_ugaussian(random);
-        double trace = -2 * g + sqrt(8 * alpha / 3 - 4) * gsl_ran_ugaussian(random);
-        double half = sqrt(alpha / 3) * gsl_ran_ugaussian(random); /* (g_xx - g_yy)/2 */
-        double mixed = sqrt(alpha / 3) * gsl_ran_ugaussian(random);
-        double unlike = sqrt(half * half + mixed * mixed);
-        double sharp = -trace / 2 + unlike, blunt = -trace / 2 - unlike;
-        struct height_slope z = translated_heights_at(&surface->heights, g);
-        double over = z.height - separation, area = 0, force = 0;
-        if (blunt > 0 && over > 0) {
-            struct ellipse at = ellipse_at(ellipses, sharp / blunt);
-            double curvature = blunt * z.slope, weight = sharp * blunt / (2 * M_PI);
-            area = weight * at.area * over / curvature;
-            force =
-                weight * at.load * over * sqrt(over / curvature) / sqrt(2 * surface->reached.m2);
-        }
-        mean_add(&areas, area);
-        mean_add(&loads, force);
-    }
+static void drawn_summits(const struct translated_surface *surface, uint64_t number,
+                          double separation) {
+    enum { DRAWS = 1000000 };
+    double load, fraction;
     struct translated_asperities *bgt = theory_of(surface, TRANSLATED_BGT);
     translated_asperities_curve(bgt, 1, &separation, &load, &fraction);
-    mean_check(&areas, POINTS, fraction);
-    mean_check(&loads, POINTS, load);
+    drawn_summits_check(DRAWS, number, surface->gaussian.nayak_alpha, &surface->heights,
+                        surface->reached.m2, separation, fraction, load);
     check_close(translated_asperities_area(bgt, load), fraction, 1e-8 * fraction);
     translated_asperities_destroy(&bgt);
-    gsl_rng_free(random);
-    free(ellipses);
 }
 
 static void others_are_sums_over_summits(void **state) {
@@ -161,7 +80,7 @@ static void others_are_sums_over_summits(void **state) {
     for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
         struct height_function *function = function_of(CASES[c].type, CASES[c].shape);
         struct translated_surface surface = surface_of(function, 4, CASES[c].mirrored);
-        drawn_summits(&surface, CASES[c].separation);
+        drawn_summits(&surface, c, CASES[c].separation);
         height_function_destroy(&function);
     }
 }
@@ -184,9 +103,9 @@ static void samples_are_sums_over_summits(void **state) {
     if (height_function_create(&function, &heights, &err) != 0)
         fail_msg("%s", err.text);
     struct translated_surface surface = surface_of(function, 4, false);
-    drawn_summits(&surface, 1);
+    drawn_summits(&surface, 10, 1);
     surface = surface_of(function, 4, true);
-    drawn_summits(&surface, 0.5);
+    drawn_summits(&surface, 11, 0.5);
     height_function_destroy(&function);
     height_table_destroy(&table);
     gsl_rng_free(random);
