@@ -150,6 +150,44 @@ static void translated_surfaces_against_their_summits(void **state) {
     assert_true(areas[0] > 2 * areas[1]);
 }
 
+/* Counted summits of translated surfaces have the area of their exact densities. 8 points a
+ * shortest wave count 3 % fewer summits than there are, with curvatures some percent too small; 20
+ * surfaces of 16 longest waves scatter by 2 to 5 % at this load: 12 %. Areas on the next grid are
+ * within what is stated. */
+static void counted_summits_against_their_densities(void **state) {
+    (void)state;
+    static const struct {
+        const char *heights, *theories[2];
+    } CASES[] = {{"{\"distribution\": \"gaussian\"}", {"gw_mccool", "bgt"}},
+                 {"{\"distribution\": \"weibull_max\", \"shape\": 2, \"law\": \"translation\"}",
+                  {"gw_translation", "bgt_translation"}},
+                 {"{\"distribution\": \"weibull_min\", \"shape\": 1.5, \"law\": \"translation\"}",
+                  {"gw_translation", "bgt_translation"}}};
+    for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
+        char study[600];
+        snprintf(
+            study, sizeof study,
+            "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 4,"
+            " \"amplitudes\": \"random\", \"heights\": %s}, \"contact\": {\"levels\": [4, 8],"
+            " \"estimators\": \"edges\", \"asperities\": \"counted\", \"cell_error\": \"none\","
+            " \"law_difference\": \"none\", \"pressures\": {\"values\": [0.01, 0.05]}}}",
+            CASES[c].heights);
+        cJSON *document = solve(study, 20);
+        for (size_t t = 0; t < 2; t++) {
+            const cJSON *area =
+                curve_of(document, "asperity_area", t == 0 ? "gw_counted" : "bgt_counted", NULL);
+            for (int k = 0; k < 2; k++) {
+                char name[40];
+                snprintf(name, sizeof name, "/theory/%s", CASES[c].theories[t]);
+                double theory = at(area, name, k), counted = at(area, "/y", k);
+                assert_near(counted, theory, 0.12 * theory, at(area, "/x", k));
+                assert_true(at(area, "/standard_error", k) > 0);
+            }
+        }
+        cJSON_Delete(document);
+    }
+}
+
 /* Profiles lie above Persson at every load, the more so the lighter it is (line contacts are none
  * of his): about 2.2 times at 0.005, 1.5 at 0.1, 1.2 at 0.3 and 1.1 at 0.5. 15 % leave room for the
  * scatter of 40 profiles (5 % at the lightest load) and for what H and the ratio do. */
@@ -315,6 +353,7 @@ int main(void) {
         cmocka_unit_test(levels_see_the_same_surface),
         cmocka_unit_test(surfaces_against_theories),
         cmocka_unit_test(translated_surfaces_against_their_summits),
+        cmocka_unit_test(counted_summits_against_their_densities),
         cmocka_unit_test(profiles_against_persson),
         cmocka_unit_test(weibull_curves_cross),
         cmocka_unit_test(any_scale),
