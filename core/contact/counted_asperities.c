@@ -22,6 +22,7 @@ struct counted_summit {
 };
 struct counted_asperities {
     struct grid grid;
+    bool open;
     struct summit_finder *finder; /* owned, as all below */
     struct summit_list summits;
     struct counted_summit *counted; /* by falling height */
@@ -47,12 +48,13 @@ static int shapes_tabulate(struct counted_asperities *asperities, struct error *
     return 0;
 }
 
-int counted_asperities_create(struct counted_asperities **out, const struct grid *grid,
+int counted_asperities_create(struct counted_asperities **out, const struct grid *grid, bool open,
                               struct error *err) {
     struct counted_asperities *asperities = array_create(1, sizeof *asperities);
     if (asperities == NULL)
         return error_memory(err, sizeof *asperities, "asperities");
     asperities->grid = *grid;
+    asperities->open = open;
     int status = summit_finder_create(&asperities->finder, grid, SUMMITS_NINE_POINT,
                                       CURVATURE_FINITE_DIFFERENCE, grid->nx / 2, grid->ny / 2, err);
     if (status == 0)
@@ -82,6 +84,19 @@ double counted_asperities_bytes(const struct grid *grid) {
                                grid->ny / 2, false) +
            2 * (double)grid_points(grid) / 9 *
                (double)(sizeof(struct summit) + sizeof(struct counted_summit));
+}
+
+/* Leaves out the summits at the border of a surface that does not repeat. */
+static void leave_border(const struct grid *grid, struct summit_list *list) {
+    double dx = grid_dx(grid), dy = grid_dy(grid);
+    size_t kept = 0;
+    for (size_t n = 0; n < list->count; n++) {
+        const struct summit *summit = &list->summits[n];
+        if (summit->x > dx / 2 && summit->x < grid->lx - 1.5 * dx && summit->y > dy / 2 &&
+            summit->y < grid->ly - 1.5 * dy)
+            list->summits[kept++] = *summit;
+    }
+    list->count = kept;
 }
 
 /* Returns (kappa_1 - kappa_2)/(kappa_1 + kappa_2) of a grid summit by second differences. */
@@ -122,6 +137,8 @@ int counted_asperities_take(struct counted_asperities *asperities, const double 
     const struct summit_list *summits = &asperities->summits;
     asperities->count = 0;
     int status = summits_find(asperities->finder, z, &asperities->summits, err);
+    if (asperities->open)
+        leave_border(grid, &asperities->summits);
     if (status == 0)
         status = room_make(asperities, summits->count, err);
     if (status != 0)

@@ -12,8 +12,9 @@
 enum counted_theory { COUNTED_GW, COUNTED_BGT, COUNTED_THEORIES };
 
 struct counted_asperities;
-/* For surfaces on this periodic grid, which is no profile. ERROR_MEMORY. */
-int counted_asperities_create(struct counted_asperities **out, const struct grid *grid,
+/* For surfaces on this grid, which is no profile. open: they do not repeat, and no point of their
+ * border is a summit. ERROR_MEMORY. */
+int counted_asperities_create(struct counted_asperities **out, const struct grid *grid, bool open,
                               struct error *err);
 void counted_asperities_destroy(struct counted_asperities **asperities);
 double counted_asperities_bytes(const struct grid *grid);

@@ -71,7 +71,8 @@ static int asperities_create(void *workspace, const struct contact_case *one_cas
     asperities->rms_height = moments->rms_height;
     asperities->rms_slope = moments->rms_slope;
     for (size_t g = 0; g < asperities->grids && status == 0; g++)
-        status = counted_asperities_create(&asperities->of[g], &level_of(one_case, g)->grid, err);
+        status =
+            counted_asperities_create(&asperities->of[g], &level_of(one_case, g)->grid, false, err);
     if (status != 0)
         return status;
     asperities->z = array_create(points, sizeof *asperities->z);

@@ -6,10 +6,10 @@
 
 enum { SIDE = 256 };
 
-static struct counted_asperities *create(const struct grid *grid) {
+static struct counted_asperities *create(const struct grid *grid, bool open) {
     struct counted_asperities *asperities = NULL;
     struct error err = {0};
-    if (counted_asperities_create(&asperities, grid, &err) != 0)
+    if (counted_asperities_create(&asperities, grid, open, &err) != 0)
         fail_msg("%s", err.text);
     return asperities;
 }
@@ -40,7 +40,7 @@ static void summits_are_hertzs(void **state) {
     } CASES[] = {{1, 1}, {3, 1.0 / 9}, {2, 1}, {3, 1}};
     const struct grid grid = {SIDE, SIDE, 2 * M_PI, 2 * M_PI};
     const double height = 0.7, slope = 0.3, compression = 0.01;
-    struct counted_asperities *asperities = create(&grid);
+    struct counted_asperities *asperities = create(&grid, false);
     struct ellipse *ellipses = malloc(ELLIPSES * sizeof *ellipses);
     double *z = malloc(sizeof(double) * SIDE * SIDE);
     assert_non_null(ellipses);
@@ -69,7 +69,7 @@ static void flat_surfaces_have_none(void **state) {
     (void)state;
     const struct grid grid = {16, 16, 1, 1};
     double z[256] = {0};
-    struct counted_asperities *asperities = create(&grid);
+    struct counted_asperities *asperities = create(&grid, false);
     take(asperities, z, 1, 1);
     assert_true(isnan(counted_asperities_area(asperities, COUNTED_BGT, 0.1)));
     /* one summit, which alone bears any load */
@@ -81,10 +81,33 @@ static void flat_surfaces_have_none(void **state) {
     counted_asperities_destroy(&asperities);
 }
 
+/* A map that does not repeat has no summit at its border, from which half of the neighbours lack.
+ */
+static void borders_of_open_maps(void **state) {
+    (void)state;
+    static const size_t PLACES[] = {3, 3 * 16, 3 * 16 + 15, 15 * 16 + 3};
+    const struct grid grid = {16, 16, 1, 1};
+    for (size_t a = 0; a < sizeof PLACES / sizeof *PLACES; a++) {
+        double z[256] = {0};
+        struct counted_asperities *repeats = create(&grid, false), *ends = create(&grid, true);
+        z[PLACES[a]] = 1;
+        take(repeats, z, 1, 1);
+        take(ends, z, 1, 1);
+        assert_true(counted_asperities_area(repeats, COUNTED_BGT, 0.1) > 0);
+        assert_true(isnan(counted_asperities_area(ends, COUNTED_BGT, 0.1)));
+        z[5 * 16 + 7] = 1;
+        take(ends, z, 1, 1);
+        assert_true(counted_asperities_area(ends, COUNTED_BGT, 0.1) > 0);
+        counted_asperities_destroy(&repeats);
+        counted_asperities_destroy(&ends);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(summits_are_hertzs),
         cmocka_unit_test(flat_surfaces_have_none),
+        cmocka_unit_test(borders_of_open_maps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
