@@ -1,8 +1,8 @@
--- What results.list calls by name: v(c, n, v, e), case, name, value, standard error. Scalars have their names; with ".theory" over
+-- What results.list calls by name: v(k, n, v, e), case, name, value, standard error. Scalars have their names; with ".theory" over
 -- their theory, with ".grid" what the theory of the grid is over that, with ".law" their law difference in percent. Points of curves
 -- are quantity:series:model@x, those of contact on the finest level.
 CREATE TEMP VIEW v AS
-SELECT "case" AS c, name AS n, value AS v, standard_error AS e FROM case_scalars
+SELECT "case" AS k, name AS n, value AS v, standard_error AS e FROM case_scalars
 UNION ALL SELECT "case", name || '.theory', value / theory, standard_error / theory FROM case_scalars
 UNION ALL SELECT "case", name || '.grid', grid_theory / theory, 0 FROM case_scalars
 UNION ALL SELECT "case", name || '.law', 100 * law_difference / value, 100 * law_standard_error / abs(value) FROM case_scalars
@@ -20,5 +20,5 @@ FROM realisation_points a JOIN realisation_points b USING (study, "case", realis
 WHERE quantity = 'contact_area' AND series = 'edges' AND a.model = 'layered' AND b.model = 'full' GROUP BY 1, 2;
 -- And l(n, a, b, v, e): by how many percent a point of a curve is larger in case a than in case b, of other realisations.
 CREATE TEMP VIEW l AS
-SELECT n, a.c AS a, b.c AS b, 100 * (a.v / b.v - 1) AS v, 100 * sqrt(a.e * a.e / a.v / a.v + b.e * b.e / b.v / b.v) AS e
+SELECT n, a.k AS a, b.k AS b, 100 * (a.v / b.v - 1) AS v, 100 * sqrt(a.e * a.e / a.v / a.v + b.e * b.e / b.v / b.v) AS e
 FROM v a JOIN v b USING (n);
