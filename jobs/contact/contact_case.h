@@ -24,6 +24,12 @@ enum stiffness_choice { STIFFNESS_MEASURED, STIFFNESS_OMITTED };
 /* Whether differences of densities of pressure are summed by realisation (contact_densities.h). */
 enum pairs_choice { PAIRS_OMITTED, PAIRS_COUNTED };
 
+/* What the loads of a study are given in; those of a case are p/(E* h'). */
+enum load_unit { LOAD_UNIT_REDUCED, LOAD_UNIT_PASCAL };
+/* The most that a load may be, in E* h' and as a number in either unit. */
+#define CONTACT_LOAD_MOST 1e6
+#define CONTACT_LOAD_NUMBER_MOST 1e15
+
 extern const struct choice KINEMATICS_CHOICES[]; /* of enum kinematics */
 extern const struct parameter_table CONTACT_PARAMETERS;
 /* Tables of the kind: CONTACT_PARAMETERS, SURFACE_PARAMETERS, LIKE_PARAMETERS and others. */

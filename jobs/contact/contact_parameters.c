@@ -16,6 +16,9 @@ static const struct choice ESTIMATORS[] = {
 static const struct choice STIFFNESSES[] = {
     {"measured", STIFFNESS_MEASURED}, {"omitted", STIFFNESS_OMITTED}, {0}};
 
+static const struct choice LOAD_UNITS[] = {
+    {"E* h'", LOAD_UNIT_REDUCED}, {"Pa", LOAD_UNIT_PASCAL}, {0}};
+
 static const struct parameter ROWS[] = {
     {.path = "/contact/model",
      .type = PARAMETER_CHOICES,
@@ -96,12 +99,12 @@ static const struct parameter ROWS[] = {
     {.path = "/contact/pressures/to",
      .type = PARAMETER_NUMBER,
      .minimum = 0,
-     .maximum = 1e6,
+     .maximum = CONTACT_LOAD_NUMBER_MOST,
      .above_minimum = true,
      .sweep = true,
      .unit = "E* h'",
      .example_json = "0.1",
-     .help = "highest load; 0.3 unless given"},
+     .help = "highest load, up to 1e6 E* h'; 0.3 unless given"},
     {.path = "/contact/pressures/steps",
      .type = PARAMETER_INTEGER,
      .minimum = 1,
@@ -111,13 +114,23 @@ static const struct parameter ROWS[] = {
     {.path = "/contact/pressures/values",
      .type = PARAMETER_NUMBERS,
      .minimum = 0,
-     .maximum = 1e6,
+     .maximum = CONTACT_LOAD_NUMBER_MOST,
      .above_minimum = true,
      .items_low = 1,
      .items_high = CONTACT_LOADS_MOST,
      .unit = "E* h'",
      .example_json = "[0.001, 0.01, 0.1]",
-     .help = "rising loads, in place of the two above"},
+     .help = "rising loads, up to 1e6 E* h', in place of the two above"},
+    {.path = "/contact/pressures/unit",
+     .type = PARAMETER_CHOICE,
+     .choices = LOAD_UNITS,
+     .target_refusal = "a target has loads in E* h'",
+     .target_choice = "E* h'",
+     .later = true,
+     .example_json = "\"Pa\"",
+     .help = "of the loads above and of /contact/pressure_pdf/at: E* h' (unless given), or Pa, "
+             "which needs young in Pa and a surface with rms_slope or rms_height; curves have "
+             "loads in E* h' and in Pa"},
     {.path = "/contact/estimators",
      .type = PARAMETER_CHOICES,
      .choices = ESTIMATORS,
@@ -179,7 +192,7 @@ static const struct parameter ROWS[] = {
     {.path = "/contact/pressure_pdf/at",
      .type = PARAMETER_NUMBERS,
      .minimum = 0,
-     .maximum = 1e6,
+     .maximum = CONTACT_LOAD_NUMBER_MOST,
      .above_minimum = true,
      .items_low = 1,
      .items_high = CONTACT_LOADS_MOST,

@@ -4,6 +4,7 @@
 #include "jobs/statistics/statistics_scalars.h"
 #include "jobs/statistics/statistics_spectra.h"
 #include "jobs/statistics/statistics_theory.h"
+#include "jobs/units.h"
 #include "schema/json/field.h"
 #include "schema/result/result_json.h"
 #include <math.h>
@@ -382,6 +383,8 @@ int statistics_expectation(const cJSON *parameters, bool joint, struct case_resu
         status = spectra_prescribed(&e.one_case, e.modes, out, err);
     if (status == 0)
         status = add_alpha(&e, err);
+    if (status == 0)
+        units_set(out);
     modes_destroy(&e.modes);
     statistics_case_clear(&e.one_case);
     if (status != 0)

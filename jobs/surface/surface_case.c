@@ -146,6 +146,9 @@ static void read_scale(struct surface_case *out, struct values *values) {
                           : !isnan(height) ? SCALE_RMS_HEIGHT
                                            : SCALE_NONE;
     out->spectrum.scale_value = !isnan(slope) ? slope : !isnan(height) ? height : 1;
+    if (!isnan(values_number(values, "/surface/unit")) && out->spectrum.scale == SCALE_NONE)
+        values_fault(values, "/surface/unit",
+                     "heights have no unit without a scale: give rms_slope or rms_height");
 }
 
 /* Solves for the lambda_l/lambda_s of nayak_alpha; NaN with a fault where no ratio gives it. */

@@ -76,6 +76,25 @@ static void blocks(void **state) {
     contact_case_clear(&one_case);
 }
 
+/* Loads in Pa are over E* h': of 91 GPa, nu = 0.3 and h' = 0.1 that is 10 GPa. */
+static void loads_in_pascal(void **state) {
+    (void)state;
+    static const char *const STUDIES[] = {
+        STUDY(PROFILE ", \"rms_slope\": 0.1",
+              "\"young\": 91e9, \"pressure_pdf\": {\"at\": [2e9]},"
+              "\"pressures\": {\"values\": [1e9, 2e9], \"unit\": \"Pa\"}"),
+        STUDY(PROFILE ", \"rms_slope\": 0.1",
+              "\"young\": 91e9, \"pressures\": {\"to\": 2e9, \"steps\": 2, \"unit\": \"Pa\"}")};
+    for (size_t n = 0; n < sizeof STUDIES / sizeof *STUDIES; n++) {
+        struct contact_case one_case = read_case(STUDIES[n]);
+        assert_int_equal(one_case.load_count, 2);
+        assert_true(fabs(one_case.loads[0] - 0.1) < 1e-15);
+        assert_true(fabs(one_case.loads[1] - 0.2) < 1e-15);
+        assert_int_equal(one_case.pdf_loads[0], 1);
+        contact_case_clear(&one_case);
+    }
+}
+
 /* The name that a study gives is the one that curves have. */
 static void models_bear_their_names(void **state) {
     (void)state;
@@ -236,6 +255,16 @@ static void faults(void **state) {
          "(0,"},
         {STUDY(PROFILE, "\"pressures\": {\"values\": [0.3], \"to\": 0.4}"),
          "/contact/pressures/values", "not both"},
+        {STUDY(PROFILE, "\"pressures\": {\"values\": [1, 1e7]}"), "/contact/pressures/values",
+         "load of 1e+07 E* h'"},
+        {STUDY(PROFILE ", \"rms_slope\": 0.1",
+               "\"pressures\": {\"values\": [1e8], \"unit\": \"Pa\"}"),
+         "/contact/pressures/values", "E* h'"}, /* E is 1 Pa */
+        {STUDY(PROFILE ", \"rms_slope\": 0.1", "\"young\": 1e9, \"pressures\": {\"unit\": \"Pa\"}"),
+         "/contact/pressures/values", "no default"},
+        {STUDY(PROFILE, "\"pressures\": {\"values\": [1e8], \"unit\": \"Pa\"}"),
+         "/contact/pressures/unit", "scale"},
+        {STUDY(PROFILE ", \"unit\": 1e-6", ""), "/surface/unit", "scale"},
         {STUDY(PROFILE, "\"estimators\": [\"perimeter\"]"), "/contact/estimators", "profile"},
         {STUDY(PROFILE, "\"estimators\": [\"corners\"]"), "/contact/estimators/0", "not one of"},
         {STUDY(PROFILE, "\"levels\": [1, 8]"), "/contact/levels/0", "[2,"},
@@ -420,6 +449,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(defaults),
         cmocka_unit_test(blocks),
+        cmocka_unit_test(loads_in_pascal),
         cmocka_unit_test(models_bear_their_names),
         cmocka_unit_test(models_beside_full),
         cmocka_unit_test(loads_and_pressures),
