@@ -24,8 +24,12 @@ struct asked {
     bool block;    /* has no fault */
     double height; /* in height_unit; INFINITY; NaN: that of each model */
     int height_unit;
+    double fine; /* in fine_unit; INFINITY; NaN: by transition_depth */
+    int fine_unit;
     double modulus; /* E* in Pa of loads in Pa; 0: loads are in E* h' */
 };
+
+static const char FINE_HEIGHT[] = "/contact/block_fine_height";
 
 static void read_block(struct contact_case *out, struct asked *asked, struct values *values) {
     int models[CONTACT_MODELS_MOST];
@@ -39,6 +43,7 @@ static void read_block(struct contact_case *out, struct asked *asked, struct val
     out->kinematics = (enum kinematics)values_choice(values, "/contact/kinematics");
     out->transition_depth = values_number(values, "/contact/transition_depth");
     asked->height = values_measure(values, "/contact/block_height", &asked->height_unit);
+    asked->fine = values_measure(values, FINE_HEIGHT, &asked->fine_unit);
     for (size_t m = 0; m < out->model_count; m++) {
         out->models[m] = CONTACT_MODELS[models[m]];
         out->blocks[m] = block;
@@ -249,6 +254,7 @@ static bool scale_fits(const struct contact_case *one_case, const struct asked *
     const struct grid *grid = &one_case->surface.grid;
     bool needed = isfinite(asked->height) && asked->height_unit != HEIGHT_LENGTHS;
     needed = needed || asked->modulus > 0;
+    needed = needed || (isfinite(asked->fine) && asked->fine_unit == HEIGHT_RMS_HEIGHTS);
     for (size_t m = 0; m < one_case->model_count; m++)
         needed = needed || one_case->models[m]->check != NULL;
     if (!needed || !contact_case_has_scale(one_case) ||
@@ -261,6 +267,41 @@ static bool scale_fits(const struct contact_case *one_case, const struct asked *
                  "block_height in lengths, or take fewer points",
                  grid->nx, grid->ny, SCALE_POINTS_MOST);
     return false;
+}
+
+/* Columns of one width, as deep as the block may be. */
+#define FINE_WHOLE 1e9
+
+/* Sets the depth of the fine zone in lambda_s. On the coarsest mesh it is a width of the wide
+ * columns at least. */
+static int set_fine_height(struct contact_case *out, const struct asked *asked,
+                           struct values *values, struct error *err) {
+    static const double TRANSITION = 8; /* unless given */
+    double rms_height = 1, rms_slope;
+    bool meshed = false;
+    if (isnan(asked->fine) || out->level_count == 0)
+        return 0;
+    for (size_t m = 0; m < out->model_count; m++)
+        meshed = meshed || out->models[m]->mesh_floor != NULL;
+    int status = isfinite(asked->fine) && asked->fine_unit == HEIGHT_RMS_HEIGHTS
+                     ? contact_case_scale(out, &rms_height, &rms_slope, err)
+                     : 0;
+    if (status != 0)
+        return status;
+    out->fine_height = isinf(asked->fine) ? FINE_WHOLE : asked->fine * rms_height;
+    if (!meshed)
+        values_fault(values, FINE_HEIGHT, "belongs to the model full, which is not asked for");
+    else if (out->transition_depth != TRANSITION)
+        values_fault(values, FINE_HEIGHT, "give it or transition_depth, not both");
+    else if (isnan(out->fine_height))
+        values_fault(values, FINE_HEIGHT,
+                     "rms_heights need the scale of the surface: give rms_slope or rms_height");
+    else if (!(contact_case_transition(out, &out->levels[0].grid) >= 1))
+        values_fault(values, FINE_HEIGHT,
+                     "%.4g lambda_s is less than two columns of the mesh of %g points a shortest "
+                     "wave, the least that a fine zone takes",
+                     out->fine_height, out->levels[0].points);
+    return 0;
 }
 
 /* Brings loads in Pa to E* h'. */
@@ -414,6 +455,8 @@ static int set_on_surface(struct contact_case *out, const struct asked *asked,
     int status = convert_loads(out, asked, values, err);
     if (status == 0)
         status = set_blocks(out, asked, values, err);
+    if (status == 0)
+        status = set_fine_height(out, asked, values, err);
     if (status == 0 && values_fault_count(values) == before)
         check_meshes(out, values);
     return status;

@@ -6,6 +6,9 @@
 static const struct choice HEIGHTS[] = {{"infinite", 0}, {0}};
 static const struct choice HEIGHT_UNITS[] = {
     {"rms_heights", HEIGHT_RMS_HEIGHTS}, {"lengths", HEIGHT_LENGTHS}, {0}};
+static const struct choice FINE_HEIGHTS[] = {{"whole", 0}, {0}};
+static const struct choice FINE_UNITS[] = {
+    {"rms_heights", HEIGHT_RMS_HEIGHTS}, {"wavelengths", HEIGHT_WAVELENGTHS}, {0}};
 static const struct choice WEIGHTINGS[] = {{"standard", GAP_STANDARD}, {"dual", GAP_DUAL}, {0}};
 static const struct choice COMPANION_CHOICES[] = {
     {"probed", COMPANION_PROBED}, {"none", COMPANION_NONE}, {0}};
@@ -79,6 +82,22 @@ static const struct parameter ROWS[] = {
      .example_json = "1e9",
      .help = "full: depth from which columns of elements are twice as wide, and twice again; 1e9: "
              "all as wide as those of the surface"},
+    {.path = "/contact/block_fine_height",
+     .type = PARAMETER_MEASURE,
+     .choices = FINE_HEIGHTS,
+     .units = FINE_UNITS,
+     .minimum = 0,
+     .maximum = 1e9,
+     .above_minimum = true,
+     .sweep = true,
+     .target_refusal = "a target chooses the depth of the fine zone by transition_depth",
+     .later = true,
+     .unit = "the named one",
+     .example_json = "{\"rms_heights\": 40}",
+     .help = "full: depth of the fine zone, in which columns of elements are as wide as those of "
+             "the surface, in RMS heights of the surface (rms_heights) or in lambda_s "
+             "(wavelengths); or whole, the block. In place of transition_depth, which is in "
+             "widths"},
     {.path = "/contact/gap_weighting",
      .type = PARAMETER_CHOICE,
      .choices = WEIGHTINGS,

@@ -28,6 +28,7 @@ struct study_cost {
     /* Of surfaces by the law "translation": the share of m0 outside the band, and of the variance
      * in the band at other waves than asked for (FORMULAS.md, F5.11). 0 without the law. */
     double law_outside, law_misfit;
+    double fine_height; /* of blocks of finite elements, in lambda_s, where it is given; else 0 */
 };
 
 struct study_case;

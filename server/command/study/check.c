@@ -48,6 +48,14 @@ static void print_law(struct text_table *table, const struct study_cost *cost) {
     table_cell(table, "-");
 }
 
+/* Returns whether a case has a fine zone whose height is given. */
+static bool has_fine_zone(const struct study *study) {
+    bool any = false;
+    for (size_t c = 0; c < study->case_count; c++)
+        any = any || study->cases[c].cost.fine_height > 0;
+    return any;
+}
+
 static void print_cases(const struct study *study) {
     size_t swept = 0;
     while (study->swept[swept] != NULL)
@@ -55,13 +63,16 @@ static void print_cases(const struct study *study) {
     static const char *const HEADINGS[] = {"grid",    "memory MiB", "jobs",    "CPU time",
                                            "error %", "outside %",  "misfit %"};
     bool law = has_law(study);
+    bool fine = has_fine_zone(study);
     size_t columns = law ? 7 : 5;
-    struct text_table table = {.columns = swept + 1 + columns};
+    struct text_table table = {.columns = swept + 1 + columns + fine};
     table_cell(&table, "case");
     for (size_t p = 0; p < swept; p++)
         table_cell(&table, "%s", strrchr(study->swept[p], '/') + 1);
     for (size_t h = 0; h < columns; h++)
         table_cell(&table, "%s", HEADINGS[h]);
+    if (fine)
+        table_cell(&table, "fine zone");
     for (size_t c = 0; c < study->case_count; c++) {
         const struct study_case *one = &study->cases[c];
         char time[48];
@@ -76,12 +87,17 @@ static void print_cases(const struct study *study) {
         table_cell(&table, "%.2g", 100 * plan_case_error(&study->cases[c]));
         if (law)
             print_law(&table, &one->cost);
+        if (fine)
+            table_number(&table, one->cost.fine_height);
     }
     table_print(&table, stdout);
     table_clear(&table);
     if (law)
         printf("outside: share of m0 at waves outside the band of the spectrum; misfit: share of "
                "the variance in the band at other waves than asked for\n");
+    if (fine)
+        printf("fine zone: depth in lambda_s in which columns of elements are as wide as those of "
+               "the surface\n");
 }
 
 enum { NUMBERS_SHOWN = 8 };

@@ -85,6 +85,12 @@ static bool put_law(cJSON *document, const struct study_cost *cost) {
            field_put(document, "law_misfit", json_number(cost->law_misfit));
 }
 
+/* Adds the depth of the fine zone; nothing where it is not given. */
+static bool put_fine_zone(cJSON *document, const struct study_cost *cost) {
+    return !(cost->fine_height > 0) ||
+           field_put(document, "fine_height", json_number(cost->fine_height));
+}
+
 static cJSON *case_document(const struct study *study, size_t c) {
     const struct study_case *one = &study->cases[c];
     cJSON *document = cJSON_CreateObject();
@@ -97,7 +103,8 @@ static cJSON *case_document(const struct study *study, size_t c) {
         field_put(document, "block", cJSON_CreateNumber((double)block_of(one))) &&
         field_put(document, "seconds", json_number(plan_case_seconds(&study->cases[c]))) &&
         field_put(document, "relative_error", json_number(plan_case_error(&study->cases[c]))) &&
-        put_law(document, &one->cost) && put_components(document, &study->cases[c]);
+        put_law(document, &one->cost) && put_fine_zone(document, &one->cost) &&
+        put_components(document, &study->cases[c]);
     return fields_finish(document, complete);
 }
 

@@ -48,6 +48,10 @@ static void defaults(void **state) {
     contact_case_clear(&one_case);
 }
 
+static void check_number(double value, double expected) {
+    assert_true(fabs(value - expected) < 1e-12);
+}
+
 static void blocks(void **state) {
     (void)state;
     struct contact_case one_case =
@@ -73,6 +77,33 @@ static void blocks(void **state) {
                                "\"length_ratio\": 1, \"rms_slope\": 0.1",
                                "\"block_height\": {\"rms_heights\": 100}, \"model\": \"layered\""));
     assert_true(fabs(one_case.blocks[0].height - 100 * 0.1 / 6.283185307179586) < 1e-12);
+    contact_case_clear(&one_case);
+}
+
+/* A fine zone is as deep on every mesh: in widths of the wide columns more on finer ones. */
+static void fine_zones(void **state) {
+    (void)state;
+    struct study_cost cost;
+    struct contact_case one_case = read_case(
+        STUDY(PROFILE ", \"rms_height\": 0.05",
+              "\"model\": \"full\", \"levels\": [4, 8], \"block_height\": {\"lengths\": 1},"
+              "\"block_fine_height\": {\"rms_heights\": 40}"));
+    check_number(one_case.fine_height, 2);
+    check_number(contact_case_transition(&one_case, &one_case.levels[0].grid), 4);
+    check_number(contact_case_transition(&one_case, &one_case.levels[1].grid), 8);
+    contact_case_estimate(&one_case, &cost);
+    check_number(cost.fine_height, 2);
+    contact_case_clear(&one_case);
+    one_case = read_case(STUDY(PROFILE ", \"rms_height\": 0.05",
+                               "\"model\": \"full\", \"block_height\": {\"lengths\": 1},"
+                               "\"block_fine_height\": \"whole\""));
+    contact_case_estimate(&one_case, &cost);
+    check_number(cost.fine_height, 8); /* the block */
+    contact_case_clear(&one_case);
+    one_case = read_case(STUDY(PROFILE ", \"rms_height\": 0.05", "\"model\": \"full\""));
+    check_number(contact_case_transition(&one_case, &one_case.levels[0].grid), 8);
+    contact_case_estimate(&one_case, &cost);
+    check_number(cost.fine_height, 0);
     contact_case_clear(&one_case);
 }
 
@@ -244,6 +275,14 @@ static void faults(void **state) {
         {STUDY(PROFILE, "\"model\": \"layered\", \"layer_growth\": 1,"
                         "\"block_height\": {\"lengths\": 1000}"),
          "/contact/block_height", "4096 layers"},
+        {STUDY(PROFILE, "\"block_fine_height\": {\"rms_heights\": 40}, \"model\": \"layered\""),
+         "/contact/block_fine_height", "model full"},
+        {STUDY(PROFILE ", \"rms_height\": 0.05",
+               "\"block_fine_height\": {\"wavelengths\": 0.2}, \"model\": \"full\""),
+         "/contact/block_fine_height", "two columns"},
+        {STUDY(PROFILE ", \"rms_height\": 0.05",
+               "\"block_fine_height\": \"whole\", \"transition_depth\": 9, \"model\": \"full\""),
+         "/contact/block_fine_height", "not both"},
         {STUDY(PROFILE, "\"layer_growth\": 0.9"), "/contact/layer_growth", "[1, 2]"},
         {STUDY(PROFILE, "\"gap_weighting\": \"dual\""), "/contact/gap_weighting",
          "finite elements"},
@@ -449,6 +488,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(defaults),
         cmocka_unit_test(blocks),
+        cmocka_unit_test(fine_zones),
         cmocka_unit_test(loads_in_pascal),
         cmocka_unit_test(models_bear_their_names),
         cmocka_unit_test(models_beside_full),
