@@ -9,9 +9,11 @@ static const double ROUNDING = 1e-9; /* relative: guards integers behind divisio
 
 static const struct parameter_table *const TABLES[] = {&SURFACE_PARAMETERS, NULL};
 
-static const char SKEWNESS[] = "/surface/heights/skewness";
+static const char SKEWNESS[] = "/surface/heights/skewness",
+                  KURTOSIS[] = "/surface/heights/kurtosis", SHAPE[] = "/surface/heights/shape",
+                  SECOND[] = "/surface/heights/second_shape";
 
-/* A skewness beside heights that have another would be overlooked; a shape is known to be none. */
+/* What other heights have would be overlooked beside these; a shape is known to be none. */
 static void refuse_skewness(struct values *values) {
     double skewness = values_number(values, SKEWNESS);
     if (!isnan(skewness))
@@ -21,30 +23,57 @@ static void refuse_skewness(struct values *values) {
                      skewness);
 }
 
-/* Returns the shape; NaN, or what is at fault, with a fault. */
-static double read_shape(enum heights_type type, const struct distribution *distribution,
-                         struct values *values) {
+/* Refuses what belongs to a distribution of two shapes. */
+static void refuse_second(struct values *values) {
+    static const char *const PATHS[] = {SECOND, KURTOSIS};
+    for (size_t p = 0; p < 2; p++)
+        if (!isnan(values_number(values, PATHS[p])))
+            values_fault(values, PATHS[p], "%g: belongs to a distribution of two shapes, beta",
+                         values_number(values, PATHS[p]));
+}
+
+/* Reads the shape, or solves for it; a fault where there is none. */
+static void read_shape(struct heights *heights, const struct distribution *distribution,
+                       struct values *values) {
     struct error reason = {0};
-    double shape = values_number(values, "/surface/heights/shape");
-    double skewness = values_number(values, SKEWNESS);
+    double shape = values_number(values, SHAPE), skewness = values_number(values, SKEWNESS);
+    heights->shape = shape;
     if (!isnan(shape) && !isnan(skewness))
         values_fault(values, SKEWNESS, "give shape or skewness, not both");
-    else if (!isnan(skewness) && heights_shape_of_skewness(type, skewness, &shape, &reason) != 0)
+    else if (!isnan(skewness) &&
+             heights_shape_of_skewness(heights, skewness, &heights->shape, &reason) != 0)
         values_fault(values, SKEWNESS, "%s", reason.text);
     else if (isnan(skewness) &&
              !(shape >= distribution->shape_low && shape <= distribution->shape_high))
-        values_fault(values, "/surface/heights/shape",
+        values_fault(values, SHAPE,
                      "the distribution needs its shape (%s), a number in [%g, %g], or its skewness",
                      distribution->shape_means, distribution->shape_low, distribution->shape_high);
-    return shape;
+}
+
+/* Solves for both shapes of a skewness and a kurtosis. */
+static void read_kurtosis(struct heights *heights, struct values *values, double kurtosis) {
+    struct error reason = {0};
+    double skewness = values_number(values, SKEWNESS);
+    if (isnan(skewness) || !isnan(values_number(values, SHAPE)) ||
+        !isnan(values_number(values, SECOND)))
+        values_fault(values, KURTOSIS, "belongs to skewness, and takes the place of both shapes");
+    else if (heights_shapes_of_moments(skewness, kurtosis, heights, &reason) != 0)
+        values_fault(values, KURTOSIS, "%s", reason.text);
 }
 
 static void read_distribution(struct surface_case *out, struct values *values) {
     struct heights *heights = &out->options.heights;
     const struct distribution *distribution = heights_distribution(heights->type);
+    double second = values_number(values, SECOND), kurtosis = values_number(values, KURTOSIS);
     out->heights_name = distribution->family;
-    if (distribution->shape_means != NULL)
-        heights->shape = read_shape(heights->type, distribution, values);
+    if (!distribution->has_second)
+        refuse_second(values);
+    else if (!isnan(second))
+        heights->second = second;
+    if (distribution->has_second && !isnan(kurtosis))
+        read_kurtosis(heights, values, kurtosis);
+    else if (distribution->shape_means != NULL)
+        read_shape(heights, distribution, values);
     else
         refuse_skewness(values);
 }
@@ -67,6 +96,7 @@ static int read_samples(struct surface_case *out, struct values *values, struct 
         return status;
     out->heights_name = "samples";
     refuse_skewness(values);
+    refuse_second(values);
     if (samples == NULL) {
         values_fault(values, path, "the distribution needs its samples, heights in any order");
         return 0;
@@ -83,6 +113,7 @@ static int read_quantiles(struct surface_case *out, struct values *values, struc
     struct error reason = {0};
     out->heights_name = "quantiles";
     refuse_skewness(values);
+    refuse_second(values);
     int status = values_numbers(values, at, &probability, &n, err);
     if (status == 0)
         status = values_numbers(values, path, &quantile, &quantiles, err);

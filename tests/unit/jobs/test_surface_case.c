@@ -257,6 +257,26 @@ static void shape_of_a_skewness(void **state) {
     surface_case_clear(&surface);
 }
 
+static void shapes_of_beta(void **state) {
+    (void)state;
+#define BETA(heights)                                                                              \
+    "{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"distribution\": \"beta\", " heights \
+    "}}"
+    static const struct {
+        const char *surface;
+        double shape, second;
+    } CASES[] = {{BETA("\"shape\": 3"), 3, 0},
+                 {BETA("\"shape\": 3, \"second_shape\": 2"), 3, 2},
+                 {BETA("\"skewness\": 0, \"second_shape\": 2"), 2, 2},
+                 {BETA("\"skewness\": 0, \"kurtosis\": 1.8"), 1, 1}};
+    for (size_t n = 0; n < sizeof CASES / sizeof *CASES; n++) {
+        struct surface_case surface = read(CASES[n].surface);
+        check_close(surface.options.heights.shape, CASES[n].shape, 1e-12);
+        check_close(surface.options.heights.second, CASES[n].second, 1e-12);
+        surface_case_clear(&surface);
+    }
+}
+
 struct broken_case {
     const char *surface, *pointer, *words;
 };
@@ -267,6 +287,14 @@ static const struct broken_case BROKEN[] = {
     {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"distribution\": \"weibull_max\","
      " \"skewness\": 2}}",
      "/surface/heights/skewness", "no shape has the skewness 2; allowed: -6.6"},
+    {BETA("\"skewness\": 1"), "/surface/heights/skewness", "give the second shape"},
+    {BETA("\"skewness\": 1, \"kurtosis\": 5"), "/surface/heights/kurtosis", "allowed: (2, 4.5)"},
+    {BETA("\"shape\": 1, \"kurtosis\": 2"), "/surface/heights/kurtosis", "belongs to skewness"},
+    {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"distribution\": \"gamma\","
+     " \"shape\": 2, \"second_shape\": 2}}",
+     "/surface/heights/second_shape", "two shapes, beta"},
+    {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"kurtosis\": 4}}",
+     "/surface/heights/kurtosis", "two shapes, beta"},
     {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"skewness\": 1}}",
      "/surface/heights/skewness", "these heights have no shape"},
     {"{\"nayak_alpha\": 1.6, \"wavelength_ratio\": 2, \"rolloff_ratio\": 3}",
@@ -389,6 +417,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(defaults),
         cmocka_unit_test(shape_of_a_skewness),
+        cmocka_unit_test(shapes_of_beta),
         cmocka_unit_test(everything_given),
         cmocka_unit_test(what_is_exact),
         cmocka_unit_test(grids),
