@@ -1,4 +1,5 @@
 #include "jobs/surface/surface_case.h"
+#include "core/surface/acf_spectrum.h"
 #include "jobs/surface/surface_parameters.h"
 #include <math.h>
 #include <stdlib.h>
@@ -8,6 +9,9 @@
 static const double ROUNDING = 1e-9; /* relative: guards integers behind divisions */
 
 static const struct parameter_table *const TABLES[] = {&SURFACE_PARAMETERS, NULL};
+
+static const char LAGS[] = "/surface/spectrum/lag", CORRELATION[] = "/surface/spectrum/correlation";
+enum { ACF_ROWS = 1000 }; /* most, of the table that an autocorrelation becomes */
 
 static const char SKEWNESS[] = "/surface/heights/skewness",
                   KURTOSIS[] = "/surface/heights/kurtosis", SHAPE[] = "/surface/heights/shape",
@@ -398,6 +402,68 @@ static int read_table(struct surface_case *out, struct values *values, double po
     return status;
 }
 
+/* The wave numbers of the table that an autocorrelation becomes: from below the cell's first to the
+ * shortest waves that the points or the lags resolve, close enough for the last lag. */
+static size_t acf_wave_numbers(const struct surface_case *surface, const struct acf_table *acf,
+                               double points, double *out) {
+    double length = surface->length_ratio_y > surface->length_ratio ? surface->length_ratio_y
+                                                                    : surface->length_ratio;
+    double least = TWO_PI / (length * surface->wavelength_ratio), gap = acf->lag[1];
+    for (size_t a = 1; a < acf->n; a++)
+        gap = fmin(gap, acf->lag[a] - acf->lag[a - 1]);
+    double highest = TWO_PI / 2 * fmin(points, 1 / gap), lowest = 0.9 * least;
+    double step = fmax(TWO_PI / 6 / acf->lag[acf->n - 1], (highest - lowest) / (ACF_ROWS - 1));
+    if (!(highest > least))
+        return 0;
+    size_t m = (size_t)fmin(ACF_ROWS, ceil((highest - lowest) / step) + 1);
+    for (size_t a = 0; a < m; a++)
+        out[a] = lowest + (highest - lowest) * (double)a / (double)(m - 1);
+    return m;
+}
+
+/* Makes the table of an autocorrelation, which has no other fault. */
+static int table_of_acf(struct surface_case *out, struct values *values,
+                        const struct acf_table *acf, double points, struct error *err) {
+    struct error reason = {0};
+    if (isnan(out->wavelength_ratio) || isnan(out->length_ratio) || isnan(points))
+        return 0; /* at fault */
+    out->table = array_create(2 * (size_t)ACF_ROWS, sizeof *out->table);
+    if (out->table == NULL)
+        return error_memory(err, 2 * (size_t)ACF_ROWS * sizeof *out->table, "a table spectrum");
+    size_t m = acf_wave_numbers(out, acf, points, out->table);
+    if (m < 2) {
+        values_fault(values, LAGS, "lags are so far apart that no wave of the cell is resolved");
+        return 0;
+    }
+    int status = acf_spectrum(out->dimension, acf, m, out->table, out->table + ACF_ROWS, &reason);
+    out->spectrum.table_count = m;
+    out->spectrum.table_wave_number = out->table;
+    out->spectrum.table_density = out->table + ACF_ROWS;
+    return table_status(values, CORRELATION, status, &reason, err);
+}
+
+static int read_acf(struct surface_case *out, struct values *values, double points,
+                    struct error *err) {
+    double *lag = NULL, *correlation = NULL;
+    size_t n = 0, correlations = 0;
+    struct error reason = {0};
+    read_anisotropy(out, values);
+    int status = values_numbers(values, LAGS, &lag, &n, err);
+    if (status == 0)
+        status = values_numbers(values, CORRELATION, &correlation, &correlations, err);
+    struct acf_table acf = {n, lag, correlation};
+    if (status == 0 && (lag == NULL || correlation == NULL || n != correlations))
+        values_fault(values, CORRELATION,
+                     "an acf_table needs lag and correlation, as many of each");
+    else if (status == 0 && acf_table_check(&acf, &reason) != 0)
+        values_fault(values, LAGS, "%s", reason.text);
+    else if (status == 0)
+        status = table_of_acf(out, values, &acf, points, err);
+    free(lag);
+    free(correlation);
+    return status;
+}
+
 static void read_lengths(struct surface_case *out, struct values *values) {
     static const char path[] = "/surface/length_ratio_y";
     double along_y = values_number(values, path);
@@ -418,7 +484,9 @@ static int read_surface(struct surface_case *out, struct values *values, struct 
     out->dimension = surface_case_dimension(values);
     read_lengths(out, values);
     out->wavelength_ratio = values_number(values, "/surface/wavelength_ratio");
-    out->spectrum.type = (enum spectrum_type)values_choice(values, "/surface/spectrum/type");
+    int type = values_choice(values, "/surface/spectrum/type");
+    bool acf = type == SPECTRUM_GIVEN_ACF;
+    out->spectrum.type = acf ? SPECTRUM_TABLE : (enum spectrum_type)type;
     int status = read_heights(out, values, err);
     read_scale(out, values);
     if (status == 0 && out->spectrum.type == SPECTRUM_SELF_AFFINE)
@@ -430,7 +498,7 @@ static int read_surface(struct surface_case *out, struct values *values, struct 
     if (status == 0 && out->spectrum.type == SPECTRUM_EXPONENTIAL_ACF)
         status = read_exponential(out, values, err);
     if (status == 0 && out->spectrum.type == SPECTRUM_TABLE)
-        status = read_table(out, values, points, err);
+        status = (acf ? read_acf : read_table)(out, values, points, err);
     if (status == 0 &&
         !isnan(out->length_ratio * out->wavelength_ratio * points)) /* else at fault */
         surface_case_grid(out, points, "/surface/points_per_wavelength", values, &out->grid);

@@ -5,7 +5,8 @@
 static const struct choice ALPHA_FORMULAS[] = {
     {"discrete", ALPHA_DISCRETE}, {"continuous", ALPHA_CONTINUOUS}, {0}};
 #define SPECTRUM(type, name, value) {name, SPECTRUM_##type},
-static const struct choice SPECTRA[] = {RUGO_SPECTRA(SPECTRUM){0}};
+static const struct choice SPECTRA[] = {RUGO_SPECTRA(SPECTRUM){"acf_table", SPECTRUM_GIVEN_ACF},
+                                        {0}};
 static const struct choice AMPLITUDES[] = {
     {"fixed", AMPLITUDES_FIXED}, {"random", AMPLITUDES_RANDOM}, {0}};
 #define CHOICE(type, name, value) {name, HEIGHTS_##type},
@@ -162,7 +163,7 @@ static const struct parameter ROWS[] = {
      .default_json = "\"self_affine\"",
      .example_json = "\"exponential_acf\"",
      .help = "form of the spectrum: self_affine (hurst and the ratios), exponential_acf (length), "
-             "or table (wave_number, density)"},
+             "table (wave_number, density), or acf_table (lag, correlation)"},
     {.path = "/surface/spectrum/length",
      .type = PARAMETER_NUMBERS,
      .minimum = 0,
@@ -193,6 +194,27 @@ static const struct parameter ROWS[] = {
      .example_json = "[3, 2, 0]",
      .help = "spectral density at each wave number of a table; between them it is interpolated in "
              "logarithms"},
+    {.path = "/surface/spectrum/lag",
+     .type = PARAMETER_NUMBERS,
+     .minimum = 0,
+     .maximum = 1e6,
+     .items_low = 3,
+     .items_high = 10000,
+     .later = true,
+     .unit = "lambda_s",
+     .example_json = "[0, 1, 2, 4]",
+     .help = "rising lags of an acf_table, the first 0; waves shorter than two of the least "
+             "distances between lags are left out"},
+    {.path = "/surface/spectrum/correlation",
+     .type = PARAMETER_NUMBERS,
+     .minimum = -1,
+     .maximum = 1,
+     .items_low = 3,
+     .items_high = 10000,
+     .later = true,
+     .example_json = "[1, 0.6, 0.2, 0]",
+     .help = "autocorrelation R/R(0) at each lag of an acf_table, the first 1; of surfaces "
+             "isotropic. Between lags it is interpolated, beyond the last it is 0"},
     {.path = "/surface/heights/distribution",
      .type = PARAMETER_CHOICE,
      .choices = DISTRIBUTIONS,

@@ -277,6 +277,19 @@ static void shapes_of_beta(void **state) {
     }
 }
 
+/* A table of lags becomes one of wave numbers, up to the shortest waves that the lags resolve. */
+static void spectrum_of_lags(void **state) {
+    (void)state;
+#define ACF(members) "{\"wavelength_ratio\": 8, \"spectrum\": {\"type\": \"acf_table\"" members "}}"
+    struct surface_case surface = read(
+        ACF(", \"lag\": [0, 0.5, 1, 2, 4, 8], \"correlation\": [1, 0.78, 0.61, 0.37, 0.14, 0]"));
+    const struct spectrum *spectrum = &surface.spectrum;
+    assert_true(spectrum->type == SPECTRUM_TABLE && spectrum->table_count > 10);
+    check_close(spectrum->table_wave_number[spectrum->table_count - 1], 2 * M_PI, 1e-9);
+    assert_true(spectrum->table_wave_number[0] < 2 * M_PI / 64);
+    surface_case_clear(&surface);
+}
+
 struct broken_case {
     const char *surface, *pointer, *words;
 };
@@ -287,6 +300,13 @@ static const struct broken_case BROKEN[] = {
     {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"distribution\": \"weibull_max\","
      " \"skewness\": 2}}",
      "/surface/heights/skewness", "no shape has the skewness 2; allowed: -6.6"},
+    {ACF(""), "/surface/spectrum/correlation", "as many of each"},
+    {ACF(", \"lag\": [0, 2, 1], \"correlation\": [1, 0.5, 0]"), "/surface/spectrum/lag",
+     "must rise"},
+    {ACF(", \"lag\": [0, 1, 2], \"correlation\": [1, 1, 1]"), "/surface/spectrum/correlation",
+     "no isotropic surface has this"},
+    {ACF(", \"lag\": [0, 100, 200], \"correlation\": [1, 0.5, 0]"), "/surface/spectrum/lag",
+     "no wave of the cell"},
     {BETA("\"skewness\": 1"), "/surface/heights/skewness", "give the second shape"},
     {BETA("\"skewness\": 1, \"kurtosis\": 5"), "/surface/heights/kurtosis", "allowed: (2, 4.5)"},
     {BETA("\"shape\": 1, \"kurtosis\": 2"), "/surface/heights/kurtosis", "belongs to skewness"},
@@ -418,6 +438,7 @@ int main(void) {
         cmocka_unit_test(defaults),
         cmocka_unit_test(shape_of_a_skewness),
         cmocka_unit_test(shapes_of_beta),
+        cmocka_unit_test(spectrum_of_lags),
         cmocka_unit_test(everything_given),
         cmocka_unit_test(what_is_exact),
         cmocka_unit_test(grids),
