@@ -136,10 +136,28 @@ static int read_quantiles(struct surface_case *out, struct values *values, struc
     return status;
 }
 
+/* Reads tolerances on single errors. */
+static void read_tolerances(struct surface_options *options, struct values *values) {
+    static const char *const PATHS[] = {"/surface/heights/tolerances/eps_h",
+                                        "/surface/heights/tolerances/eps_s",
+                                        "/surface/heights/tolerances/eps_s0"};
+    double *const own[] = {&options->tolerance_h, &options->tolerance_s, &options->tolerance_s0};
+    for (size_t a = 0; a < 3; a++) {
+        double tolerance = values_number(values, PATHS[a]);
+        if (isnan(tolerance))
+            continue;
+        *own[a] = tolerance;
+        if (options->tolerance == 0)
+            values_fault(values, PATHS[a], "%g beside a tolerance of 0, which has no end",
+                         tolerance);
+    }
+}
+
 static void read_iteration(struct surface_options *options, struct values *values) {
     options->law = (enum height_law)values_choice(values, "/surface/heights/law");
     options->amplitudes = (enum surface_amplitudes)values_choice(values, "/surface/amplitudes");
     options->tolerance = values_number(values, "/surface/heights/tolerance");
+    read_tolerances(options, values);
     options->keep = (enum surface_keep)values_choice(values, "/surface/heights/keep");
     options->iteration =
         (enum surface_iteration)values_choice(values, "/surface/heights/iteration");

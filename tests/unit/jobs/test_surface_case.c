@@ -300,6 +300,9 @@ static const struct broken_case BROKEN[] = {
     {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"distribution\": \"weibull_max\","
      " \"skewness\": 2}}",
      "/surface/heights/skewness", "no shape has the skewness 2; allowed: -6.6"},
+    {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"tolerance\": 0, \"tolerances\":"
+     " {\"eps_s\": 0.1}}}",
+     "/surface/heights/tolerances/eps_s", "no end"},
     {ACF(""), "/surface/spectrum/correlation", "as many of each"},
     {ACF(", \"lag\": [0, 2, 1], \"correlation\": [1, 0.5, 0]"), "/surface/spectrum/lag",
      "must rise"},
