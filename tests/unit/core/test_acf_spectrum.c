@@ -45,8 +45,8 @@ static int transformed(int dimension, double (*correlation)(double lag), double 
     return acf_spectrum(dimension, &table, WAVES, k, density, err);
 }
 
-/* Tables of 20 lags a correlation length: interpolation leaves 5e-4 of the highest density, which is
- * doubled here. */
+/* Tables of 20 lags a correlation length: interpolation leaves 5e-4 of the highest density, which
+ * is doubled here. */
 static void closed_forms(void **state) {
     (void)state;
     static const struct {
