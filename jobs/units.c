@@ -46,6 +46,10 @@ static const struct unit_row AXES[] = {
 };
 static const struct unit_row SCALARS[] = {
     {"rms_height", 0, NULL, "m", 0, 1, {{0}}, 0},
+    {"correlation_length", 0, NULL, "m", 0, 1, {{0}}, 0},
+    {"correlation_length_e", 0, NULL, "m", 0, 1, {{0}}, 0},
+    {"psd_plateau", 1, NULL, "m^3", 0, 3, {{0}}, 0},
+    {"psd_plateau", 2, NULL, "m^4", 0, 4, {{0}}, 0},
     {"rms_curvature", 0, NULL, "1/m", 0, -1, {{0}}, 0},
     {"lowest", 0, NULL, "m", 0, 1, HEIGHT, 0},
     {"highest", 0, NULL, "m", 0, 1, HEIGHT, 0},

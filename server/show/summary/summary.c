@@ -105,7 +105,10 @@ static void summary_of_like(const struct case_result *one, FILE *file) {
 enum { TABLES_MOST = 3 };
 
 /* Of many cases these are shown. */
-static const char *const HEADLINES[] = {"nayak_alpha",
+static const char *const HEADLINES[] = {"wavelength_ratio",
+                                        "skewness",
+                                        "kurtosis",
+                                        "nayak_alpha",
                                         "nayak_alpha_continuous",
                                         "summit_density",
                                         "summit_height_mean",
