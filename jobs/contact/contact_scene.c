@@ -268,7 +268,7 @@ static double plain_bytes(const struct contact_case *one_case) {
 void contact_case_estimate(const struct contact_case *one_case, struct study_cost *out) {
     const struct surface_case *surface = &one_case->surface;
     const struct grid *finest = &contact_case_finest(one_case)->grid;
-    surface_law_estimate(surface->translation, out);
+    surface_case_estimate(surface, out);
     out->fine_height = 0;
     for (size_t m = 0; m < one_case->model_count; m++)
         if (one_case->fine_height > 0 && one_case->models[m]->mesh_floor != NULL)

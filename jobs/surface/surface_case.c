@@ -320,7 +320,8 @@ static int read_bandwidth(struct surface_case *out, struct values *values, doubl
         values_fault(values, "/surface/hurst",
                      "a self-affine spectrum needs it: a number in (0, 1]; or wavelength_ratio and "
                      "nayak_alpha, which give it");
-    if (!isnan(alpha) && !has_ratio)
+    out->ratio_solved = !isnan(alpha) && !has_ratio;
+    if (out->ratio_solved)
         return solve_ratio(out, values, alpha, rolloff, err);
     if (!isnan(alpha)) {
         values_fault(values, "/surface/nayak_alpha",
@@ -595,6 +596,17 @@ struct surface_band surface_case_sampled_band(const struct surface_case *surface
 double surface_case_bytes(const struct surface_case *surface) {
     struct surface_band band = surface_case_band(surface);
     return generator_bytes(&surface->grid, band.x, band.y, &surface->options);
+}
+
+void surface_case_estimate(const struct surface_case *surface, struct study_cost *out) {
+    struct height_moments heights;
+    bool gaussian = surface->options.heights.type == HEIGHTS_GAUSSIAN;
+    bool known = !gaussian && heights_moments(&surface->options.heights, &heights, NULL) == 0;
+    surface_law_estimate(surface->translation, out);
+    out->wavelength_ratio = surface->ratio_solved ? surface->wavelength_ratio : 0;
+    out->hurst = surface->hurst_solved ? surface->spectrum.hurst : 0;
+    out->skewness = known ? heights.skewness : 0;
+    out->kurtosis = known ? heights.kurtosis : 0;
 }
 
 /* --- the grid of the cell --- */

@@ -249,6 +249,31 @@ static void heights_of_ones_own(void **state) {
     assert_null(by_samples.height_table);
 }
 
+/* What is known before a surface is made: nothing where it is as given, and Gaussian. */
+static void surfaces_are_described(void **state) {
+    (void)state;
+    static const struct {
+        const char *surface;
+        double ratio, hurst, skewness, kurtosis;
+    } CASES[] = {{"{\"hurst\": 0.8, \"wavelength_ratio\": 8}", 0, 0, 0, 0},
+                 {"{\"hurst\": 0.8, \"nayak_alpha\": 5.3368}", 8, 0, 0, 0},
+                 {"{\"nayak_alpha\": 5.3368, \"wavelength_ratio\": 8}", 0, 0.8, 0, 0},
+                 {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"distribution\": "
+                  "\"weibull_max\","
+                  " \"shape\": 1}}",
+                  0, 0, -2, 9}};
+    for (size_t n = 0; n < sizeof CASES / sizeof *CASES; n++) {
+        struct surface_case surface = read(CASES[n].surface);
+        struct study_cost cost = {0};
+        surface_case_estimate(&surface, &cost);
+        check_close(cost.wavelength_ratio, CASES[n].ratio, 0.05);
+        check_close(cost.hurst, CASES[n].hurst, 1e-3);
+        check_close(cost.skewness, CASES[n].skewness, 1e-9);
+        check_close(cost.kurtosis, CASES[n].kurtosis, 1e-9);
+        surface_case_clear(&surface);
+    }
+}
+
 static void shape_of_a_skewness(void **state) {
     (void)state;
     struct surface_case surface = read("{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\":"
@@ -439,6 +464,7 @@ static void all_faults_at_once(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(defaults),
+        cmocka_unit_test(surfaces_are_described),
         cmocka_unit_test(shape_of_a_skewness),
         cmocka_unit_test(shapes_of_beta),
         cmocka_unit_test(spectrum_of_lags),
