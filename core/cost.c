@@ -38,7 +38,8 @@ static const double CACHE_SLOPE = 0.4, CACHE_DOUBLINGS = 20;
 /* Returns the number of fast iterations until they stall or reach the tolerance. */
 static double fast_iterations(const struct surface_options *options, const struct grid *grid) {
     struct height_moments moments;
-    double reach = grid != NULL ? options->tolerance * sqrt((double)grid_points(grid)) : 0;
+    double tolerance = options->tolerance_h > 0 ? options->tolerance_h : options->tolerance;
+    double reach = grid != NULL ? tolerance * sqrt((double)grid_points(grid)) : 0;
     if (!(reach > 0) || heights_moments(&options->heights, &moments, NULL) != 0)
         return FAST_ITERATIONS;
     double reached = REACH * pow(reach, -FALL) + SKEWED * moments.skewness * moments.skewness;

@@ -286,7 +286,11 @@ static double area_scatter(const struct contact_case *one_case) {
 void contact_case_estimate(const struct contact_case *one_case, struct study_cost *out) {
     const struct surface_case *surface = &one_case->surface;
     const struct grid *finest = &contact_case_finest(one_case)->grid;
-    surface_law_estimate(surface->translation, out);
+    surface_case_estimate(surface, out);
+    out->fine_height = 0;
+    for (size_t m = 0; m < one_case->model_count; m++)
+        if (one_case->fine_height > 0 && one_case->models[m]->mesh_floor != NULL)
+            out->fine_height = fmin(one_case->fine_height, one_case->blocks[m].height);
     out->nx = finest->nx;
     out->ny = finest->ny;
     out->memory_bytes = surface_case_bytes(surface) + plain_bytes(one_case) +

@@ -29,6 +29,10 @@ struct study_cost {
     /* Of surfaces by the law "translation": the share of m0 outside the band, and of the variance
      * in the band at other waves than asked for (FORMULAS.md, F5.11). 0 without the law. */
     double law_outside, law_misfit;
+    double fine_height; /* of blocks of finite elements, in lambda_s, where it is given; else 0 */
+    /* Of surfaces: what was solved for nayak_alpha, and what heights that are not Gaussian have;
+     * else 0. */
+    double wavelength_ratio, hurst, skewness, kurtosis;
 };
 
 struct study_case;
