@@ -1,7 +1,7 @@
 /* The model "full": finite elements on the rough geometry itself (core/full). */
 #include "core/cost.h"
+#include "core/full/file/mesh_vtu.h"
 #include "core/full/full.h"
-#include "core/full/mesh_file.h"
 #include "jobs/contact/contact_case.h"
 #include <errno.h>
 #include <math.h>
@@ -249,7 +249,7 @@ static int write_file(const char *path, const char *title, const struct mesh *me
     FILE *file = fopen(path, "wb");
     if (file == NULL)
         return error_set(err, ERROR_SYSTEM, "cannot open %s: %s", path, strerror(errno));
-    int status = mesh_file_write(file, title, mesh, step, err);
+    int status = mesh_vtu(file, title, mesh, step, err);
     if (fclose(file) != 0 && status == 0)
         status = error_set(err, ERROR_SYSTEM, "cannot write %s: %s", path, strerror(errno));
     return status;

@@ -1,5 +1,6 @@
 /* rugo press FILE: the contact of a height map in a file with a rigid flat. */
 #include "core/map/height_map_file.h"
+#include "core/nodal/map_vtu.h"
 #include "jobs/maps/map_press_curves.h"
 #include "jobs/maps/map_press_error.h"
 #include "schema/result/csv.h"
@@ -9,7 +10,6 @@
 #include "server/command/map/map_file.h"
 #include "server/command/map/press_loads.h"
 #include "server/command/output_file.h"
-#include "server/show/map/map_vtu.h"
 #include "server/show/map/press_print.h"
 #include <stdlib.h>
 #include <string.h>
