@@ -5,7 +5,7 @@
 #include "core/full/file/mesh_vtu.h"
 
 struct nodal_step {
-    double load;           /* in the unit in which it was given */
+    double load;           /* in the unit in which it was given; 0: out of contact */
     const char *title;     /* units and mean pressure in one line without "--" */
     struct grid grid;      /* of the nodes of the face */
     const double *z;       /* by node: height towards the flat before the load, the grid's unit */
@@ -16,7 +16,7 @@ struct nodal_step {
      * NULL of models that have none. */
     const double *u;
     const struct mesh *mesh;      /* the whole block; NULL of models without one */
-    const struct mesh_step *step; /* on the mesh; NULL without a load */
+    const struct mesh_step *step; /* on the mesh; without a load its material alone matters */
 };
 
 #endif

@@ -61,7 +61,7 @@ int step_vtu(FILE *file, const struct nodal_step *step, struct error *err) {
     const struct map_field fields[] = {
         {"pressure", step->p}, {"gap", step->gap}, {"contact", step->contact}};
     if (step->mesh != NULL)
-        return mesh_vtu(file, step->title, step->mesh, step->step, err);
+        return mesh_vtu(file, step->title, step->mesh, step->load > 0 ? step->step : NULL, err);
     return map_vtu(file, step->title, &step->grid, step->z, sizeof fields / sizeof *fields, fields,
                    err);
 }

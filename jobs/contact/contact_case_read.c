@@ -294,13 +294,13 @@ static void set_levels(struct contact_case *out, const struct asked *asked, stru
         }
 }
 
-/* Checks the layers of a block on one grid, and for a model that meshes them (write_mesh) the
+/* Checks the layers of a block on one grid, and for a model that meshes them (block_of) the
  * nodes; false after a fault. */
 static bool check_mesh(const struct contact_level *level, const struct block *block,
                        const struct contact_model *model, struct values *values) {
     double thickness[LAYERS_MOST];
     size_t layers = block_layers(&level->grid, block, thickness);
-    double nodes = model->write_mesh != NULL ? mesh_nodes_bound(&level->grid, layers) : 0;
+    double nodes = model->block_of != NULL ? mesh_nodes_bound(&level->grid, layers) : 0;
     if (layers == 0)
         values_fault(values, "/contact/block_height",
                      "the block takes more than %d layers at %g points a shortest wave; take "
@@ -328,7 +328,7 @@ static void check_meshes(const struct contact_case *one_case, struct values *val
  * before the scale of the surface is computed, which sums over all of its waves. */
 static bool faces_fit(const struct contact_case *one_case, struct values *values) {
     for (size_t m = 0; m < one_case->model_count; m++)
-        for (size_t l = 0; one_case->models[m]->write_mesh != NULL && l < one_case->level_count;
+        for (size_t l = 0; one_case->models[m]->block_of != NULL && l < one_case->level_count;
              l++) {
             const struct grid *grid = &one_case->levels[l].grid;
             if (mesh_nodes_bound(grid, 1) <= MESH_NODES_MOST)

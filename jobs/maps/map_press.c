@@ -248,9 +248,7 @@ static void empty_row(const struct map_press *press, double pressure, struct pre
 
 int map_press_load(struct map_press *press, double pressure, struct press_row *row,
                    struct error *err) {
-    struct contact_pressed pressed = {.stretch = 1, .open_stretch = NAN, .reached = NAN};
-    for (size_t m = 0; m < MODEL_MEASURES_MOST; m++)
-        pressed.own[m] = NAN;
+    struct contact_pressed pressed = contact_not_pressed();
     empty_row(press, pressure, row);
     int status = model_of(press)->press(press->solver, pressure, &pressed, err);
     if (status != 0)

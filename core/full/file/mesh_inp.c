@@ -1,6 +1,5 @@
 #include "core/full/file/mesh_inp.h"
 #include "core/full/file/mesh_points.h"
-#include "core/vectors.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -16,13 +15,13 @@ struct inp_writer {
     FILE *file;
     const struct inp_model *model;
     const struct mesh *mesh;
-    size_t points;       /* of one sheet */
-    int sheets;          /* of points: 2 of profiles, front and back of the layer */
-    size_t *point_of;    /* owned: by node, the number of its own point */
-    size_t sheet;        /* that is written */
-    size_t written;      /* numbers on the line of a set */
-    bool own, far_side;  /* which points a set has */
-    double lowest, deep; /* height of the lowest point of the face; half a column */
+    size_t points;      /* of one sheet */
+    int sheets;         /* of points: 2 of profiles, front and back of the layer */
+    size_t *point_of;   /* owned: by node, the number of its own point */
+    size_t sheet;       /* that is written */
+    size_t written;     /* numbers on the line of a set */
+    bool own, far_side; /* which points a set has */
+    double lowest;      /* height of the lowest point of the face */
 };
 
 static bool is_profile(const struct inp_writer *w) {
@@ -90,25 +89,31 @@ static void put_cell(void *context, const struct mesh_cell *cell) {
     fputc('\n', w->file);
 }
 
-/* Writes the flat: an element below the face, half a cell wider on each side, and its surface. */
-static void write_flat(const struct inp_writer *w) {
+static size_t first_of_flat(const struct inp_writer *w) {
+    return w->points * (size_t)w->sheets + 1;
+}
+
+/* Writes the corners of the flat, half a cell wider than the block on each side. */
+static void put_flat(const struct inp_writer *w) {
     const struct mesh *mesh = w->mesh;
-    double x = (double)mesh->level[0].nx * mesh->unit, thick = 4 * w->deep, low = w->lowest - thick;
+    double x = (double)mesh->level[0].nx * mesh->unit, low = w->lowest - 2 * mesh->unit;
     double y = is_profile(w) ? mesh->unit : (double)mesh->level[0].ny * mesh->across * mesh->unit;
-    size_t first = w->points * (size_t)w->sheets + 1;
-    fputs("*NODE, NSET=FLAT_NODES\n", w->file);
     for (size_t a = 0; a < 8; a++) {
         double right = a % 4 == 1 || a % 4 == 2 ? 1.5 * x : -0.5 * x;
         double back = a % 4 >= 2 ? 1.5 * y : -0.5 * y, up = a >= 4 ? w->lowest : low;
         /* Upward is y of profiles: their corners turn the other way, and go from the back. */
         if (is_profile(w))
-            fprintf(w->file, "%zu, %.12g, %.12g, %.12g\n", first + a, right, up, y - back);
+            fprintf(w->file, "%zu, %.12g, %.12g, %.12g\n", first_of_flat(w) + a, right, up,
+                    y - back);
         else
-            fprintf(w->file, "%zu, %.12g, %.12g, %.12g\n", first + a, right, back, up);
+            fprintf(w->file, "%zu, %.12g, %.12g, %.12g\n", first_of_flat(w) + a, right, back, up);
     }
-    fprintf(w->file, "*ELEMENT, TYPE=C3D8, ELSET=FLAT_ELEMENT\n%zu", mesh->elements + 1);
+}
+
+static void write_flat(const struct inp_writer *w) {
+    fprintf(w->file, "*ELEMENT, TYPE=C3D8, ELSET=FLAT_ELEMENT\n%zu", w->mesh->elements + 1);
     for (size_t a = 0; a < 8; a++)
-        fprintf(w->file, ", %zu", first + a);
+        fprintf(w->file, ", %zu", first_of_flat(w) + a);
     fputs("\n*SURFACE, NAME=FLAT, TYPE=ELEMENT\nFLAT_ELEMENT, S2\n", w->file);
 }
 
@@ -141,12 +146,18 @@ static void put_equation(void *context, const struct mesh_point *point) {
 /* --- the model --- */
 
 static void write_mesh(struct inp_writer *w) {
-    fputs("*NODE, NSET=BLOCK_NODES\n", w->file);
+    size_t flat = first_of_flat(w);
+    fputs("*NODE\n", w->file);
     for (w->sheet = 0; w->sheet < (size_t)w->sheets; w->sheet++)
         mesh_points_each(w->mesh, put_point, w);
+    put_flat(w);
     fputs("*ELEMENT, TYPE=C3D8, ELSET=BLOCK\n", w->file);
     mesh_cells_each(w->mesh, put_cell, w);
     write_flat(w);
+    fprintf(w->file,
+            "*NSET, NSET=BLOCK_NODES, GENERATE\n1, %zu, 1\n"
+            "*NSET, NSET=FLAT_NODES, GENERATE\n%zu, %zu, 1\n",
+            flat - 1, flat, flat + 7);
     write_set(w, "FACE", false, false);
     write_set(w, "FAR", true, false);
     write_set(w, "FAR_OWN", true, true);
@@ -157,9 +168,14 @@ static void write_mesh(struct inp_writer *w) {
         mesh_points_each(w->mesh, put_equation, w);
 }
 
+static double poisson_of(const struct material *material) {
+    double lambda = material->local + material->mean;
+    return lambda / (2 * (lambda + material->shear));
+}
+
 /* Writes what holds in all steps. One point of the far side is held sideways. */
 static void write_material(const struct inp_writer *w) {
-    double poisson = w->model->poisson;
+    double poisson = poisson_of(&w->model->material);
     size_t held = w->point_of[mesh_far_side(w->mesh)];
     fprintf(w->file,
             "*MATERIAL, NAME=ELASTIC\n*ELASTIC\n%.12g, %.12g\n"
@@ -178,20 +194,19 @@ static void write_material(const struct inp_writer *w) {
 
 static void write_step(const struct inp_writer *w, const struct inp_step *step) {
     fprintf(w->file,
-            "** mean pressure %.9g E*\n*STEP%s, INC=1000\n*STATIC\n0.25, 1., 1e-7\n"
+            "** mean pressure %.9g E*\n*STEP%s, INC=1000\n*STATIC\n0.25, 1., 1e-6\n"
             "*BOUNDARY\nFAR_OWN, %d, %d, %.12g\n"
             "*NODE FILE\nU, RF\n*EL FILE\nS\n"
             "*NODE PRINT, NSET=FAR, TOTALS=ONLY\nRF\n*NODE PRINT, NSET=FACE\nU\n"
             "*CONTACT PRINT\nCSTR\n*END STEP\n",
-            step->pressure, w->model->finite ? ", NLGEOM" : "", w->mesh->dimension,
-            w->mesh->dimension, -step->displacement);
+            step->pressure, w->model->material.kinematics != KINEMATICS_SMALL ? ", NLGEOM" : "",
+            w->mesh->dimension, w->mesh->dimension, -step->displacement);
 }
 
 static void measure_face(struct inp_writer *w) {
     w->lowest = INFINITY;
     for (size_t node = 0; node < w->mesh->face; node++)
         w->lowest = fmin(w->lowest, w->mesh->height[node] * w->mesh->unit);
-    w->deep = w->mesh->unit / 2;
 }
 
 int mesh_inp(FILE *file, const char *title, const struct inp_model *model, struct error *err) {

@@ -2,8 +2,8 @@
  * they run as it stands.
  *
  * Sets: BLOCK (elements C3D8); FACE, FAR (all points of the rough side and of the side away from
- * it); FAR_OWN (those of FAR that are no images); FLAT_NODES. Points on the sides of the last
- * column and row follow their images, and points between wider columns the mean of their
+ * it); FAR_OWN (those of FAR that are no images); FLAT_NODES; BLOCK_NODES. Points on the sides of
+ * the last column and row follow their images, and points between wider columns the mean of their
  * neighbours, by *EQUATION. The flat is one element whose nodes are held. Contact of the surfaces
  * ROUGH and FLAT is frictionless, with a linear penalty.
  *
@@ -13,6 +13,7 @@
 #ifndef RUGO_CORE_FULL_FILE_MESH_INP_H
 #define RUGO_CORE_FULL_FILE_MESH_INP_H
 
+#include "core/full/material.h"
 #include "core/full/mesh.h"
 #include <stdio.h>
 
@@ -23,8 +24,7 @@ struct inp_step {
 };
 struct inp_model {
     const struct mesh *mesh;
-    double poisson;
-    bool finite; /* strain: the steps say NLGEOM */
+    struct material material; /* finite strain: the steps say NLGEOM */
     size_t step_count;
     const struct inp_step *steps; /* borrowed */
 };

@@ -15,7 +15,7 @@ struct msh_writer {
     FILE *file;
     const struct mesh *mesh;
     size_t elements; /* written so far */
-    enum group side; /* whose links are written */
+    enum group side; /* that is written */
 };
 
 static enum group groups_of(const struct mesh *mesh) {
@@ -83,16 +83,20 @@ static bool lies_on(const struct mesh *mesh, const struct mesh_cell *cell, enum 
 
 static void put_cell(void *context, const struct mesh_cell *cell) {
     struct msh_writer *w = context;
+    put_element(w, w->mesh->dimension == 2 ? MSH_QUAD : MSH_HEXAHEDRON, BLOCK, cell->corners,
+                cell->corner);
+}
+
+/* Puts what the cell has of the side that is written. */
+static void put_side(void *context, const struct mesh_cell *cell) {
+    struct msh_writer *w = context;
     bool profile = w->mesh->dimension == 2;
     size_t corner[4], corners = profile ? 2 : 4;
-    put_element(w, profile ? MSH_QUAD : MSH_HEXAHEDRON, BLOCK, cell->corners, cell->corner);
-    for (enum group g = FACE; g < groups_of(w->mesh); g++) {
-        if (!lies_on(w->mesh, cell, g))
-            continue;
-        for (size_t a = 0; a < corners; a++)
-            corner[a] = cell->corner[profile ? PROFILE_SIDES[g][a] : SURFACE_SIDES[g][a]];
-        put_element(w, profile ? MSH_LINE : MSH_QUAD, g, corners, corner);
-    }
+    if (!lies_on(w->mesh, cell, w->side))
+        return;
+    for (size_t a = 0; a < corners; a++)
+        corner[a] = cell->corner[profile ? PROFILE_SIDES[w->side][a] : SURFACE_SIDES[w->side][a]];
+    put_element(w, profile ? MSH_LINE : MSH_QUAD, w->side, corners, corner);
 }
 
 /* Counts the elements of the block and of its sides. */
@@ -144,6 +148,8 @@ int mesh_msh(FILE *file, const struct mesh *mesh, struct error *err) {
     mesh_points_each(mesh, put_point, &w);
     fprintf(file, "$EndNodes\n$Elements\n%zu\n", count_elements(mesh));
     mesh_cells_each(mesh, put_cell, &w);
+    for (w.side = FACE; w.side < groups_of(mesh); w.side++)
+        mesh_cells_each(mesh, put_side, &w);
     fputs("$EndElements\n", file);
     write_links(&w);
     if (fflush(file) != 0 || ferror(file) != 0)
