@@ -296,6 +296,7 @@ run-threads:
 
 # All that .ci/run leaves out, or tries only where its paths changed: an hour and a half on two processors.
 nightly: all
+	-@tests/install-deps "" calculix-ccx ccx
 	$(MAKE) test
 	$(MAKE) lint
 	RUGO_EFFORT=4 $(MAKE) validation

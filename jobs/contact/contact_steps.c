@@ -181,7 +181,9 @@ int contact_press_steps(const void *of, const struct steps_order *order,
     if (status == 0)
         status = press_open(&press, order, m, err);
     for (size_t k = 0; k < count && status == 0; k++) {
-        status = press_load(&press, loads[k], err);
+        bool stopped = order->stop != NULL && order->stop(order->stop_context) != 0;
+        status = stopped ? error_set(err, ERROR_STOPPED, "stopped at load %zu of %zu", k, count)
+                         : press_load(&press, loads[k], err);
         if (status == 0)
             status = sink->put(sink->context, &press.step.step, k, count, err);
     }
