@@ -82,6 +82,7 @@ struct realisation {
     void *stop_context;
 };
 
+enum { KEPT_MODELS_MOST = 8 };
 /* Which steps are computed. */
 struct steps_order {
     const double *z;   /* on the grid of the case */
@@ -93,6 +94,13 @@ struct steps_order {
      * NULL. */
     int (*stop)(void *context);
     void *stop_context;
+};
+/* Steps of realisations that a case keeps. All arrays are borrowed from the case. */
+struct kept_steps {
+    size_t count, load_count, model_count;
+    const double *realisations; /* whole numbers, rising */
+    const double *loads;        /* as of an order */
+    const char *models[KEPT_MODELS_MOST];
 };
 struct nodal_step; /* core/nodal/nodal_step.h */
 /* Takes the steps one after the other: step number `number` of `count`, from 0. Lengths are in
@@ -206,6 +214,8 @@ struct job_kind {
      * each step. NULL for kinds without contact. */
     int (*press_steps)(const void *study, const struct steps_order *order,
                        const struct steps_sink *sink, struct error *err);
+    /* Returns which steps of which realisations the case keeps as files. NULL: none. */
+    struct kept_steps (*kept)(const void *study);
     /* Measures a measured surface as the sub-maps of realisations are measured, and adds the
      * results to the object "like" of the study. z is on the grid of a sub-map (like_case.h). Does
      * nothing where the case cuts no sub-maps. NULL for kinds that measure only what like_fit

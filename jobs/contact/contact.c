@@ -336,5 +336,6 @@ const struct job_kind CONTACT_KIND = {
     .scalar_values = scalar_values,
     .press = press,
     .press_steps = contact_press_steps,
+    .kept = contact_kept_steps,
     .measure_like = measure_like,
 };

@@ -165,6 +165,28 @@ static int read_pdf(struct contact_case *out, struct values *values, struct erro
     return 0;
 }
 
+/* Reads the realisations whose nodes are written, and the loads of these files. */
+static int read_kept(struct contact_case *out, struct values *values, struct error *err) {
+    static const char realisations[] = "/contact/keep/realisations",
+                      loads[] = "/contact/keep/loads";
+    int status = values_numbers(values, realisations, &out->kept, &out->kept_count, err);
+    if (status == 0)
+        status = values_numbers(values, loads, &out->kept_loads, &out->kept_load_count, err);
+    if (status != 0)
+        return status;
+    check_rising(values, realisations, out->kept_count, out->kept);
+    check_rising(values, loads, out->kept_load_count, out->kept_loads);
+    for (size_t a = 0; a < out->kept_count; a++)
+        if (out->kept[a] != floor(out->kept[a]))
+            values_fault(values, realisations, "%g is no whole number", out->kept[a]);
+    for (size_t a = 0; a < out->kept_load_count && out->load_count > 0; a++)
+        if (load_find(out, out->kept_loads[a]) == out->load_count)
+            values_fault(values, loads, "%g is none of the study's pressures", out->kept_loads[a]);
+    if (out->kept_load_count > 0 && out->kept_count == 0)
+        values_fault(values, loads, "loads of no realisation: give /contact/keep/realisations");
+    return 0;
+}
+
 /* Reads all that needs no surface. */
 static int read_alone(struct contact_case *out, struct asked *asked, struct values *values,
                       struct error *err) {
@@ -175,7 +197,9 @@ static int read_alone(struct contact_case *out, struct asked *asked, struct valu
     int status = read_loads(out, values, err);
     if (status == 0)
         status = read_levels(asked, values, err);
-    return status == 0 ? read_pdf(out, values, err) : status;
+    if (status == 0)
+        status = read_pdf(out, values, err);
+    return status == 0 ? read_kept(out, values, err) : status;
 }
 
 /* --- on the surface --- */

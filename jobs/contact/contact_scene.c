@@ -3,6 +3,7 @@
 #include "core/contact/pressures.h"
 #include "core/cost.h"
 #include "jobs/contact/contact_measure.h"
+#include "jobs/contact/contact_steps.h"
 #include "jobs/publishing_cost.h"
 #include <math.h>
 #include <stdlib.h>
@@ -268,6 +269,7 @@ void contact_case_estimate(const struct contact_case *one_case, struct study_cos
                         companions_bytes(one_case) + contact_tally_bytes(one_case) + PROCESS_BYTES;
     out->seconds = 1e-4 + 1e-9 * cost_generation(&surface->options, &surface->grid) *
                               (double)grid_points(&surface->grid);
+    out->kept = contact_kept_cost(one_case, out->seconds);
     for (size_t l = 0; l < one_case->level_count; l++)
         for (size_t m = 0; m < one_case->model_count; m++)
             out->seconds += one_case->models[m]->seconds(one_case, m, &one_case->levels[l].grid);

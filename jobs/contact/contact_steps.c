@@ -1,4 +1,5 @@
 #include "jobs/contact/contact_steps.h"
+#include "core/nodal/node_table.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -189,4 +190,52 @@ int contact_press_steps(const void *of, const struct steps_order *order,
     }
     press_clear(&press);
     return status;
+}
+
+/* --- steps that are kept --- */
+
+_Static_assert((int)KEPT_MODELS_MOST >= (int)CONTACT_MODELS_MOST, "a case has more models");
+
+struct kept_steps contact_kept_steps(const void *of) {
+    const struct contact_case *one_case = of;
+    bool all = one_case->kept_load_count == 0;
+    struct kept_steps out = {.count = one_case->kept_count,
+                             .load_count = all ? one_case->load_count : one_case->kept_load_count,
+                             .model_count = one_case->model_count,
+                             .realisations = one_case->kept,
+                             .loads = all ? one_case->loads : one_case->kept_loads};
+    for (size_t m = 0; m < out.model_count; m++)
+        out.models[m] = contact_model_name(one_case->models[m]);
+    return out;
+}
+
+/* Bytes of a VTU file by node, measured: of a face (base64), and of a block's nodes (text) under
+ * profiles and surfaces, of 2000 and 13 000 elements. */
+static const double FACE_BYTES = 120, PROFILE_BYTES = 140, BLOCK_BYTES = 230;
+
+/* Returns the bytes of one load by a model. */
+static double step_bytes(const struct contact_case *one_case, size_t m, const struct grid *grid) {
+    const struct contact_model *model = one_case->models[m];
+    double face = (double)grid_points(grid);
+    if (model->nodes == NULL)
+        return face * (FACE_BYTES + node_table_row_bytes(false));
+    return face * node_table_row_bytes(true) +
+           model->nodes(one_case, m, grid) * (grid_is_profile(grid) ? PROFILE_BYTES : BLOCK_BYTES);
+}
+
+struct study_kept contact_kept_cost(const struct contact_case *one_case, double generation) {
+    const struct grid *grid = &contact_case_finest(one_case)->grid;
+    const struct kept_steps kept = contact_kept_steps(one_case);
+    struct study_kept out = {.path = "/contact/keep/realisations"};
+    if (kept.count == 0)
+        return (struct study_kept){.path = NULL};
+    out.past = (uint64_t)kept.realisations[kept.count - 1] + 1;
+    for (size_t m = 0; m < one_case->model_count; m++) {
+        double share = (double)kept.load_count / (double)one_case->load_count;
+        out.seconds += generation + share * one_case->models[m]->seconds(one_case, m, grid);
+        out.bytes += (double)kept.load_count * step_bytes(one_case, m, grid);
+    }
+    out.seconds *= (double)kept.count;
+    out.bytes *= (double)kept.count;
+    return out;
 }

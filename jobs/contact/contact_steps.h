@@ -10,6 +10,11 @@
 int contact_press_steps(const void *one_case, const struct steps_order *order,
                         const struct steps_sink *sink, struct error *err);
 
+/* As kept of a kind has it. */
+struct kept_steps contact_kept_steps(const void *one_case);
+/* What these files take. generation: seconds of a surface. */
+struct study_kept contact_kept_cost(const struct contact_case *one_case, double generation);
+
 /* A step of a solved load, with its arrays. Zeroed at first, cleared in any case. */
 struct contact_step {
     struct nodal_step step;

@@ -122,6 +122,9 @@ struct contact_model {
     /* Measures the model's own scalars of a realisation, NaN before the call. NULL if it has
      * none. */
     void (*measure)(const struct model_values *values, double *scalars);
+    /* Returns the nodes of the mesh on a grid, about, 0 where it cannot be meshed. NULL as the
+     * next. */
+    double (*nodes)(const struct contact_case *one_case, size_t model, const struct grid *grid);
     /* Returns the block as it is after begin and under the last load. NULL if the model has no
      * mesh. */
     struct contact_block (*block_of)(struct contact_solver *solver);

@@ -210,6 +210,12 @@ static void measure(const struct model_values *values, double *out) {
     out[SCALAR_QUALITY] = values->facts[FACT_QUALITY];
 }
 
+static double nodes(const struct contact_case *one_case, size_t model, const struct grid *grid) {
+    struct full_options options = full_model_options(one_case);
+    size_t dimension = grid_is_profile(grid) ? 2 : 3;
+    return (double)(full_degrees_of_freedom(grid, &one_case->blocks[model], &options) / dimension);
+}
+
 static struct contact_block block_of(struct contact_solver *solver) {
     return (struct contact_block){.mesh = full_mesh(solver->full),
                                   .u = full_displacement(solver->full),
@@ -239,5 +245,6 @@ const struct contact_model FULL_MODEL = {
     .begin = begin,
     .press = press,
     .measure = measure,
+    .nodes = nodes,
     .block_of = block_of,
 };
