@@ -4,8 +4,11 @@
 
 #include "schema/store/store.h"
 
-/* Writes them into folder/nodes; none where the study keeps none. Warnings of models without a
- * solution begin with the command. Ends with ERROR_STOPPED where a signal asks for it. */
+/* Writes folder/nodes/case-K/realisation-R/MODEL/ with the files of step_folder.h, which replace
+ * those of an earlier run; none where the study keeps none. Realisations are made and pressed
+ * again: study and seed give the same bits as when they were measured. A model without a solution
+ * gets a warning, and its files hold the loads before. Ends with ERROR_STOPPED where a signal asks
+ * for it. */
 int kept_nodes_write(struct store *store, const char *id, const char *folder, struct error *err);
 
 #endif
