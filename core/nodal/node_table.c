@@ -1,19 +1,30 @@
 #include "core/nodal/node_table.h"
 #include <errno.h>
+#include <math.h>
 #include <string.h>
 
 double node_table_row_bytes(bool displacements) {
     return displacements ? 110 : 70; /* 9 digits a number at most, most of them written */
 }
 
+/* Puts a number, or an empty field where a unit is so odd that it is none. */
+static void put_value(FILE *file, double value) {
+    fputc(',', file);
+    if (isfinite(value))
+        fprintf(file, "%.9g", value);
+}
+
 static void put_node(FILE *file, const struct nodal_step *step, size_t node) {
     const struct grid *grid = &step->grid;
     double x = (double)(node % grid->nx) * grid_dx(grid);
     double y = grid_is_profile(grid) ? 0 : (double)(node / grid->nx) * grid_dy(grid);
-    fprintf(file, "%.9g,%zu,%.9g,%.9g,%.9g,%.9g,%.9g,%s", step->load, node, x, y, step->z[node],
-            step->gap[node], step->p[node], step->contact[node] > 0 ? "contact" : "open");
+    const double values[] = {x, y, step->z[node], step->gap[node], step->p[node]};
+    fprintf(file, "%.9g,%zu", step->load, node);
+    for (size_t v = 0; v < sizeof values / sizeof *values; v++)
+        put_value(file, values[v]);
+    fputs(step->contact[node] > 0 ? ",contact" : ",open", file);
     for (size_t k = 0; step->u != NULL && k < 3; k++)
-        fprintf(file, ",%.9g", step->u[3 * node + k]);
+        put_value(file, step->u[3 * node + k]);
     fputc('\n', file);
 }
 

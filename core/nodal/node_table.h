@@ -1,6 +1,6 @@
 /* Steps as a table in CSV, one row a node and load: load, node, x, y, z, gap, pressure, status
  * (contact or open), and of models with displacements u_x, u_y, u_z. z is the height towards the
- * flat before the load, and u_z points the same way. Numbers have 9 digits. */
+ * flat before the load, and u_z has its sign. Numbers have 9 digits. */
 #ifndef RUGO_CORE_NODAL_NODE_TABLE_H
 #define RUGO_CORE_NODAL_NODE_TABLE_H
 

@@ -220,7 +220,7 @@ static const struct parameter ROWS[] = {
      .example_json = "[0, 1]",
      .help =
          "rising numbers of realisations whose nodes rugo run --out writes, by each model on the "
-         "finest mesh: a VTU file a load, and a table of gap, pressure and status"},
+         "finest mesh"},
     {.path = "/contact/keep/loads",
      .type = PARAMETER_NUMBERS,
      .choices = KEPT_LOADS,

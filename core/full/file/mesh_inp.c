@@ -101,7 +101,7 @@ static void put_flat(const struct inp_writer *w) {
     for (size_t a = 0; a < 8; a++) {
         double right = a % 4 == 1 || a % 4 == 2 ? 1.5 * x : -0.5 * x;
         double back = a % 4 >= 2 ? 1.5 * y : -0.5 * y, up = a >= 4 ? w->lowest : low;
-        /* Upward is y of profiles: their corners turn the other way, and go from the back. */
+        /* Upward is y of profiles: their corners turn the opposite sense, and go from the back. */
         if (is_profile(w))
             fprintf(w->file, "%zu, %.12g, %.12g, %.12g\n", first_of_flat(w) + a, right, up,
                     y - back);
