@@ -16,8 +16,9 @@ static void put_value(FILE *file, double value) {
 
 static void put_node(FILE *file, const struct nodal_step *step, size_t node) {
     const struct grid *grid = &step->grid;
-    double x = (double)(node % grid->nx) * grid_dx(grid);
-    double y = grid_is_profile(grid) ? 0 : (double)(node / grid->nx) * grid_dy(grid);
+    size_t column = node % grid->nx, row = node / grid->nx;
+    double x = (double)column * grid_dx(grid);
+    double y = grid_is_profile(grid) ? 0 : (double)row * grid_dy(grid);
     const double values[] = {x, y, step->z[node], step->gap[node], step->p[node]};
     fprintf(file, "%.9g,%zu", step->load, node);
     for (size_t v = 0; v < sizeof values / sizeof *values; v++)

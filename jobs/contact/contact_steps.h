@@ -5,13 +5,14 @@
 #include "core/nodal/nodal_step.h"
 #include "jobs/contact/contact_case.h"
 
-/* As press_steps of a kind has it. ERROR_INPUT for a model that the case lacks; ERROR_NUMERIC, with
- * the load, where a model finds no solution: the steps before have been put. */
-int contact_press_steps(const void *one_case, const struct steps_order *order,
+/* As press_steps of a kind has it, of a struct contact_case. ERROR_INPUT for a model that the case
+ * lacks; ERROR_NUMERIC, with the load, where a model finds no solution: the steps before have been
+ * put. */
+int contact_press_steps(const void *of, const struct steps_order *order,
                         const struct steps_sink *sink, struct error *err);
 
 /* As kept of a kind has it. */
-struct kept_steps contact_kept_steps(const void *one_case);
+struct kept_steps contact_kept_steps(const void *of);
 /* What these files take. generation: seconds of a surface. */
 struct study_kept contact_kept_cost(const struct contact_case *one_case, double generation);
 

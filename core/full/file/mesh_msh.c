@@ -78,7 +78,7 @@ static bool lies_on(const struct mesh *mesh, const struct mesh_cell *cell, enum 
     case GROUPS:
         break;
     }
-    return true;
+    return false;
 }
 
 static void put_cell(void *context, const struct mesh_cell *cell) {

@@ -212,8 +212,8 @@ static void measure(const struct model_values *values, double *out) {
 
 static double nodes(const struct contact_case *one_case, size_t model, const struct grid *grid) {
     struct full_options options = full_model_options(one_case);
-    size_t dimension = grid_is_profile(grid) ? 2 : 3;
-    return (double)(full_degrees_of_freedom(grid, &one_case->blocks[model], &options) / dimension);
+    double dimension = grid_is_profile(grid) ? 2 : 3;
+    return (double)full_degrees_of_freedom(grid, &one_case->blocks[model], &options) / dimension;
 }
 
 static struct contact_block block_of(struct contact_solver *solver) {

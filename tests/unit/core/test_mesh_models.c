@@ -16,9 +16,11 @@ static struct mesh *mesh_of(const struct grid *grid, double transition) {
     struct error err = {0};
     struct mesh *mesh = NULL;
     double z[128];
-    for (size_t i = 0; i < grid_points(grid); i++)
-        z[i] = 0.1 * cos(2 * M_PI * (double)(i % grid->nx) / (double)grid->nx) *
-               cos(2 * M_PI * (double)(i / grid->nx) / (double)grid->ny);
+    for (size_t i = 0; i < grid_points(grid); i++) {
+        size_t column = i % grid->nx, row = i / grid->nx;
+        z[i] = 0.1 * cos(2 * M_PI * (double)column / (double)grid->nx) *
+               cos(2 * M_PI * (double)row / (double)grid->ny);
+    }
     if (mesh_create(&mesh, grid, &block, transition, &err) != 0 || mesh_shape(mesh, z, &err) != 0)
         fail_msg("%s", err.text);
     return mesh;
@@ -155,7 +157,10 @@ static size_t check_equations(const char *text, size_t points, size_t directions
     bool *follows = calloc(4 * (points + 1), sizeof *follows);
     bool *leads = calloc(points + 1, sizeof *leads);
     size_t count = 0;
-    assert_true(follows != NULL && leads != NULL);
+    if (follows == NULL || leads == NULL) {
+        fail_msg("out of memory");
+        abort();
+    }
     for (const char *at = text; (at = strstr(at, "*EQUATION\n")) != NULL; count++) {
         at += strlen("*EQUATION\n");
         size_t terms = whole(&at), point = whole(&at), direction = whole(&at);
