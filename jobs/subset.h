@@ -16,6 +16,12 @@ static inline bool subset_has(const struct subset *subset, uint64_t realisation)
     return subset->interval != 0 && realisation % interval == 0;
 }
 
+/* Returns a number that counts up from 0 along the realisations of a subset; early ones may share
+ * theirs with later ones. */
+static inline uint64_t subset_ordinal(const struct subset *subset, uint64_t realisation) {
+    return realisation / (realisation < subset->first ? subset->first_interval : subset->interval);
+}
+
 /* Makes the subset of each interval-th realisation. Among the first 32 at least each eighth is in
  * it, so that small studies have some. */
 static inline struct subset subset_each(uint64_t interval) {

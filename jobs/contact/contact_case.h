@@ -21,6 +21,7 @@ enum area_estimator { AREA_NODES, AREA_EDGES, AREA_PERIMETER, AREA_ESTIMATORS };
 enum companion_choice { COMPANION_PROBED, COMPANION_NONE };
 
 enum stiffness_choice { STIFFNESS_MEASURED, STIFFNESS_OMITTED };
+enum asperities_choice { ASPERITIES_OMITTED, ASPERITIES_COUNTED };
 /* Whether differences of densities of pressure are summed by realisation (contact_densities.h). */
 enum pairs_choice { PAIRS_OMITTED, PAIRS_COUNTED };
 
@@ -49,6 +50,7 @@ struct contact_case {
     double *loads;                /* owned: p/(E* h'), rising, > 0 */
     bool nodes, edges, perimeter; /* estimators shown */
     bool stiffness;               /* is measured */
+    bool asperities;              /* theories by counted summits are wanted */
     double tolerance;
     size_t pdf_count;
     size_t *pdf_loads;    /* owned: loads whose pressures are counted, rising */

@@ -108,6 +108,13 @@ static void read_estimators(struct contact_case *out, struct values *values) {
     out->perimeter = wanted[AREA_PERIMETER] || (all && !profile);
 }
 
+static void read_asperities(struct contact_case *out, struct values *values) {
+    static const char path[] = "/contact/asperities";
+    out->asperities = values_choice(values, path) == ASPERITIES_COUNTED;
+    if (out->asperities && surface_case_dimension(values) == 1)
+        values_fault(values, path, "\"counted\" is for surfaces, and this is a profile");
+}
+
 static int read_levels(struct asked *out, struct values *values, struct error *err) {
     static const char path[] = "/contact/levels";
     double *points;
@@ -193,6 +200,7 @@ static int read_alone(struct contact_case *out, struct asked *asked, struct valu
     out->tolerance = values_number(values, "/contact/tolerance");
     out->stiffness = values_choice(values, "/contact/stiffness") != STIFFNESS_OMITTED;
     read_estimators(out, values);
+    read_asperities(out, values);
     read_block(out, asked, values);
     int status = read_loads(out, values, err);
     if (status == 0)

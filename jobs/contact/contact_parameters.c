@@ -17,6 +17,9 @@ static const struct choice ESTIMATORS[] = {
 static const struct choice STIFFNESSES[] = {
     {"measured", STIFFNESS_MEASURED}, {"omitted", STIFFNESS_OMITTED}, {0}};
 
+static const struct choice ASPERITIES[] = {
+    {"omitted", ASPERITIES_OMITTED}, {"counted", ASPERITIES_COUNTED}, {0}};
+
 static const struct parameter ROWS[] = {
     {.path = "/contact/model",
      .type = PARAMETER_CHOICES,
@@ -134,6 +137,15 @@ static const struct parameter ROWS[] = {
      .help =
          "measured or omitted, which spares half-spaces up to a quarter of their work and other "
          "models none; unless given measured, with a target omitted"},
+    {.path = "/contact/asperities",
+     .type = PARAMETER_CHOICE,
+     .choices = ASPERITIES,
+     .target_refusal = "a target answers contact that is solved",
+     .target_choice = "omitted",
+     .later = true,
+     .example_json = "\"counted\"",
+     .help = "theories of asperities by the summits of each surface, without a profile's: counted, "
+             "or omitted unless given"},
     {.path = "/contact/levels",
      .type = PARAMETER_NUMBERS,
      .minimum = 2,

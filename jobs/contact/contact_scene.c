@@ -259,6 +259,24 @@ static double plain_bytes(const struct contact_case *one_case) {
     return bytes;
 }
 
+/* Returns the scatter of the area at the lightest load, where it is largest. */
+static double area_scatter(const struct contact_case *one_case) {
+    const struct surface_case *surface = &one_case->surface;
+    bool affine = surface->spectrum.type == SPECTRUM_SELF_AFFINE;
+    double ratio = surface->wavelength_ratio;
+    struct height_moments moments;
+    if (heights_moments(&surface->options.heights, &moments, NULL) != 0)
+        moments.skewness = 0;
+    return cost_area_scatter(
+        &(struct area_scatter){.dimension = surface->dimension,
+                               .fixed = surface->options.amplitudes == AMPLITUDES_FIXED,
+                               .long_waves = surface_case_mean_side(surface),
+                               .ratio = ratio > 1 ? ratio : 1,
+                               .hurst = affine ? surface->spectrum.hurst : NAN,
+                               .skewness = moments.skewness,
+                               .load = one_case->loads[0]});
+}
+
 void contact_case_estimate(const struct contact_case *one_case, struct study_cost *out) {
     const struct surface_case *surface = &one_case->surface;
     const struct grid *finest = &contact_case_finest(one_case)->grid;
@@ -277,7 +295,5 @@ void contact_case_estimate(const struct contact_case *one_case, struct study_cos
     out->result_bytes = contact_rows_bytes(one_case);
     out->runs_most = RUNS_MOST;
     out->case_seconds = case_seconds(one_case) + companions_first_seconds(one_case);
-    bool affine = surface->spectrum.type == SPECTRUM_SELF_AFFINE;
-    out->relative_error = cost_area_scatter(surface->dimension, surface_case_mean_side(surface),
-                                            affine ? surface->spectrum.hurst : NAN);
+    out->relative_error = area_scatter(one_case);
 }

@@ -186,7 +186,7 @@ static int workspace_create(void *workspace, const void *one_case,
         status = like_patch_create(&work->patch, &statistics->like, grid, err);
     if (status != 0)
         return status;
-    return statistics_law_create(&work->law, statistics, err);
+    return statistics_law_create(&work->law, statistics, &basis->moments, err);
 }
 
 static void workspace_clear(void *workspace) {
@@ -270,7 +270,9 @@ static int realise(void *workspace, const struct realisation *realisation, void 
         status = like_patch_measure(work->patch, realisation->z, scalars + SCALAR_PATCH, err);
     if (status != 0)
         return status;
-    return statistics_law_measure(work->law, realisation->key, scalars, err);
+    struct statistics_levels *levels = tally;
+    return statistics_law_measure(work->law, realisation, work->summits, levels->pairs, scalars,
+                                  err);
 }
 
 /* --- the tally --- */
@@ -329,14 +331,16 @@ static int result(const void *one_case, const struct surface_basis *basis, const
     summit_theories_clear(&theories);
     if (status == 0)
         status = statistics_grid_theory(one_case, basis, out, err);
+    const struct statistics_levels *levels = tally;
     if (status == 0)
-        status = statistics_law_differences(one_case, realisations, out, err);
+        status = statistics_law_differences(one_case, realisations, levels->pairs, out, err);
     return status != 0 ? status : statistics_levels_errors(tally, out, err);
 }
 
 static bool point_groups(const void *tally, const struct curve *curve, size_t at,
                          struct point_groups *out) {
-    return statistics_point_groups(tally, curve, at, out);
+    const struct statistics_tally *own = tally;
+    return statistics_groups_point(&own->groups, own->one_case, curve, at, out);
 }
 
 static int scalar_values(const void *tally, const struct realisations *realisations, size_t scalar,
@@ -375,7 +379,7 @@ const struct job_kind STATISTICS_KIND = {
     .realise = realise,
     .merge = merge,
     .format = 0x5354, /* "ST" */
-    .format_version = 7,
+    .format_version = 8,
     .put = put,
     .get = get,
     .adds_up = adds_up,

@@ -3,84 +3,10 @@
 #include "jobs/estimate.h"
 #include "jobs/statistics/statistics_scalars.h"
 #include "jobs/statistics/summit_heights.h"
+#include "jobs/surface/other_law.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum shape { SHAPE_DENSITY, SHAPE_CUMULATIVE, SHAPE_CURVATURE };
-enum cells { CELLS_POINTS, CELLS_SUMMITS, CELLS_EQUIVALENT };
-
-/* The curves that are ratios of sums by groups. */
-static const struct row {
-    const char *quantity;
-    enum cells cells;
-    enum shape shape;
-} ROWS[] = {{"height_pdf", CELLS_POINTS, SHAPE_DENSITY},
-            {"height_cdf", CELLS_POINTS, SHAPE_CUMULATIVE},
-            {"summit_height_pdf", CELLS_SUMMITS, SHAPE_DENSITY},
-            {"summit_height_cdf", CELLS_SUMMITS, SHAPE_CUMULATIVE},
-            {"summit_mean_curvature", CELLS_SUMMITS, SHAPE_CURVATURE},
-            {"summit_curvature_pdf", CELLS_EQUIVALENT, SHAPE_DENSITY}};
-
-static const struct row *row_of(const struct curve *curve) {
-    for (size_t a = 0; a < sizeof ROWS / sizeof *ROWS; a++)
-        if (strcmp(ROWS[a].quantity, curve->quantity) == 0)
-            return &ROWS[a];
-    return NULL;
-}
-
-/* Returns the counts of cells first to last of a group. offset: of cell 0 in the group. */
-static double counted(const struct statistics_groups *groups, size_t g, size_t offset, size_t first,
-                      size_t last) {
-    const uint64_t *count = groups->count + g * groups->counts + offset;
-    double sum = 0;
-    for (size_t cell = first; cell <= last; cell++)
-        sum += (double)count[cell];
-    return sum;
-}
-
-/* Fills the share of things of each group in some cells, over a width. */
-static void fill_shares(const struct statistics_groups *groups, size_t offset, size_t cells,
-                        size_t first, size_t last, double width, struct point_groups *out) {
-    for (size_t g = 0; g < GROUPS; g++) {
-        double some = counted(groups, g, offset, first, last);
-        out->things[g] = counted(groups, g, offset, 0, cells - 1);
-        out->counted[g] = some / width;
-        out->informative += some > 0 && some < out->things[g];
-    }
-}
-
-static void fill_curvatures(const struct statistics_groups *groups, size_t offset, size_t sums,
-                            size_t cell, struct point_groups *out) {
-    for (size_t g = 0; g < GROUPS; g++) {
-        out->things[g] = counted(groups, g, offset, cell, cell);
-        out->counted[g] = exact_sum_value(&groups->sum[g * groups->sums + sums + cell]);
-        out->informative += out->things[g] > 0;
-    }
-}
-
-bool statistics_point_groups(const struct statistics_tally *tally, const struct curve *curve,
-                             size_t at, struct point_groups *out) {
-    const struct statistics_case *one_case = tally->one_case;
-    const struct row *row = row_of(curve);
-    struct group_offsets offset = statistics_group_offsets(one_case);
-    size_t side = strcmp(curve->series, "pits") == 0 ? SIDE_PITS : SIDE_SUMMITS;
-    if (row == NULL || side >= tally->sides)
-        return false;
-    const struct bins *bins =
-        row->cells == CELLS_EQUIVALENT ? &one_case->equivalent : &one_case->height;
-    const size_t offsets[] = {offset.height, offset.summit[side], offset.equivalent[side]};
-    size_t first = row->shape == SHAPE_CUMULATIVE ? 0 : at + 1;
-    if (at >= bins->count)
-        return false;
-    *out = (struct point_groups){.informative = 0};
-    if (row->shape == SHAPE_CURVATURE)
-        fill_curvatures(&tally->groups, offsets[row->cells], offset.curvature[side], at + 1, out);
-    else
-        fill_shares(&tally->groups, offsets[row->cells], cells_of(bins), first, at + 1,
-                    row->shape == SHAPE_DENSITY ? bins_width(bins) : 1, out);
-    return true;
-}
 
 struct statistics_case statistics_level_case(const struct statistics_case *one_case, size_t level) {
     struct statistics_case out = *one_case;
@@ -92,6 +18,19 @@ struct statistics_case statistics_level_case(const struct statistics_case *one_c
 }
 
 /* --- the tallies --- */
+
+static bool levels_have_pairs(const struct statistics_levels *levels) {
+    return levels->pairs[PAIR_OWN].counts > 0;
+}
+
+static int pairs_create(struct statistics_levels *out, const struct statistics_case *one_case,
+                        struct error *err) {
+    struct group_offsets offset = statistics_group_offsets(one_case);
+    int status = 0;
+    for (size_t a = 0; a < PAIR_SURFACES && status == 0; a++)
+        status = statistics_groups_create(&out->pairs[a], offset.counts, offset.sums, err);
+    return status;
+}
 
 int statistics_levels_create(struct statistics_levels *out, const struct statistics_case *one_case,
                              const struct moments *moments, const struct spectra_sizes *sizes,
@@ -106,6 +45,8 @@ int statistics_levels_create(struct statistics_levels *out, const struct statist
     }
     for (size_t l = 0; one_case->level_count > 0 && l <= one_case->level_count && status == 0; l++)
         status = statistics_groups_create(&out->moments[l], SIDES, LEVEL_SUMS, err);
+    if (status == 0 && other_law_applies(&one_case->surface))
+        status = pairs_create(out, one_case, err);
     if (status != 0)
         statistics_levels_clear(out);
     return status;
@@ -117,6 +58,8 @@ void statistics_levels_clear(struct statistics_levels *levels) {
         statistics_tally_clear(&levels->tallies[l]);
     for (size_t l = 0; l <= STATISTICS_LEVELS_MOST; l++)
         statistics_groups_clear(&levels->moments[l]);
+    for (size_t a = 0; a < PAIR_SURFACES; a++)
+        statistics_groups_clear(&levels->pairs[a]);
     *levels = (struct statistics_levels){0};
 }
 
@@ -126,6 +69,8 @@ void statistics_levels_put(struct bytes *bytes, const struct statistics_levels *
         statistics_tally_put(bytes, &levels->tallies[l]);
     for (size_t l = 0; levels->count > 0 && l <= levels->count; l++)
         statistics_groups_put(bytes, &levels->moments[l]);
+    for (size_t a = 0; levels_have_pairs(levels) && a < PAIR_SURFACES; a++)
+        statistics_groups_put(bytes, &levels->pairs[a]);
 }
 
 void statistics_levels_get(struct byte_reader *reader, struct statistics_levels *levels) {
@@ -134,6 +79,8 @@ void statistics_levels_get(struct byte_reader *reader, struct statistics_levels 
         statistics_tally_get(reader, &levels->tallies[l]);
     for (size_t l = 0; levels->count > 0 && l <= levels->count && !reader->failed; l++)
         statistics_groups_get(reader, &levels->moments[l]);
+    for (size_t a = 0; levels_have_pairs(levels) && a < PAIR_SURFACES; a++)
+        statistics_groups_get(reader, &levels->pairs[a]);
 }
 
 /* Returns whether groups count the summits of a tally. */
@@ -150,7 +97,8 @@ static bool moments_fit(const struct statistics_groups *moments,
 }
 
 bool statistics_levels_add_up(const struct statistics_levels *levels) {
-    bool fit = statistics_tally_adds_up(&levels->own);
+    bool fit =
+        statistics_tally_adds_up(&levels->own) && statistics_law_fits(levels->pairs, &levels->own);
     for (size_t l = 0; l < levels->count && fit; l++)
         fit = statistics_tally_adds_up(&levels->tallies[l]) &&
               levels->tallies[l].points.realisations == levels->own.points.realisations &&
@@ -164,10 +112,15 @@ void statistics_levels_merge(struct statistics_levels *into, const struct statis
         statistics_tally_merge(&into->tallies[l], &from->tallies[l]);
     for (size_t l = 0; into->count > 0 && l <= into->count; l++)
         statistics_groups_merge(&into->moments[l], &from->moments[l]);
+    for (size_t a = 0; levels_have_pairs(into) && a < PAIR_SURFACES; a++)
+        statistics_groups_merge(&into->pairs[a], &from->pairs[a]);
 }
 
 double statistics_levels_bytes(const struct statistics_case *one_case) {
-    double bytes = 0;
+    struct group_offsets offset = statistics_group_offsets(one_case);
+    double bytes = other_law_applies(&one_case->surface)
+                       ? PAIR_SURFACES * statistics_groups_bytes(offset.counts, offset.sums)
+                       : 0;
     bool wanted = statistics_case_wants_gaussian(one_case);
     for (size_t l = 0; l < one_case->level_count; l++) {
         const struct statistics_case coarse = statistics_level_case(one_case, l);
@@ -402,7 +355,7 @@ static bool is_of_heights(const struct curve *curve) {
 static bool is_of_levels(const struct statistics_levels *levels, const struct curve *curve) {
     struct point_groups groups;
     return levels->count > 0 && curve->columns == 0 &&
-           statistics_point_groups(&levels->own, curve, 0, &groups);
+           statistics_groups_point(&levels->own.groups, levels->own.one_case, curve, 0, &groups);
 }
 
 static int curve_errors(const struct statistics_levels *levels, struct curve *curve,
@@ -411,9 +364,10 @@ static int curve_errors(const struct statistics_levels *levels, struct curve *cu
     double *room;
     int status = curve_room(out, curve, &room, err);
     for (size_t a = 0; a < curve->n && status == 0; a++) {
-        for (size_t l = 0; l < 3 && l <= levels->count; l++)
-            statistics_point_groups(l == 0 ? &levels->own : &levels->tallies[l - 1], curve, a,
-                                    &of[l]);
+        for (size_t l = 0; l < 3 && l <= levels->count; l++) {
+            const struct statistics_tally *tally = l == 0 ? &levels->own : &levels->tallies[l - 1];
+            statistics_groups_point(&tally->groups, tally->one_case, curve, a, &of[l]);
+        }
         struct level_error error = error_of(levels, of, curve->standard_error[a]);
         room[a] = error.value;
         room[curve->n + a] = error.bound;

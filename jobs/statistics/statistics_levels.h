@@ -5,15 +5,8 @@
 #define RUGO_JOBS_STATISTICS_STATISTICS_LEVELS_H
 
 #include "core/statistics/surface_pass.h"
-#include "jobs/statistics/statistics_tally.h"
+#include "jobs/statistics/statistics_law.h"
 #include "schema/result/result.h"
-
-/* Points of curves of statistics by groups of realisations, for differences of cases of the same
- * random numbers. */
-
-/* As job_kind has it: for densities, cumulative ones and the mean curvature of summits. */
-bool statistics_point_groups(const struct statistics_tally *tally, const struct curve *curve,
-                             size_t at, struct point_groups *out);
 
 /* The tallies of a case: that of the surfaces' own grid, and one for each level. */
 struct statistics_levels {
@@ -24,6 +17,7 @@ struct statistics_levels {
     /* Sums by groups of realisations of which scalars are means, of the own grid and of each level;
      * empty without levels. */
     struct statistics_groups moments[1 + STATISTICS_LEVELS_MOST];
+    struct statistics_groups pairs[PAIR_SURFACES]; /* of realisations that have the other law */
 };
 int statistics_levels_create(struct statistics_levels *out, const struct statistics_case *one_case,
                              const struct moments *moments, const struct spectra_sizes *sizes,

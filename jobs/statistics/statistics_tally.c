@@ -34,44 +34,6 @@ double summit_tally_bytes(const struct statistics_case *one_case) {
     return tally_bytes(2 * heights + curvatures + heights * curvatures) + tally_sums_bytes(heights);
 }
 
-int summit_counts_create(struct summit_counts *out, const struct statistics_case *one_case,
-                         struct error *err) {
-    size_t heights = cells_of(&one_case->height), curvatures = cells_of(&one_case->equivalent);
-    size_t joint = heights * curvatures;
-    *out = (struct summit_counts){
-        .joint = array_create(joint, sizeof *out->joint),
-        .touched = array_create(joint, sizeof *out->touched),
-        .height = array_create(heights, sizeof *out->height),
-        .equivalent = array_create(curvatures, sizeof *out->equivalent),
-        .curvature = array_create(heights, sizeof *out->curvature),
-    };
-    if (out->joint != NULL && out->touched != NULL && out->height != NULL &&
-        out->equivalent != NULL && out->curvature != NULL)
-        return 0;
-    summit_counts_clear(out);
-    return error_memory(err, (size_t)summit_counts_bytes(one_case), "counts of summits");
-}
-
-void summit_counts_clear(struct summit_counts *counts) {
-    free(counts->joint);
-    free(counts->touched);
-    free(counts->height);
-    free(counts->equivalent);
-    free(counts->curvature);
-    *counts = (struct summit_counts){0};
-}
-
-double summit_counts_bytes(const struct statistics_case *one_case) {
-    size_t heights = cells_of(&one_case->height), curvatures = cells_of(&one_case->equivalent);
-    return 16.0 * (double)(heights * curvatures + heights) + 8.0 * (double)curvatures;
-}
-
-void summit_counts_zero(struct summit_counts *counts, const struct summit_tally *tally) {
-    memset(counts->height, 0, tally->height.size * sizeof *counts->height);
-    memset(counts->equivalent, 0, tally->equivalent.size * sizeof *counts->equivalent);
-    memset(counts->curvature, 0, tally->height.size * sizeof *counts->curvature);
-}
-
 void histogram_tally_add(struct tally *cells, struct tally *below, const uint64_t *count,
                          uint64_t things) {
     uint64_t sum = 0;
@@ -156,133 +118,14 @@ void summit_tally_merge(struct summit_tally *into, const struct summit_tally *fr
     tally_sums_merge(&into->curvature, &from->curvature);
 }
 
-int statistics_groups_create(struct statistics_groups *out, size_t counts, size_t sums,
-                             struct error *err) {
-    *out = (struct statistics_groups){.counts = counts,
-                                      .sums = sums,
-                                      .count = array_create(GROUPS * counts, sizeof *out->count),
-                                      .sum = array_create(GROUPS * sums, sizeof *out->sum)};
-    if (out->count != NULL && out->sum != NULL)
-        return 0;
-    statistics_groups_clear(out);
-    return error_memory(err, (size_t)statistics_groups_bytes(counts, sums), "groups");
-}
-
-void statistics_groups_clear(struct statistics_groups *groups) {
-    free(groups->count);
-    free(groups->sum);
-    *groups = (struct statistics_groups){0};
-}
-
-double statistics_groups_bytes(size_t counts, size_t sums) {
-    return GROUPS * ((double)counts * sizeof(uint64_t) + (double)sums * sizeof(struct exact_sum));
-}
-
-void statistics_groups_count(struct statistics_groups *groups, size_t group, size_t at, size_t n,
-                             const uint64_t *count) {
-    uint64_t *to = groups->count + group * groups->counts + at;
-    for (size_t a = 0; a < n; a++)
-        to[a] += count[a];
-}
-
-void statistics_groups_sum(struct statistics_groups *groups, size_t group, size_t at, size_t n,
-                           const double *values) {
-    struct exact_sum *to = groups->sum + group * groups->sums + at;
-    for (size_t a = 0; a < n; a++)
-        if (values[a] != 0)
-            exact_sum_add(&to[a], values[a]);
-}
-
-void statistics_groups_merge(struct statistics_groups *into, const struct statistics_groups *from) {
-    for (size_t g = 0; g < GROUPS; g++) {
-        if (from->realisations[g] == 0)
-            continue;
-        into->realisations[g] += from->realisations[g];
-        statistics_groups_count(into, g, 0, from->counts, from->count + g * from->counts);
-        for (size_t a = g * from->sums; a < (g + 1) * from->sums; a++)
-            exact_sum_merge(&into->sum[a], &from->sum[a]);
-    }
-}
-
-/* --- bytes: of each group its realisations; where it has any, its counts and sums --- */
-
-void statistics_groups_put(struct bytes *bytes, const struct statistics_groups *groups) {
-    for (size_t g = 0; g < GROUPS; g++) {
-        bytes_put_unsigned(bytes, groups->realisations[g]);
-        if (groups->realisations[g] == 0)
-            continue;
-        bytes_put_counts(bytes, groups->counts, groups->count + g * groups->counts);
-        for (size_t a = g * groups->sums; a < (g + 1) * groups->sums; a++)
-            exact_sum_put(bytes, &groups->sum[a]);
-    }
-}
-
-void statistics_groups_get(struct byte_reader *reader, struct statistics_groups *groups) {
-    for (size_t g = 0; g < GROUPS && !reader->failed; g++) {
-        groups->realisations[g] = bytes_get_unsigned(reader);
-        if (groups->realisations[g] == 0)
-            continue;
-        bytes_get_counts(reader, groups->counts, groups->count + g * groups->counts);
-        for (size_t a = g * groups->sums; a < (g + 1) * groups->sums && !reader->failed; a++)
-            exact_sum_get(reader, &groups->sum[a]);
-    }
-}
-
-bool statistics_groups_count_fits(const struct statistics_groups *groups, size_t at, size_t n,
-                                  const uint64_t *count) {
-    for (size_t a = 0; a < n; a++) {
-        fixed_point sum = 0;
-        for (size_t g = 0; g < GROUPS; g++)
-            sum += groups->count[g * groups->counts + at + a];
-        if (sum != count[a])
-            return false;
-    }
-    return true;
-}
-
-bool statistics_groups_sum_fits(const struct statistics_groups *groups, size_t at, size_t n,
-                                const struct exact_sum *sum) {
-    for (size_t a = 0; a < n; a++) {
-        struct exact_sum all = {0};
-        for (size_t g = 0; g < GROUPS; g++)
-            exact_sum_merge(&all, &groups->sum[g * groups->sums + at + a]);
-        if (all.total != sum[a].total || all.lost != sum[a].lost)
-            return false;
-    }
-    return true;
-}
-
-bool statistics_groups_realisations_fit(const struct statistics_groups *groups,
-                                        uint64_t realisations) {
-    fixed_point sum = 0;
-    for (size_t g = 0; g < GROUPS; g++)
-        sum += groups->realisations[g];
-    return sum == realisations;
-}
-
-struct group_offsets statistics_group_offsets(const struct statistics_case *one_case) {
-    size_t heights = cells_of(&one_case->height), curvatures = cells_of(&one_case->equivalent);
-    struct group_offsets out = {.counts = heights};
-    for (size_t side = 0; side < statistics_case_sides(one_case); side++) {
-        out.summit[side] = out.counts;
-        out.equivalent[side] = out.counts + heights;
-        out.counts += heights + curvatures;
-        out.curvature[side] = out.sums;
-        out.sums += heights;
-    }
-    return out;
-}
-
 int statistics_tally_create(struct statistics_tally *out, const struct statistics_case *one_case,
                             const struct moments *moments, const struct spectra_sizes *sizes,
                             struct error *err) {
     size_t heights = cells_of(&one_case->height);
-    double third = one_case->surface.dimension == 2 ? sqrt(3) : 1;
     struct group_offsets offset = statistics_group_offsets(one_case);
-    *out = (struct statistics_tally){
-        .one_case = one_case,
-        .scales = {.height = 1 / sqrt(moments->m0), .curvature = -third / sqrt(moments->m4)},
-        .sides = statistics_case_sides(one_case)};
+    *out = (struct statistics_tally){.one_case = one_case,
+                                     .scales = summit_scales(one_case, moments),
+                                     .sides = statistics_case_sides(one_case)};
     int status = summit_counts_create(&out->counts, one_case, err);
     if (status == 0)
         status = tally_create(&out->height, heights, heights, err);
@@ -342,13 +185,8 @@ void statistics_tally_add(struct statistics_tally *tally, uint64_t realisation, 
     for (size_t side = 0; side < tally->sides; side++) {
         struct summit_tally *to = &tally->summits[side];
         summit_tally_add(to, one_case, &tally->scales, &summits[side], counts);
-        statistics_groups_count(&tally->groups, group, offset.summit[side], heights,
-                                counts->height);
-        statistics_groups_count(&tally->groups, group, offset.equivalent[side], to->equivalent.size,
-                                counts->equivalent);
-        statistics_groups_sum(&tally->groups, group, offset.curvature[side], heights,
-                              counts->curvature);
-        summit_counts_zero(counts, to);
+        statistics_groups_side(&tally->groups, one_case, group, side, counts);
+        summit_counts_zero(counts, one_case);
     }
 }
 

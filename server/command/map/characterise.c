@@ -73,16 +73,12 @@ static int draw(const char *path, const char *name, const struct height_map *map
     return output_file_picture(path, &picture, err);
 }
 
-/* A page under a name of another kind, such as .pdf, would not be what it seems. */
+/* A page under a name of another kind would not be what it seems. */
 static int check_report(const char *path, struct error *err) {
-    size_t length = path != NULL ? strlen(path) : 0;
-    if (path == NULL || output_file_is_png(path) ||
-        (length > 4 && strcmp(path + length - 4, ".svg") == 0))
-        return 0;
-    return error_set(err, ERROR_INPUT,
-                     "--report %.200s: allowed are files that end in .svg or .png; --format svg "
-                     "prints the page",
-                     path);
+    int status = path != NULL ? output_file_check_drawn(path, err) : 0;
+    if (status != 0)
+        error_context(err, "--report; --format svg prints the page");
+    return status;
 }
 
 static int report(const char *path, const struct map_figure *figure, struct error *err) {
