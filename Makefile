@@ -157,7 +157,7 @@ check-static: all
 VERSION  := $(shell sed -n 's/^.define RUGO_VERSION "\(.*\)"/\1/p' core/rugo.h)
 SONAME    = librugo.so.$(basename $(VERSION))
 SHARED    = librugo.so.$(VERSION)
-LIBRARY   = $(call objects,$(filter-out core/instrument/%,$(call sources,core)))
+LIBRARY   = $(call objects,$(filter-out core/instrument/% core/nodal/%,$(call sources,core)))
 library: $(addprefix $(BUILD)/,$(SHARED) librugo.a rugo.pc rugo.1 rugo.bash)
 
 $(BUILD)/$(SHARED): $(LIBRARY) core/rugo.map
@@ -296,6 +296,7 @@ run-threads:
 
 # All that .ci/run leaves out, or tries only where its paths changed: an hour and a half on two processors.
 nightly: all
+	-@tests/install-deps "" calculix-ccx ccx
 	$(MAKE) test
 	$(MAKE) lint
 	RUGO_EFFORT=4 $(MAKE) validation

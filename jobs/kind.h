@@ -82,6 +82,35 @@ struct realisation {
     void *stop_context;
 };
 
+enum { KEPT_MODELS_MOST = 8 };
+/* Which steps are computed. */
+struct steps_order {
+    const double *z;   /* on the grid of the case */
+    const char *model; /* NULL: the most complete one, the first of those with a mesh if `meshed` */
+    bool meshed;       /* models without a mesh are refused */
+    size_t load_count; /* 0: all loads of the case */
+    const double *loads; /* p/(E* h'), rising; 0: out of contact */
+    /* Called repeatedly while a load is solved: non-zero stops it with ERROR_STOPPED; may be
+     * NULL. */
+    int (*stop)(void *context);
+    void *stop_context;
+};
+/* Steps of realisations that a case keeps. All arrays are borrowed from the case. */
+struct kept_steps {
+    size_t count, load_count, model_count;
+    const double *realisations; /* whole numbers, rising */
+    const double *loads;        /* as of an order */
+    const char *models[KEPT_MODELS_MOST];
+};
+struct nodal_step; /* core/nodal/nodal_step.h */
+/* Takes the steps one after the other: step number `number` of `count`, from 0. Lengths are in
+ * lambda_s, pressures and stresses in E* h'. What is not 0 ends the loads. */
+struct steps_sink {
+    int (*put)(void *context, const struct nodal_step *step, size_t number, size_t count,
+               struct error *err);
+    void *context;
+};
+
 /* A component of a case that asks for an error, with what is merged of it so far. */
 struct target_component {
     const char *role;
@@ -181,11 +210,12 @@ struct job_kind {
      * without contact. */
     int (*press)(const struct realisation *realisation, double pressure, double *gap,
                  double *pressures, struct error *err);
-    /* Writes the mesh of the case with its solution as a VTU file, for the surface z on the grid of
-     * the case, pressed to p/(E* h') where that is above 0. Lengths in lambda_s, pressures and
-     * stresses in E* h'. Nothing is written on failure. NULL for kinds without meshes. */
-    int (*write_mesh)(const char *path, const void *study, const double *z, double pressure,
-                      struct error *err);
+    /* Presses a surface by one model of the case, on its finest mesh, to rising loads, and puts
+     * each step. NULL for kinds without contact. */
+    int (*press_steps)(const void *study, const struct steps_order *order,
+                       const struct steps_sink *sink, struct error *err);
+    /* Returns which steps of which realisations the case keeps as files. NULL: none. */
+    struct kept_steps (*kept)(const void *study);
     /* Measures a measured surface as the sub-maps of realisations are measured, and adds the
      * results to the object "like" of the study. z is on the grid of a sub-map (like_case.h). Does
      * nothing where the case cuts no sub-maps. NULL for kinds that measure only what like_fit

@@ -6,6 +6,7 @@
 #include "jobs/contact/contact_measure.h"
 #include "jobs/contact/contact_scalars.h"
 #include "jobs/contact/contact_scene.h"
+#include "jobs/contact/contact_steps.h"
 #include "jobs/contact/target/contact_target.h"
 #include "schema/json/field.h"
 #include "schema/json/json.h"
@@ -202,7 +203,7 @@ static int scalar_values(const void *of, const struct realisations *realisations
 /* Returns the block of the first linear model; a half-space without one. */
 static struct block block_of(const struct contact_case *one_case) {
     for (size_t m = 0; m < one_case->model_count; m++)
-        if (one_case->models[m]->write_mesh == NULL)
+        if (one_case->models[m]->block_of == NULL)
             return one_case->blocks[m];
     return (struct block){.model = MODEL_HALFSPACE, .height = INFINITY};
 }
@@ -269,21 +270,6 @@ static int measure_like(const void *one_case, const double *z, cJSON *like, stru
     return put ? status : error_memory(err, 2 * n * sizeof *areas, "contact of a map");
 }
 
-/* Writes the mesh of the first model that has one. */
-static int write_mesh(const char *path, const void *one_case, const double *z, double pressure,
-                      struct error *err) {
-    const struct contact_case *contact = one_case;
-    for (size_t m = 0; m < contact->model_count; m++)
-        if (contact->models[m]->write_mesh != NULL)
-            return contact->models[m]->write_mesh(path, contact, m, z, pressure, err);
-    size_t t = 0;
-    while (CONTACT_MODELS[t] != NULL && CONTACT_MODELS[t]->write_mesh == NULL)
-        t++;
-    return error_set(err, ERROR_INPUT, "--mesh needs \"%s\" among /contact/model",
-                     CONTACT_MODELS[t] != NULL ? contact_model_name(CONTACT_MODELS[t])
-                                               : "a model with a mesh");
-}
-
 /* --- how results are shown: the contact area over the load --- */
 
 static const char *const SCALARS[] = {"kappa", "erf_kappa", NULL};
@@ -348,6 +334,7 @@ const struct job_kind CONTACT_KIND = {
     .point_values = point_values,
     .scalar_values = scalar_values,
     .press = press,
-    .write_mesh = write_mesh,
+    .press_steps = contact_press_steps,
+    .kept = contact_kept_steps,
     .measure_like = measure_like,
 };

@@ -51,6 +51,8 @@ void contact_case_clear(struct contact_case *one_case) {
     free(one_case->pdf_loads);
     free(one_case->like_areas);
     free(one_case->like_gaps);
+    free(one_case->kept);
+    free(one_case->kept_loads);
     *one_case = (struct contact_case){0};
 }
 

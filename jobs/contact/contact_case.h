@@ -13,7 +13,7 @@
 #include "schema/study/fault.h"
 #include "schema/study/parameter.h"
 
-enum { CONTACT_LEVELS_MOST = 8, CONTACT_LOADS_MOST = 1000 };
+enum { CONTACT_LEVELS_MOST = 8, CONTACT_LOADS_MOST = 1000, CONTACT_KEPT_MOST = 1000 };
 
 enum height_unit { HEIGHT_RMS_HEIGHTS, HEIGHT_LENGTHS, HEIGHT_WAVELENGTHS };
 enum area_estimator { AREA_NODES, AREA_EDGES, AREA_PERIMETER, AREA_ESTIMATORS };
@@ -63,6 +63,10 @@ struct contact_case {
     size_t *pdf_loads;    /* owned: loads whose pressures are counted, rising */
     bool pdf_pairs;       /* on all levels, with their differences (contact_densities.h) */
     struct bins pressure; /* of p/(E* h') */
+    size_t kept_count;    /* realisations whose nodes are written */
+    double *kept;         /* owned: their numbers, rising */
+    size_t kept_load_count;
+    double *kept_loads; /* owned: rising, out of the loads; NULL: all of them */
 };
 void contact_case_clear(struct contact_case *one_case);
 

@@ -205,6 +205,28 @@ static int read_pdf(struct contact_case *out, struct values *values, struct erro
     return 0;
 }
 
+/* Reads the realisations whose nodes are written, and the loads of these files. */
+static int read_kept(struct contact_case *out, struct values *values, struct error *err) {
+    static const char realisations[] = "/contact/keep/realisations",
+                      loads[] = "/contact/keep/loads";
+    int status = values_numbers(values, realisations, &out->kept, &out->kept_count, err);
+    if (status == 0)
+        status = values_numbers(values, loads, &out->kept_loads, &out->kept_load_count, err);
+    if (status != 0)
+        return status;
+    check_rising(values, realisations, out->kept_count, out->kept);
+    check_rising(values, loads, out->kept_load_count, out->kept_loads);
+    for (size_t a = 0; a < out->kept_count; a++)
+        if (out->kept[a] != floor(out->kept[a]))
+            values_fault(values, realisations, "%g is no whole number", out->kept[a]);
+    for (size_t a = 0; a < out->kept_load_count && out->load_count > 0; a++)
+        if (load_find(out, out->kept_loads[a]) == out->load_count)
+            values_fault(values, loads, "%g is none of the study's pressures", out->kept_loads[a]);
+    if (out->kept_load_count > 0 && out->kept_count == 0)
+        values_fault(values, loads, "loads of no realisation: give /contact/keep/realisations");
+    return 0;
+}
+
 /* Reads all that needs no surface. */
 static int read_alone(struct contact_case *out, struct asked *asked, struct values *values,
                       struct error *err) {
@@ -217,7 +239,9 @@ static int read_alone(struct contact_case *out, struct asked *asked, struct valu
     int status = read_loads(out, asked, values, err);
     if (status == 0)
         status = read_levels(asked, values, err);
-    return status == 0 ? read_pdf(out, values, err) : status;
+    if (status == 0)
+        status = read_pdf(out, values, err);
+    return status == 0 ? read_kept(out, values, err) : status;
 }
 
 /* --- on the surface --- */
@@ -391,13 +415,13 @@ static void set_levels(struct contact_case *out, const struct asked *asked, stru
         }
 }
 
-/* Checks the layers of a block on one grid, and for a model that meshes them (write_mesh) the
+/* Checks the layers of a block on one grid, and for a model that meshes them (block_of) the
  * nodes; false after a fault. */
 static bool check_mesh(const struct contact_level *level, const struct block *block,
                        const struct contact_model *model, struct values *values) {
     double thickness[LAYERS_MOST];
     size_t layers = block_layers(&level->grid, block, thickness);
-    double nodes = model->write_mesh != NULL ? mesh_nodes_bound(&level->grid, layers) : 0;
+    double nodes = model->block_of != NULL ? mesh_nodes_bound(&level->grid, layers) : 0;
     if (layers == 0)
         values_fault(values, "/contact/block_height",
                      "the block takes more than %d layers at %g points a shortest wave; take "
@@ -425,7 +449,7 @@ static void check_meshes(const struct contact_case *one_case, struct values *val
  * before the scale of the surface is computed, which sums over all of its waves. */
 static bool faces_fit(const struct contact_case *one_case, struct values *values) {
     for (size_t m = 0; m < one_case->model_count; m++)
-        for (size_t l = 0; one_case->models[m]->write_mesh != NULL && l < one_case->level_count;
+        for (size_t l = 0; one_case->models[m]->block_of != NULL && l < one_case->level_count;
              l++) {
             const struct grid *grid = &one_case->levels[l].grid;
             if (mesh_nodes_bound(grid, 1) <= MESH_NODES_MOST)

@@ -13,6 +13,7 @@ static const struct choice WEIGHTINGS[] = {{"standard", GAP_STANDARD}, {"dual", 
 static const struct choice COMPANION_CHOICES[] = {
     {"probed", COMPANION_PROBED}, {"none", COMPANION_NONE}, {0}};
 static const struct choice PAIRS[] = {{"counted", PAIRS_COUNTED}, {"omitted", PAIRS_OMITTED}, {0}};
+static const struct choice KEPT_LOADS[] = {{"all", 0}, {0}};
 static const struct choice ESTIMATORS[] = {
     {"nodes", AREA_NODES}, {"edges", AREA_EDGES}, {"perimeter", AREA_PERIMETER}, {0}};
 
@@ -251,5 +252,30 @@ static const struct parameter ROWS[] = {
      .help = "differences of the densities of pressure between models and levels, realisation by "
              "realisation: counted, and the densities have the error of the model; or omitted "
              "(unless given)"},
+    {.path = "/contact/keep/realisations",
+     .type = PARAMETER_NUMBERS,
+     .minimum = 0,
+     .maximum = STUDY_REALISATIONS_MOST - 1,
+     .items_low = 1,
+     .items_high = CONTACT_KEPT_MOST,
+     .target_refusal = "a target has realisations of many cells and meshes, and none of its own",
+     .later = true,
+     .example_json = "[0, 1]",
+     .help =
+         "rising numbers of realisations whose nodes rugo run --out writes, by each model on the "
+         "finest mesh"},
+    {.path = "/contact/keep/loads",
+     .type = PARAMETER_NUMBERS,
+     .choices = KEPT_LOADS,
+     .minimum = 0,
+     .maximum = 1e6,
+     .above_minimum = true,
+     .items_low = 1,
+     .items_high = CONTACT_LOADS_MOST,
+     .unit = "E* h'",
+     .target_refusal = "a target has realisations of many cells and meshes, and none of its own",
+     .later = true,
+     .example_json = "[0.1, 0.3]",
+     .help = "rising loads, out of the study's, of these files; all of them unless given"},
 };
 const struct parameter_table CONTACT_PARAMETERS = {"contact", ROWS, sizeof ROWS / sizeof *ROWS};

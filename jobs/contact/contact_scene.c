@@ -3,6 +3,7 @@
 #include "core/contact/pressures.h"
 #include "core/cost.h"
 #include "jobs/contact/contact_measure.h"
+#include "jobs/contact/contact_steps.h"
 #include "jobs/publishing_cost.h"
 #include <math.h>
 #include <stdlib.h>
@@ -145,13 +146,6 @@ static int count_pressures(struct contact_scene *scene, size_t model, size_t lev
     return 0;
 }
 
-static struct contact_pressed not_pressed(void) {
-    struct contact_pressed out = {.stretch = 1, .open_stretch = NAN, .reached = NAN};
-    for (size_t a = 0; a < MODEL_MEASURES_MOST; a++)
-        out.own[a] = NAN;
-    return out;
-}
-
 /* Solves all loads of one model and level in rising order, each from the last. */
 static int solve_loads(struct contact_scene *scene, size_t m, size_t level,
                        struct contact_tally *tally, const struct contact_stopper *stopper,
@@ -164,7 +158,7 @@ static int solve_loads(struct contact_scene *scene, size_t m, size_t level,
     int status = model->begin(solver, scene->z, stopper->stop, stopper->context,
                               finest ? tally->facts[m] : unused, err);
     for (size_t k = 0; k < one_case->load_count && status == 0; k++) {
-        struct contact_pressed pressed = not_pressed();
+        struct contact_pressed pressed = contact_not_pressed();
         if (stopper->stop(stopper->context) != 0)
             return error_set(err, ERROR_STOPPED, "stopped at load %zu of %zu", k,
                              one_case->load_count);
@@ -297,6 +291,7 @@ void contact_case_estimate(const struct contact_case *one_case, struct study_cos
                         companions_bytes(one_case) + contact_tally_bytes(one_case) + PROCESS_BYTES;
     out->seconds = 1e-4 + 1e-9 * cost_generation(&surface->options, &surface->grid) *
                               (double)grid_points(&surface->grid);
+    out->kept = contact_kept_cost(one_case, out->seconds);
     for (size_t l = 0; l < one_case->level_count; l++)
         for (size_t m = 0; m < one_case->model_count; m++)
             out->seconds += one_case->models[m]->seconds(one_case, m, &one_case->levels[l].grid);

@@ -272,9 +272,7 @@ static void empty_row(const struct map_press *press, double pressure, struct pre
 
 int map_press_load(struct map_press *press, double pressure, struct press_row *row,
                    struct error *err) {
-    struct contact_pressed pressed = {.stretch = 1, .open_stretch = NAN, .reached = NAN};
-    for (size_t m = 0; m < MODEL_MEASURES_MOST; m++)
-        pressed.own[m] = NAN;
+    struct contact_pressed pressed = contact_not_pressed();
     empty_row(press, pressure, row);
     int status = model_of(press)->press(press->solver, pressure, &pressed, err);
     if (status != 0)
@@ -293,8 +291,24 @@ int map_press_loads(struct map_press *press, const double *z, size_t loads, cons
     for (size_t l = 0; l < loads; l++) {
         if (status == 0)
             status = map_press_load(press, pressures[l], &series->rows[l], err);
+        if (status == 0 && press->watch != NULL)
+            status = press->watch->solved(press->watch->context, press, l, err);
         if (status != 0)
             empty_row(press, pressures[l], &series->rows[l]);
     }
     return status;
+}
+
+int map_press_step(const struct map_press *press, const double *z, double load, double modulus,
+                   struct contact_step *out, struct error *err) {
+    const struct contact_step_order order = {.model = model_of(press),
+                                             .solver = press->solver,
+                                             .grid = press->map,
+                                             .row = press->grid.nx,
+                                             .z = z,
+                                             .load = load,
+                                             .unit = modulus > 0 ? 1 / modulus : press->slope,
+                                             .unit_name = modulus > 0 ? "Pa" : "E* h'",
+                                             .lengths = "the map's unit"};
+    return contact_step_fill(out, &order, &press->state, err);
 }

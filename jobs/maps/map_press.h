@@ -11,6 +11,7 @@
 #include "core/map/height_map.h"
 #include "jobs/contact/contact_case.h"
 #include "jobs/contact/contact_measure.h"
+#include "jobs/contact/contact_steps.h"
 #include "schema/result/result.h"
 
 enum press_boundary { PRESS_OPEN, PRESS_MIRRORED, PRESS_PERIODIC };
@@ -66,6 +67,13 @@ struct press_series {
     struct press_row *rows; /* borrowed: room for all loads */
 };
 
+struct map_press;
+/* Is called after each load of map_press_loads, which ends where it fails. */
+struct press_watch {
+    int (*solved)(void *context, const struct map_press *press, size_t load, struct error *err);
+    void *context;
+};
+
 struct map_press {
     struct grid map;      /* as it was measured */
     struct grid grid;     /* as it is pressed: mirrored 2nx x 2ny */
@@ -79,6 +87,7 @@ struct map_press {
     struct contact_solver *solver;
     struct area_workspace *areas;
     struct patch_finder *patches;
+    const struct press_watch *watch; /* borrowed; NULL: none */
     struct counted_asperities *asperities; /* of the map as it is pressed; NULL: a profile */
 };
 
@@ -103,5 +112,12 @@ int map_press_load(struct map_press *press, double pressure, struct press_row *r
  * have no values. */
 int map_press_loads(struct map_press *press, const double *z, size_t loads, const double *pressures,
                     struct press_series *series, struct error *err);
+
+/* What the last load left at the nodes of the map as it was measured, the first of its mirror
+ * images. z: heights as they are pressed; load: as it was given; modulus: E* in Pa, pressures are
+ * then in Pa, else over E* h'; 0: not known. *out, {0} at first, is cleared by the caller in any
+ * case. */
+int map_press_step(const struct map_press *press, const double *z, double load, double modulus,
+                   struct contact_step *out, struct error *err);
 
 #endif

@@ -125,7 +125,9 @@ static cJSON *value_schema(const struct parameter *parameter) {
     case PARAMETER_CHOICE:
         return choice_schema(parameter);
     case PARAMETER_NUMBERS:
-        return numbers_schema(parameter);
+        return parameter->choices == NULL
+                   ? numbers_schema(parameter)
+                   : either(numbers_schema(parameter), choice_schema(parameter));
     case PARAMETER_CHOICES:
         return choices_schema(parameter);
     case PARAMETER_MEASURE:

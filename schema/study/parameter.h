@@ -13,7 +13,8 @@ enum parameter_type {
     PARAMETER_TEXT,    /* a string of minimum..maximum characters, none of control */
     PARAMETER_SEED,    /* an integer of minimum..maximum, or any of 64 bits as a decimal string */
     PARAMETER_CHOICE,  /* a string out of choices */
-    PARAMETER_NUMBERS, /* an array of items_low..items_high numbers: one value, e.g. bins */
+    PARAMETER_NUMBERS, /* an array of items_low..items_high numbers: one value, e.g. bins; or, where
+                          there are choices, a string out of them */
     PARAMETER_CHOICES, /* an array of different strings out of choices, or one alone: one value */
     PARAMETER_MEASURE  /* a string out of choices, or a number with its unit: {"lengths": 1.5} */
 };

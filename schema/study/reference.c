@@ -22,7 +22,8 @@ static void describe_type(const struct parameter *row, char *text, size_t size) 
     if (row->type == PARAMETER_NUMBERS && row->items_low == row->items_high)
         snprintf(text, size, "%zu numbers", row->items_low);
     else if (row->type == PARAMETER_NUMBERS)
-        snprintf(text, size, "%zu to %zu numbers", row->items_low, row->items_high);
+        snprintf(text, size, "%s%zu to %zu numbers", row->choices != NULL ? "a name, or " : "",
+                 row->items_low, row->items_high);
     else if (row->type == PARAMETER_MEASURE)
         snprintf(text, size, "a name, or a number with its unit");
     else
@@ -37,6 +38,9 @@ static void describe_range(const struct parameter *row, char *text, size_t size)
         value_choices(row->choices, names, sizeof names);
         value_choices(row->units, units, sizeof units);
         snprintf(text, size, "%s; %s of %s", names, range, units);
+    } else if (row->type == PARAMETER_NUMBERS && row->choices != NULL) {
+        value_choices(row->choices, names, sizeof names);
+        snprintf(text, size, "%s; %s", names, range);
     } else if (row->choices != NULL) {
         value_choices(row->choices, text, size);
     } else if (row->type == PARAMETER_TEXT) {

@@ -17,6 +17,14 @@ extern const struct choice STUDY_RANDOM[];
 uint64_t study_sequence(enum study_random random, uint64_t case_number);
 
 /* The cost of a case, estimated before anything ran. */
+/* What a case keeps of its realisations beside its results, as files of `rugo run --out`. */
+struct study_kept {
+    const char *path; /* static: of the parameter that names the realisations; NULL: none */
+    uint64_t past;    /* number behind the last of them */
+    double seconds;   /* CPU seconds of all of them on a 3 GHz core */
+    double bytes;     /* of the files, about */
+};
+
 struct study_cost {
     size_t nx, ny;         /* grid of one realisation (the finest) */
     double memory_bytes;   /* peak of one worker thread; of a kind: without result_bytes */
@@ -33,6 +41,7 @@ struct study_cost {
     /* Of surfaces: what was solved for nayak_alpha, and what heights that are not Gaussian have;
      * else 0. */
     double wavelength_ratio, hurst, skewness, kurtosis;
+    struct study_kept kept;
 };
 
 struct study_case;

@@ -221,6 +221,11 @@ static int check_case(const struct study_kind *kind, struct study_case *one, dou
                   "%.3g GiB on this machine",
                   one->cost.memory_bytes / 0x1p30, one->cost.nx, one->cost.ny,
                   memory_limit / 0x1p30);
+    if (status == 0 && one->realisations > 0 && one->cost.kept.past > one->realisations)
+        fault_add(&found, one->cost.kept.path,
+                  "the study has no realisation %llu: cases have %llu, from 0",
+                  (unsigned long long)one->cost.kept.past - 1,
+                  (unsigned long long)one->realisations);
     merge_faults(faults, &found);
     fault_list_clear(&found);
     return status;

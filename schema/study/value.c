@@ -197,14 +197,21 @@ static bool numbers_check(const struct parameter *parameter, const cJSON *value,
     size_t count = (size_t)cJSON_GetArraySize(value);
     bool good =
         cJSON_IsArray(value) && count >= parameter->items_low && count <= parameter->items_high;
+    if (parameter->choices != NULL &&
+        choice_find(parameter->choices, cJSON_GetStringValue(value)) != NULL)
+        return true;
     if (!good) {
-        char what[80];
+        char what[80], allowed[128], either[240];
         if (parameter->items_low == parameter->items_high)
             snprintf(what, sizeof what, "an array of %zu numbers", parameter->items_low);
         else
             snprintf(what, sizeof what, "an array of %zu to %zu numbers", parameter->items_low,
                      parameter->items_high);
-        return is_not(value, pointer, faults, what);
+        if (parameter->choices == NULL)
+            return is_not(value, pointer, faults, what);
+        value_choices(parameter->choices, allowed, sizeof allowed);
+        snprintf(either, sizeof either, "%s, nor one of %s", what, allowed);
+        return is_not(value, pointer, faults, either);
     }
     size_t i = 0;
     for (const cJSON *item = value->child; item != NULL; item = item->next, i++) {

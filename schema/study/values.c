@@ -174,7 +174,7 @@ int values_numbers(struct values *values, const char *path, double **out, size_t
     const cJSON *value;
     *out = NULL;
     *n = 0;
-    if (find(values, path, PARAMETER_NUMBERS, &value) == NULL || value == NULL)
+    if (find(values, path, PARAMETER_NUMBERS, &value) == NULL || !cJSON_IsArray(value))
         return 0;
     size_t count = (size_t)cJSON_GetArraySize(value);
     double *numbers = array_create(count, sizeof *numbers);

@@ -35,8 +35,8 @@ size_t values_choices(struct values *values, const char *path, int *out);
 /* Returns the number of a measure, and in *unit what its unit stands for. For one of the choices it
  * returns INFINITY, and in *unit what the choice stands for; NaN where absent. */
 double values_measure(struct values *values, const char *path, int *unit);
-/* Returns the numbers of an array in *out (owned by the caller; NULL where absent) and *n. Fails
- * with ERROR_MEMORY alone. */
+/* Returns the numbers of an array in *out (owned by the caller; NULL where absent, or one of the
+ * choices) and *n. Fails with ERROR_MEMORY alone. */
 int values_numbers(struct values *values, const char *path, double **out, size_t *n,
                    struct error *err);
 /* Reads [low, high, count] of a histogram of at most `most` bins. Where they do not form bins, adds

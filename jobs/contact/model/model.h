@@ -8,6 +8,8 @@
 #define RUGO_JOBS_CONTACT_MODEL_MODEL_H
 
 #include "core/contact/contact.h"
+#include "core/full/material.h"
+#include "core/full/mesh.h"
 #include "jobs/contact/measure.h"
 #include "schema/study/values.h"
 #include <math.h>
@@ -32,6 +34,21 @@ struct contact_pressed {
 struct model_curve {
     const char *quantity, *y_label;
     size_t measure; /* number among its own */
+};
+
+/* Returns what there is before a load is solved: nothing is known of it. */
+static inline struct contact_pressed contact_not_pressed(void) {
+    struct contact_pressed out = {.stretch = 1, .open_stretch = NAN, .reached = NAN};
+    for (size_t a = 0; a < MODEL_MEASURES_MOST; a++)
+        out.own[a] = NAN;
+    return out;
+}
+
+/* The meshed block of a solver, which is valid until its next call. */
+struct contact_block {
+    const struct mesh *mesh;
+    const double *u; /* [node*dimension + k], the grid's unit */
+    struct material material;
 };
 
 /* What scalars of the model's own are computed from: a realisation on the finest level. */
@@ -105,10 +122,12 @@ struct contact_model {
     /* Measures the model's own scalars of a realisation, NaN before the call. NULL if it has
      * none. */
     void (*measure)(const struct model_values *values, double *scalars);
-    /* Writes the block meshed on the surface z of the case's own grid, pressed to p/(E* h') where
-     * that is above 0, as a VTU file. NULL if the model has no mesh. */
-    int (*write_mesh)(const char *path, const struct contact_case *one_case, size_t model,
-                      const double *z, double pressure, struct error *err);
+    /* Returns the nodes of the mesh on a grid, about, 0 where it cannot be meshed. NULL as the
+     * next. */
+    double (*nodes)(const struct contact_case *one_case, size_t model, const struct grid *grid);
+    /* Returns the block as it is after begin and under the last load. NULL if the model has no
+     * mesh. */
+    struct contact_block (*block_of)(struct contact_solver *solver);
 };
 
 /* All models, NULL at the end, and the choices of /contact/model, whose values are their positions.

@@ -1,13 +1,9 @@
 /* The model "full": finite elements on the rough geometry itself (core/full). */
 #include "core/cost.h"
 #include "core/full/full.h"
-#include "core/full/mesh_file.h"
 #include "jobs/contact/contact_case.h"
-#include <errno.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 static const double ROUNDING = 1e-9; /* relative */
 /* Elements may have edges of slope 6 (core/full/mesh.c), which the steepest ones reach then. */
@@ -138,6 +134,7 @@ static double seconds(const struct contact_case *one_case, size_t model, const s
 
 struct contact_solver {
     struct full *full;
+    struct material material;
     double transforms; /* of the same cost as its work */
 };
 
@@ -156,6 +153,7 @@ static int create(struct contact_solver **out, const struct contact_case *one_ca
     if (solver == NULL)
         return error_memory(err, sizeof *solver, "a contact solver");
     solver->transforms = cost_full_transforms(grid);
+    solver->material = material_of(one_case->blocks[model].poisson, one_case->kinematics);
     int status = full_create(&solver->full, grid, &one_case->blocks[model], &options, err);
     if (status != 0)
         destroy(&solver);
@@ -213,70 +211,16 @@ static void measure(const struct model_values *values, double *out) {
     out[SCALAR_QUALITY] = values->facts[FACT_QUALITY];
 }
 
-/* --- the block on its true geometry, as a file for other programs --- */
-
-struct meshed {
-    struct full *full;
-    double *z; /* on the finest level */
-};
-
-static void meshed_clear(struct meshed *meshed) {
-    full_destroy(&meshed->full);
-    free(meshed->z);
+static double nodes(const struct contact_case *one_case, size_t model, const struct grid *grid) {
+    struct full_options options = full_model_options(one_case, grid);
+    double dimension = grid_is_profile(grid) ? 2 : 3;
+    return (double)full_degrees_of_freedom(grid, &one_case->blocks[model], &options) / dimension;
 }
 
-/* Makes the block on the surface z. Leaves what was made in *out, also on failure. */
-static int meshed_open(struct meshed *out, const struct contact_case *one_case, size_t model,
-                       const double *z, struct error *err) {
-    const struct contact_level *finest = contact_case_finest(one_case);
-    struct full_options options = full_model_options(one_case, &finest->grid);
-    size_t points = grid_points(&finest->grid);
-    *out = (struct meshed){.z = array_create(points, sizeof *out->z)};
-    if (out->z == NULL)
-        return error_memory(err, points * sizeof *out->z, "a surface");
-    struct moments moments;
-    int status =
-        spectrum_moments(&one_case->surface.spectrum, &one_case->surface.grid, &moments, err);
-    if (status == 0)
-        status =
-            contact_level_sample(finest, &one_case->surface, moments.rms_height, z, out->z, err);
-    if (status == 0)
-        status = full_create(&out->full, &finest->grid, &one_case->blocks[model], &options, err);
-    return status != 0 ? status : full_begin(out->full, out->z, err);
-}
-
-static int write_file(const char *path, const char *title, const struct mesh *mesh,
-                      const struct mesh_step *step, struct error *err) {
-    FILE *file = fopen(path, "wb");
-    if (file == NULL)
-        return error_set(err, ERROR_SYSTEM, "cannot open %s: %s", path, strerror(errno));
-    int status = mesh_file_write(file, title, mesh, step, err);
-    if (fclose(file) != 0 && status == 0)
-        status = error_set(err, ERROR_SYSTEM, "cannot write %s: %s", path, strerror(errno));
-    return status;
-}
-
-static int full_write_mesh(const char *path, const struct contact_case *one_case, size_t model,
-                           const double *z, double pressure, struct error *err) {
-    struct meshed meshed;
-    struct mesh_step step = {0};
-    char title[160] = "lengths in lambda_s";
-    int status = meshed_open(&meshed, one_case, model, z, err);
-    if (status == 0 && pressure > 0) {
-        status = full_press(meshed.full, pressure * one_case->rms_slope, &step.face, NULL, err);
-        step.material = material_of(one_case->blocks[model].poisson, one_case->kinematics);
-        step.unit = one_case->rms_slope;
-        snprintf(title, sizeof title,
-                 "lengths in lambda_s; pressure and stress in E* h'; mean pressure %.9g; "
-                 "kinematics %s",
-                 pressure, choice_name(KINEMATICS_CHOICES, (int)one_case->kinematics));
-    }
-    if (status == 0) {
-        step.u = full_displacement(meshed.full);
-        status = write_file(path, title, full_mesh(meshed.full), pressure > 0 ? &step : NULL, err);
-    }
-    meshed_clear(&meshed);
-    return status;
+static struct contact_block block_of(struct contact_solver *solver) {
+    return (struct contact_block){.mesh = full_mesh(solver->full),
+                                  .u = full_displacement(solver->full),
+                                  .material = solver->material};
 }
 
 const struct contact_model FULL_MODEL = {
@@ -302,5 +246,6 @@ const struct contact_model FULL_MODEL = {
     .begin = begin,
     .press = press,
     .measure = measure,
-    .write_mesh = full_write_mesh,
+    .nodes = nodes,
+    .block_of = block_of,
 };

@@ -1,40 +1,41 @@
-/* rugo generate STUDY.json: one surface of a study, or a block meshed on it, to look at or to use
- * elsewhere. */
+/* rugo generate STUDY.json: surfaces of a study, or a block meshed on one and pressed, to look at
+ * or to use elsewhere. */
 #include "core/map/height_map_file.h"
 #include "jobs/kind.h"
 #include "jobs/surface/realisation_map.h"
 #include "jobs/surface/surface_case.h"
 #include "server/command/command.h"
+#include "server/command/map/generate_steps.h"
 #include "server/command/output_file.h"
 #include "server/show/map/map_report.h"
 #include "server/show/plot/plot_map.h"
-#include <math.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 struct generate_options {
     const char *output;     /* NULL: standard output */
     const char **overrides; /* of --set */
-    int64_t case_number, realisation;
+    int64_t case_number;
+    const char *realisations; /* "3" or "0..19" */
     const char *format;
     const char *picture; /* NULL: none */
-    const char *mesh;    /* NULL: the surface alone */
-    double pressure;     /* p/(E* h') on the mesh; 0: not pressed */
+    struct step_words steps;
 };
 #define AT(member) offsetof(struct generate_options, member)
 static const struct option_row OPTIONS[] = {
     {"case", 0, OPTION_INDEX, 0, 0, AT(case_number), "K", "0", "of this case"},
-    {"realisation", 0, OPTION_INDEX, 0, 0, AT(realisation), "R", "0", "this realisation"},
+    {"realisation", 0, OPTION_TEXT, 0, 0, AT(realisations), "R|FIRST..LAST", "0",
+     "this realisation, or all from one to another, each into a file of its own in -o DIR/"},
     {"format", 0, OPTION_TEXT, 0, 0, AT(format), "npy|csv|xyz", NULL,
      "of the height map (that of the file's name, or npy)"},
-    {"output", 'o', OPTION_TEXT, 0, 0, AT(output), "FILE", NULL, "write the height map there"},
+    {"output", 'o', OPTION_TEXT, 0, 0, AT(output), "FILE|DIR/", NULL,
+     "write the height map there; into a folder as realisation-R.npy"},
     {"picture", 0, OPTION_TEXT, 0, 0, AT(picture), "FILE.svg|FILE.png", NULL,
      "draw the surface there: its summits marked, or a pixel a point"},
-    {"mesh", 0, OPTION_TEXT, 0, 0, AT(mesh), "FILE.vtu", NULL,
-     "write the block of the model full, meshed on the surface"},
-    {"pressure", 0, OPTION_NUMBER, 0, 0, AT(pressure), "P", NULL,
-     "the mesh pressed to p/(E* h'), with displacement, pressure, stress"},
+    STEP_OPTION_ROWS(struct generate_options, steps),
     {"set", 0, OPTION_LIST, 0, 0, AT(overrides), "PATH=VALUE", NULL, SET_HELP},
     {0}};
 
@@ -42,12 +43,17 @@ static const struct option_row OPTIONS[] = {
 struct generate_order {
     const struct generate_options *options;
     const char *study, *output; /* output NULL: standard output */
+    uint64_t first, last;       /* realisations */
     enum height_map_format format;
 };
 
+static bool is_folder(const char *path) {
+    return path != NULL && path[0] != '\0' && path[strlen(path) - 1] == '/';
+}
+
 /* A mesh or a picture takes the place of a surface on standard output. */
 static bool writes_surface(const struct generate_order *order) {
-    return (order->options->mesh == NULL && order->options->picture == NULL) ||
+    return (!step_words_ask(&order->options->steps) && order->options->picture == NULL) ||
            order->output != NULL;
 }
 
@@ -71,33 +77,83 @@ static int choose_format(struct generate_order *order) {
     return 0;
 }
 
+/* Reads a whole number from 0 of up to 15 digits; *text goes behind it. */
+static bool read_index(const char **text, uint64_t *out) {
+    size_t digits = strspn(*text, "0123456789");
+    if (digits == 0 || digits > 15)
+        return false;
+    *out = strtoull(*text, NULL, 10);
+    *text += digits;
+    return true;
+}
+
+static int read_realisations(struct generate_order *order) {
+    const char *given = order->options->realisations, *at = given;
+    bool good = read_index(&at, &order->first);
+    order->last = order->first;
+    if (good && strncmp(at, "..", 2) == 0) {
+        at += 2;
+        good = read_index(&at, &order->last) && order->last >= order->first;
+    }
+    if (!good || *at != '\0')
+        return usage_error("generate",
+                           "--realisation %.40s: neither a whole number from 0 nor a range such "
+                           "as 0..19",
+                           given);
+    if (order->first == order->last)
+        return 0;
+    if (!is_folder(order->output))
+        return usage_error("generate", "several realisations need a folder: -o DIR/");
+    if (step_words_ask(&order->options->steps) || order->options->picture != NULL)
+        return usage_error("generate",
+                           "--picture, --mesh, --steps and --nodes are of one realisation");
+    return 0;
+}
+
 static int read_order(struct generate_order *order, const struct generate_options *options,
                       const char *study) {
     *order = (struct generate_order){.options = options, .study = study, .output = options->output};
     if (order->output != NULL && strcmp(order->output, "-") == 0)
         order->output = NULL;
-    if (options->mesh == NULL && options->pressure > 0)
-        return usage_error("generate", "--pressure belongs to --mesh FILE");
-    return choose_format(order);
+    int status = step_words_check(&options->steps);
+    if (status == 0)
+        status = read_realisations(order);
+    return status == 0 ? choose_format(order) : status;
 }
 
-static int write_output(const struct generate_order *order, const struct grid *grid,
-                        const double *z, struct error *err) {
+/* Writes a surface into a file. */
+static int write_file(const struct generate_order *order, const char *path, const struct grid *grid,
+                      const double *z, struct error *err) {
     FILE *file;
-    if (order->output == NULL)
-        return height_map_write(stdout, order->format, grid, z, err);
-    int status = output_file_open(&file, order->output, err);
+    int status = output_file_open(&file, path, err);
     if (status != 0)
         return status;
     status = height_map_write(file, order->format, grid, z, err);
-    return output_file_close(file, order->output, status, err);
+    return output_file_close(file, path, status, err);
+}
+
+static int write_output(const struct generate_order *order, uint64_t realisation,
+                        const struct grid *grid, const double *z, struct error *err) {
+    if (order->output == NULL)
+        return height_map_write(stdout, order->format, grid, z, err);
+    if (!is_folder(order->output))
+        return write_file(order, order->output, grid, z, err);
+    size_t size = strlen(order->output) + 64; /* "realisation-", 15 digits, and an ending */
+    char *path = array_create(size, 1);
+    if (path == NULL)
+        return error_memory(err, size, "a path");
+    snprintf(path, size, "%srealisation-%llu.%s", order->output, (unsigned long long)realisation,
+             HEIGHT_MAP_NAMES[order->format]);
+    int status = write_file(order, path, grid, z, err);
+    free(path);
+    return status;
 }
 
 static int write_picture(const struct generate_order *order, const struct study *study,
                          const struct grid *grid, const double *z, struct error *err) {
     char subject[80];
-    snprintf(subject, sizeof subject, "case %lld, realisation %lld",
-             (long long)order->options->case_number, (long long)order->options->realisation);
+    snprintf(subject, sizeof subject, "case %lld, realisation %llu",
+             (long long)order->options->case_number, (unsigned long long)order->first);
     const struct map_picture picture = {.name = study->name,
                                         .subject = subject,
                                         .x_label = "x/lambda_s",
@@ -137,54 +193,49 @@ static int characterise(const struct generate_order *order, const struct surface
     return 0;
 }
 
-static int write_case_mesh(const struct generate_order *order, const struct job_kind *kind,
-                           const cJSON *parameters, const double *z, struct error *err) {
-    void *study = NULL;
-    int status = kind_case_create(&study, kind, parameters, NULL, err);
+/* Makes one realisation, and writes what is asked of it. */
+static int generate_one(const struct generate_order *order, const struct study *study,
+                        const struct surface_case *surface, uint64_t realisation,
+                        struct error *err) {
+    struct surface_report report = {0};
+    const size_t case_number = (size_t)order->options->case_number;
+    const struct random_key key = {study->seed, study_sequence(study->random, case_number),
+                                   realisation};
+    double *z = NULL;
+    int status = realisation_surface(surface, key, &z, &report, err);
+    if (status == 0 && step_words_ask(&order->options->steps))
+        status = generate_steps(&order->options->steps, study, case_number, z, err);
+    if (status == 0 && order->options->picture != NULL)
+        status = write_picture(order, study, &surface->grid, z, err);
+    if (status == 0 && writes_surface(order))
+        status = write_output(order, realisation, &surface->grid, z, err);
+    if (status == 0 && order->first < order->last)
+        printf("realisation %llu\n", (unsigned long long)realisation);
     if (status == 0)
-        status = kind->write_mesh(order->options->mesh, study, z, order->options->pressure, err);
-    kind_case_destroy(kind, &study);
+        status = characterise(order, surface, &report, z, err);
+    free(z);
     return status;
 }
 
-static int write_mesh(const struct generate_order *order, const struct study *study,
-                      const double *z, struct error *err) {
-    const struct job_kind *kind = kind_of(study->kind);
-    size_t other = 0;
-    if (kind->write_mesh != NULL)
-        return write_case_mesh(order, kind, study->cases[order->options->case_number].parameters, z,
-                               err);
-    while (JOB_KINDS[other] != NULL && kind_of(JOB_KINDS[other])->write_mesh == NULL)
-        other++;
-    return error_set(err, ERROR_INPUT, "--mesh needs a study of kind %s, and this is %s",
-                     JOB_KINDS[other] != NULL ? JOB_KINDS[other]->name : "with meshes",
-                     study->kind->name);
+static int make_folder(const struct generate_order *order, struct error *err) {
+    if (!is_folder(order->output) || mkdir(order->output, 0777) == 0 || errno == EEXIST)
+        return 0;
+    return error_set(err, ERROR_SYSTEM, "cannot make %s: %s", order->output, strerror(errno));
 }
 
 static int generate(const struct generate_order *order, const struct study *study,
                     struct error *err) {
     struct surface_case surface;
-    struct surface_report report = {0};
     const uint64_t case_number = (uint64_t)order->options->case_number;
-    const struct random_key key = {study->seed, study_sequence(study->random, case_number),
-                                   (uint64_t)order->options->realisation};
     if (case_number >= study->case_count)
         return error_set(err, ERROR_INPUT, "there is no case %lld: the study has %zu",
                          (long long)order->options->case_number, study->case_count);
     int status = surface_case_read(&surface, study->cases[case_number].parameters, NULL, err);
     if (status != 0)
         return status;
-    double *z = NULL;
-    status = realisation_surface(&surface, key, &z, &report, err);
-    if (status == 0 && order->options->mesh != NULL)
-        status = write_mesh(order, study, z, err);
-    if (status == 0 && order->options->picture != NULL)
-        status = write_picture(order, study, &surface.grid, z, err);
-    if (status == 0 && writes_surface(order))
-        status = write_output(order, &surface.grid, z, err);
-    if (status == 0)
-        status = characterise(order, &surface, &report, z, err);
-    free(z);
+    status = make_folder(order, err);
+    for (uint64_t r = order->first; r <= order->last && status == 0; r++)
+        status = generate_one(order, study, &surface, r, err);
     surface_case_clear(&surface);
     return status;
 }

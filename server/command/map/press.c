@@ -1,4 +1,5 @@
 /* rugo press FILE: the contact of a height map in a file with a rigid flat. */
+#include "core/nodal/step_folder.h"
 #include "jobs/maps/map_press_curves.h"
 #include "jobs/maps/map_press_error.h"
 #include "schema/result/csv.h"
@@ -9,7 +10,6 @@
 #include "server/command/map/map_output.h"
 #include "server/command/map/press_loads.h"
 #include "server/command/output_file.h"
-#include "server/show/map/map_vtu.h"
 #include "server/show/map/press_print.h"
 #include <stdlib.h>
 #include <string.h>
@@ -18,37 +18,18 @@
  * one npy. */
 struct press_paths {
     const char *pressures, *gap, *contact;
-    const char *mesh; /* VTU of the surface with all three */
+    const char *mesh;  /* VTU of the surface with all three */
+    const char *steps; /* folder of all loads */
+    const char *nodes; /* table of all loads */
 };
-
-/* The fields over the map as it was measured, the first of its mirror images. */
-enum drawn_field { DRAWN_HEIGHT, DRAWN_PRESSURE, DRAWN_GAP, DRAWN_CONTACT, DRAWN_FIELDS };
-struct fields {
-    const struct map_press *press;
-    const double *z;
-    double unit;    /* of pressures, over E* */
-    double *values; /* scratch: DRAWN_FIELDS maps, one after the other */
-};
-
-static void fill(struct fields *fields) {
-    const struct map_press *press = fields->press;
-    const struct contact_state *state = &press->state;
-    size_t n = grid_points(&press->map), nx = press->map.nx;
-    for (size_t j = 0; j < press->map.ny; j++)
-        for (size_t i = 0; i < nx; i++) {
-            size_t from = j * press->grid.nx + i, to = j * nx + i;
-            fields->values[DRAWN_HEIGHT * n + to] = fields->z[from];
-            fields->values[DRAWN_PRESSURE * n + to] = state->p[from] * fields->unit;
-            fields->values[DRAWN_GAP * n + to] = state->gap[from];
-            fields->values[DRAWN_CONTACT * n + to] = state->p[from] > 0 ? 1 : 0;
-        }
-}
 
 /* Before anything is computed: ERROR_INPUT for another ending, ERROR_SYSTEM where nothing can be
  * written. */
 static int press_files_check(const struct press_paths *paths, struct error *err) {
     const char *const maps[] = {paths->pressures, paths->gap, paths->contact};
     int status = paths->mesh != NULL ? output_file_check(paths->mesh, err) : 0;
+    if (status == 0 && paths->nodes != NULL)
+        status = output_file_check(paths->nodes, err);
     for (size_t f = 0; f < sizeof maps / sizeof *maps && status == 0; f++)
         if (maps[f] != NULL)
             status = map_output_check(maps[f], err);
@@ -62,55 +43,63 @@ static int write_map(const char *path, const char *name, const struct grid *grid
     return map_output_write(path, &labels, grid, values, err);
 }
 
-static int write_mesh(const char *path, const struct fields *fields, const char *unit_name,
-                      struct error *err) {
-    const struct grid *grid = &fields->press->map;
-    size_t n = grid_points(grid);
-    char title[120];
+static int write_mesh(const char *path, const struct nodal_step *step, struct error *err) {
+    struct nodal_step face = *step;
     FILE *file;
-    const struct map_field list[] = {{"pressure", fields->values + DRAWN_PRESSURE * n},
-                                     {"gap", fields->values + DRAWN_GAP * n},
-                                     {"contact", fields->values + DRAWN_CONTACT * n}};
     int status = output_file_open(&file, path, err);
     if (status != 0)
         return status;
-    snprintf(title, sizeof title, "A pressed map: pressure in %s, lengths as in the map",
-             unit_name);
-    status = map_vtu(file, title, grid, fields->values, sizeof list / sizeof *list, list, err);
+    face.mesh = NULL; /* the surface, whatever the model */
+    status = step_vtu(file, &face, err);
     return output_file_close(file, path, status, err);
+}
+
+/* Writes the files of the last load. */
+static int write_last(const struct press_paths *paths, const struct nodal_step *step,
+                      const char *unit_name, struct error *err) {
+    const char *const list[] = {paths->pressures, paths->gap, paths->contact};
+    const double *const values[] = {step->p, step->gap, step->contact};
+    char pressure[40];
+    const char *const names[] = {pressure, "gap", "contact"};
+    int status = 0;
+    snprintf(pressure, sizeof pressure, "pressure, %s", unit_name);
+    for (size_t f = 0; f < sizeof list / sizeof *list && status == 0; f++)
+        if (list[f] != NULL)
+            status = write_map(list[f], names[f], &step->grid, values[f], err);
+    if (status == 0 && paths->mesh != NULL)
+        status = write_mesh(paths->mesh, step, err);
+    return status;
+}
+
+/* The files of the first model, which are written load by load. */
+struct press_files {
+    const struct press_paths *paths;
+    const struct press_loads *loads;
+    const double *z; /* heights as they are pressed */
+    struct step_folder folder;
+    struct contact_step step;
+};
+
+/* Writes the part of the map that was measured: pressures are over E* h', with a modulus in Pa,
+ * gaps in the map's length, contact is 1 or 0. */
+static int write_load(void *context, const struct map_press *press, size_t load,
+                      struct error *err) {
+    struct press_files *files = context;
+    const struct press_loads *loads = files->loads;
+    bool last = load + 1 == loads->count;
+    int status =
+        map_press_step(press, files->z, loads->value[load], loads->modulus, &files->step, err);
+    if (status == 0)
+        status = step_folder_put(&files->folder, &files->step.step, err);
+    if (status == 0 && last)
+        status =
+            write_last(files->paths, &files->step.step, loads->modulus > 0 ? "Pa" : "E* h'", err);
+    return status;
 }
 
 static bool are_asked(const struct press_paths *paths) {
     return paths->pressures != NULL || paths->gap != NULL || paths->contact != NULL ||
-           paths->mesh != NULL;
-}
-
-/* Writes the part of the map that was measured: pressures are over E* h' times `unit`, gaps in the
- * map's length, contact is 1 or 0. z: heights as they were pressed. */
-static int press_files_write(const struct press_paths *paths, const struct map_press *press,
-                             const double *z, double unit, const char *unit_name,
-                             struct error *err) {
-    const struct grid *grid = &press->map;
-    size_t n = grid_points(grid);
-    const char *const list[DRAWN_FIELDS] = {NULL, paths->pressures, paths->gap, paths->contact};
-    char pressure[40];
-    const char *const names[DRAWN_FIELDS] = {"z", pressure, "gap", "contact"};
-    if (!are_asked(paths))
-        return 0;
-    struct fields fields = {press, z, unit / press->slope,
-                            array_create(DRAWN_FIELDS * n, sizeof(double))};
-    if (fields.values == NULL)
-        return error_memory(err, DRAWN_FIELDS * n * sizeof(double), "fields of contact");
-    fill(&fields);
-    snprintf(pressure, sizeof pressure, "pressure, %s", unit_name);
-    int status = 0;
-    for (size_t f = DRAWN_PRESSURE; f < DRAWN_FIELDS && status == 0; f++)
-        if (list[f] != NULL)
-            status = write_map(list[f], names[f], grid, fields.values + f * n, err);
-    if (status == 0 && paths->mesh != NULL)
-        status = write_mesh(paths->mesh, &fields, unit_name, err);
-    free(fields.values);
-    return status;
+           paths->mesh != NULL || paths->steps != NULL || paths->nodes != NULL;
 }
 
 enum asked { ASKED_AUTO, ASKED_OPEN, ASKED_MIRRORED, ASKED_PERIODIC };
@@ -166,6 +155,11 @@ static const struct option_row OPTIONS[] = {
      "where there is contact (1, else 0), likewise"},
     {"vtu", 0, OPTION_TEXT, 0, 0, AT(paths.mesh), "FILE.vtu", NULL,
      "the surface with all three on it, for ParaView"},
+    {"steps", 0, OPTION_TEXT, 0, 0, AT(paths.steps), "DIR", NULL,
+     "all loads of the first model: step-1.vtu ..., the surface or the meshed block, and "
+     "steps.pvd"},
+    {"nodes", 0, OPTION_TEXT, 0, 0, AT(paths.nodes), "FILE.csv", NULL,
+     "gap, pressure and status of each node and load of the first model"},
     {0}};
 
 enum { FORMAT_TEXT, FORMAT_JSON, FORMAT_CURVES, FORMAT_CSV };
@@ -264,21 +258,32 @@ static int keep_others(const struct press_order *order, size_t m, int status, st
     return 0;
 }
 
-/* All loads of a model, and of the first one the files of the last load. */
-static int press_model(const struct press_order *order, struct pressed *pressed,
+static int press_loads(const struct press_order *order, struct pressed *pressed,
                        const struct height_map *map, size_t m, struct error *err) {
     struct press_series *series = &pressed->series[m];
-    double modulus = order->loads.modulus;
     size_t loads = order->loads.count;
     *series = (struct press_series){.block = order->blocks[m], .rows = pressed->rows + m * loads};
     int status = map_press_loads(&pressed->press, map->z, loads, pressed->pressures, series, err);
-    status = status != 0 ? keep_others(order, m, status, err) : 0;
-    if (status != 0 || m > 0)
-        return status;
-    warn_of_few_nodes(order, &series->rows[0]);
-    return press_files_write(&order->options->paths, &pressed->press, map->z,
-                             modulus > 0 ? modulus * pressed->press.slope : 1,
-                             modulus > 0 ? "Pa" : "E* h'", err);
+    return status != 0 ? keep_others(order, m, status, err) : 0;
+}
+
+/* Presses by the first model, and writes its files. */
+static int press_first(const struct press_order *order, struct pressed *pressed,
+                       const struct height_map *map, struct error *err) {
+    const struct press_paths *paths = &order->options->paths;
+    struct press_files files = {.paths = paths, .loads = &order->loads, .z = map->z};
+    const struct press_watch watch = {write_load, &files};
+    int status = step_folder_open(&files.folder, paths->steps, paths->nodes, err);
+    if (status == 0) {
+        pressed->press.watch = are_asked(paths) ? &watch : NULL;
+        status = press_loads(order, pressed, map, 0, err);
+        pressed->press.watch = NULL;
+    }
+    status = step_folder_close(&files.folder, status, err);
+    contact_step_clear(&files.step);
+    if (status == 0)
+        warn_of_few_nodes(order, &pressed->series[0].rows[0]);
+    return status;
 }
 
 static int print_json(const struct press_report *report, struct error *err) {
@@ -342,7 +347,8 @@ static int press_models(const struct press_order *order, struct pressed *pressed
     for (size_t l = 0; l < loads; l++)
         pressed->pressures[l] = press_loads_mean(&order->loads, l, press->slope, map_area(press));
     for (size_t m = 0; m < order->model_count && status == 0; m++)
-        status = press_model(order, pressed, map, m, err);
+        status = m == 0 ? press_first(order, pressed, map, err)
+                        : press_loads(order, pressed, map, m, err);
     map_press_release(&pressed->press);
     if (status == 0 && order->options->without_error == 0)
         status = map_press_error(press, map, order->model_count, pressed->series, loads,

@@ -161,6 +161,16 @@ static void print_values(const struct study *study, const cJSON *object, const c
     }
 }
 
+/* Prints what files of nodes take, which `rugo run --out` writes. */
+static void print_kept(const struct study *study) {
+    struct study_kept kept = plan_kept(study);
+    char time[48];
+    duration_text(kept.seconds, time, sizeof time);
+    if (kept.path != NULL)
+        printf("nodes of kept realisations: about %.3g MB of files, %s of CPU, by run --out\n",
+               kept.bytes / 1e6, time);
+}
+
 static void print_text(const struct study *study) {
     char cpu[48], wall[48];
     duration_text(plan_seconds(study), cpu, sizeof cpu);
@@ -176,6 +186,7 @@ static void print_text(const struct study *study) {
     print_cases(study);
     for (size_t c = 0; c < study->case_count && c < PLANS_SHOWN; c++)
         summary_of_plan(&study->cases[c], stdout);
+    print_kept(study);
     printf("in all about %s of CPU, %s on %u processors; up to %.0f MiB a worker\n", cpu, wall,
            allotment_threads(), plan_bytes(study) / 0x1p20);
 }

@@ -2,6 +2,7 @@
  * same study stopped. */
 #include "server/command/access/access.h"
 #include "server/command/command.h"
+#include "server/command/study/kept_nodes.h"
 #include "server/command/study/local_study.h"
 #include "server/show/output.h"
 #include "server/show/summary/progress.h"
@@ -27,7 +28,7 @@ static const struct option_row OPTIONS[] = {
      "threads; 0: as many processors as are allotted"},
     {"set", 0, OPTION_LIST, 0, 0, AT(sets), "PATH=VALUE", NULL, SET_HELP},
     {"out", 0, OPTION_TEXT, 0, 0, AT(folder), "DIR", NULL,
-     "write curves.json, curves.csv and an SVG a quantity"},
+     "write curves.json, curves.csv, an SVG a quantity, and nodes/ of what /contact/keep names"},
     {"log-level", 0, OPTION_CHOICE, 0, 0, AT(log_level), LOG_LEVELS, "warning", LOG_LEVEL_HELP},
     {0}};
 
@@ -91,7 +92,10 @@ static int perform(struct run *run, struct error *err) {
                                     .id = run->id,
                                     .folder = run->folder,
                                     .published = &counts};
-    return local_study_present(&outcome, err);
+    status = local_study_present(&outcome, err);
+    return status == 0 && run->folder != NULL
+               ? kept_nodes_write(run->store, run->id, run->folder, err)
+               : status;
 }
 
 static int run_study(const void *values, const char *const *arguments) {

@@ -24,7 +24,7 @@ route_handler handle_claim, handle_report_many, handle_heartbeat, handle_complet
     handle_release;
 route_handler handle_health, handle_metrics, handle_snapshot, handle_openapi, handle_schema,
     handle_page, handle_asset, handle_client, handle_templates, handle_contents, handle_map,
-    handle_check, handle_workers, handle_characterise;
+    handle_nodes, handle_check, handle_workers, handle_characterise;
 
 /* Checks who asks for what and answers. Called once before the body comes (body_known
  * false): may refuse; and once with it. */

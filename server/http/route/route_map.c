@@ -1,12 +1,16 @@
-/* A realisation of a study as a map: computed when it is asked for, a few at a time, and the same
- * for ever. */
+/* A realisation of a study as a map, or its nodes under loads: computed when it is asked for, a few
+ * at a time, and the same for ever. */
 #include "core/map/height_map_file.h"
 #include "core/memory_file.h"
+#include "core/nodal/node_table.h"
+#include "core/nodal/step_folder.h"
 #include "jobs/surface/realisation_map.h"
+#include "jobs/surface/surface_case.h"
 #include "server/http/accept.h"
 #include "server/http/route/route.h"
 #include "server/show/map/map_png.h"
 #include "worker/clock.h"
+#include <math.h>
 #include <poll.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +19,8 @@ enum {
     MAPS_MOST = 2,   /* at a time: one may take seconds */
     TIME_MS = 50000, /* for one: below the minute that clients wait */
 };
-static const double POINTS_MOST = 1 << 20;
+static const double MAP_POINTS_MOST = 1 << 20;
+static const double MEMORY_MOST = 0x1p30; /* bytes that nodes may take while they are computed */
 
 struct map_question {
     const char *id;
@@ -69,15 +74,21 @@ static bool prefers_png(const struct exchange *exchange) {
     return accept_quality(accept, "image/png") > accept_quality(accept, "application/octet-stream");
 }
 
+/* Reads case and realisation; false after an answer. */
+static bool read_path(struct exchange *exchange, struct map_question *out) {
+    if (path_number(exchange->path, "/cases/", &out->case_number) &&
+        path_number(exchange->path, "/realisations/", &out->realisation))
+        return true;
+    answer_problem(exchange, 404, "cases and realisations are whole numbers from 0", NULL);
+    return false;
+}
+
 /* Returns false after an answer. */
 static bool read_question(struct exchange *exchange, const char *id, struct map_question *out) {
     const char *field = exchange_query(exchange, "field"), *load = exchange_query(exchange, "load");
     *out = (struct map_question){.id = id, .png = prefers_png(exchange)};
-    if (!path_number(exchange->path, "/cases/", &out->case_number) ||
-        !path_number(exchange->path, "/realisations/", &out->realisation)) {
-        answer_problem(exchange, 404, "cases and realisations are whole numbers from 0", NULL);
+    if (!read_path(exchange, out))
         return false;
-    }
     while (field != NULL && out->field < MAP_FIELDS &&
            strcmp(MAP_FIELD_NAMES[out->field], field) != 0)
         out->field++;
@@ -119,7 +130,7 @@ static int find_case(struct exchange *exchange, const struct map_question *quest
                                    question->realisation},
                            .field = question->field,
                            .load = question->load,
-                           .points_most = POINTS_MOST};
+                           .points_most = MAP_POINTS_MOST};
     if (order->kind == NULL)
         status = error_set(err, ERROR_INPUT, "this program knows no kind '%.64s'", study.kind);
     else if (question->case_number >= study.cases)
@@ -146,8 +157,15 @@ static int write_map(const struct map_question *question, const struct grid *gri
                          : height_map_write(out->file, HEIGHT_MAP_NPY, grid, z, err);
 }
 
-static int send_map(struct exchange *exchange, const struct map_question *question,
-                    const struct map_order *order, struct error *err) {
+/* It is the same for ever. */
+static void may_be_kept(struct exchange *exchange) {
+    answer_header(exchange, "Cache-Control", "private, max-age=604800, immutable");
+    answer_header(exchange, "Vary", "Accept, Authorization");
+}
+
+static int send_map(struct exchange *exchange, const void *whole, const struct map_order *order,
+                    struct error *err) {
+    const struct map_question *question = whole;
     struct grid grid;
     double *z = NULL;
     struct memory_file memory = {0};
@@ -165,29 +183,31 @@ static int send_map(struct exchange *exchange, const struct map_question *questi
         return status;
     }
     answer_bytes(exchange, question->png ? "image/png" : "application/octet-stream", bytes, size);
-    answer_header(exchange, "Cache-Control", "private, max-age=604800, immutable");
-    answer_header(exchange, "Vary", "Accept, Authorization");
+    may_be_kept(exchange);
     return 0;
 }
 
-void handle_map(struct exchange *exchange, const char *id) {
-    struct map_question question;
+/* What is computed of a realisation, and sent. */
+typedef int sender(struct exchange *exchange, const void *question, const struct map_order *order,
+                   struct error *err);
+
+/* Finds the case and has it computed and sent, unless too many are computed already. */
+static void compute(struct exchange *exchange, const struct map_question *question,
+                    const void *whole, sender *send) {
     struct map_order order = {.kind = NULL};
     struct case_info info = {0};
     struct error err = {0};
-    if (!read_question(exchange, id, &question))
-        return;
     if (atomic_fetch_add(&exchange->service->maps, 1) >= MAPS_MOST) {
         atomic_fetch_sub(&exchange->service->maps, 1);
         answer_problem(exchange, 503, "too many maps are being computed", NULL);
         return;
     }
     struct patience patience = {.exchange = exchange, .until_ms = clock_ms() + TIME_MS};
-    int status = find_case(exchange, &question, &order, &info, &err);
+    int status = find_case(exchange, question, &order, &info, &err);
     order.stop = is_lost;
     order.stop_context = &patience;
     if (status == 0)
-        status = send_map(exchange, &question, &order, &err);
+        status = send(exchange, whole, &order, &err);
     if (status == ERROR_STOPPED)
         answer_problem(exchange, 503, patience.lost, NULL);
     else if (status == ERROR_NUMERIC) /* what is asked for is not found: no fault of the server */
@@ -196,4 +216,153 @@ void handle_map(struct exchange *exchange, const char *id) {
         answer_error(exchange, &err);
     case_info_clear(&info);
     atomic_fetch_sub(&exchange->service->maps, 1);
+}
+
+void handle_map(struct exchange *exchange, const char *id) {
+    struct map_question question;
+    if (read_question(exchange, id, &question))
+        compute(exchange, &question, &question, send_map);
+}
+
+/* --- nodes --- */
+
+enum { NODE_LOADS_MOST = 1000 };
+struct node_question {
+    struct map_question realisation;
+    const char *model; /* NULL: the most complete one */
+    bool vtu;
+    size_t load_count; /* 0: all of the case */
+    double loads[NODE_LOADS_MOST];
+};
+
+/* Reads rising loads with commas between; false where they are not that. */
+static bool read_loads(const char *text, struct node_question *out) {
+    double before = 0;
+    for (const char *at = text;;) {
+        char *end;
+        double load = strtod(at, &end);
+        if (end == at || !(load > before) || !isfinite(load) || out->load_count == NODE_LOADS_MOST)
+            return false;
+        out->loads[out->load_count++] = before = load;
+        if (*end == '\0')
+            return true;
+        if (*end != ',')
+            return false;
+        at = end + 1;
+    }
+}
+
+/* Returns false after an answer. */
+static bool read_nodes(struct exchange *exchange, const char *id, struct node_question *out) {
+    const char *load = exchange_query(exchange, "load"),
+               *format = exchange_query(exchange, "format");
+    out->realisation.id = id;
+    out->model = exchange_query(exchange, "model");
+    if (!read_path(exchange, &out->realisation))
+        return false;
+    out->vtu = format != NULL && strcmp(format, "vtu") == 0;
+    if (format != NULL && !out->vtu && strcmp(format, "csv") != 0)
+        fault(exchange, "?format", "allowed: csv, vtu");
+    else if (load != NULL && !read_loads(load, out))
+        fault(exchange, "?load", "rising loads p/(E* h') above 0, with commas between");
+    else if (out->vtu && out->load_count != 1)
+        fault(exchange, "?load", "a VTU file has one load: give it");
+    else
+        return true;
+    return false;
+}
+
+/* Where steps are written while they are computed. */
+struct node_writer {
+    FILE *file;
+    bool vtu;
+};
+
+static int put_step(void *context, const struct nodal_step *step, size_t number, size_t count,
+                    struct error *err) {
+    const struct node_writer *writer = context;
+    double rows = (double)count * (double)grid_points(&step->grid);
+    if (rows > MAP_POINTS_MOST)
+        return error_set(err, ERROR_INPUT,
+                         "%zu loads of %zu nodes; allowed here: %.0f rows. rugo generate --nodes "
+                         "and --steps have no such limit",
+                         count, grid_points(&step->grid), MAP_POINTS_MOST);
+    return writer->vtu ? step_vtu(writer->file, step, err)
+                       : node_table_put(writer->file, number == 0, step, err);
+}
+
+static int check_memory(const struct map_order *order, const void *one_case, struct error *err) {
+    struct study_cost cost = {0};
+    if (order->kind->press_steps == NULL)
+        return error_set(err, ERROR_INPUT, "a study of kind %s has no contact",
+                         order->kind->study.name);
+    order->kind->estimate(one_case, &cost);
+    return cost.memory_bytes <= MEMORY_MOST
+               ? 0
+               : error_set(err, ERROR_INPUT,
+                           "the case takes %.3g GiB; allowed here: %.0f GiB. rugo generate "
+                           "--nodes and --steps have no such limit",
+                           cost.memory_bytes / 0x1p30, MEMORY_MOST / 0x1p30);
+}
+
+static int press_nodes(const struct node_question *question, const struct map_order *order,
+                       FILE *file, struct error *err) {
+    struct node_writer writer = {file, question->vtu};
+    const struct steps_sink sink = {put_step, &writer};
+    struct surface_report report;
+    double *z = NULL;
+    void *one_case = NULL;
+    int status = kind_case_create(&one_case, order->kind, order->parameters, NULL, err);
+    if (status != 0)
+        return status;
+    status = check_memory(order, one_case, err);
+    if (status == 0) {
+        struct surface_case stopped = *order->kind->surface(one_case);
+        stopped.options.stop = order->stop;
+        stopped.options.stop_context = order->stop_context;
+        status = realisation_surface(&stopped, order->key, &z, &report, err);
+    }
+    const struct steps_order steps = {.z = z,
+                                      .model = question->model,
+                                      .load_count = question->load_count,
+                                      .loads = question->loads,
+                                      .stop = order->stop,
+                                      .stop_context = order->stop_context};
+    if (status == 0)
+        status = order->kind->press_steps(one_case, &steps, &sink, err);
+    free(z);
+    kind_case_destroy(order->kind, &one_case);
+    return status;
+}
+
+static int send_nodes(struct exchange *exchange, const void *whole, const struct map_order *order,
+                      struct error *err) {
+    const struct node_question *question = whole;
+    struct memory_file memory = {0};
+    size_t size = 0;
+    if (!memory_file_open(&memory))
+        return error_memory(err, 0, "nodes");
+    int status = press_nodes(question, order, memory.file, err);
+    char *bytes = memory_file_close(&memory, &size);
+    if (status == 0 && bytes == NULL)
+        status = error_memory(err, 0, "nodes");
+    if (status != 0) {
+        free(bytes);
+        return status;
+    }
+    answer_bytes(exchange, question->vtu ? "application/xml" : "text/csv; charset=utf-8", bytes,
+                 size);
+    may_be_kept(exchange);
+    return 0;
+}
+
+void handle_nodes(struct exchange *exchange, const char *id) {
+    struct node_question *question = array_create(1, sizeof *question);
+    struct error err = {0};
+    if (question == NULL) {
+        error_memory(&err, sizeof *question, "a query");
+        answer_error(exchange, &err);
+    } else if (read_nodes(exchange, id, question))
+        compute(exchange, &question->realisation, question, send_nodes);
+    free(question);
 }

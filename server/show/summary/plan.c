@@ -55,6 +55,18 @@ double plan_bytes(const struct study *study) {
     return most;
 }
 
+struct study_kept plan_kept(const struct study *study) {
+    struct study_kept sum = {.path = NULL};
+    for (size_t c = 0; c < study->case_count; c++) {
+        const struct study_kept *kept = &study->cases[c].cost.kept;
+        sum.path = kept->path != NULL ? kept->path : sum.path;
+        sum.past = kept->past > sum.past ? kept->past : sum.past;
+        sum.seconds += kept->seconds;
+        sum.bytes += kept->bytes;
+    }
+    return sum;
+}
+
 /* --- JSON --- */
 
 /* Adds the plan of a case that asks for an error. */
@@ -102,6 +114,12 @@ static bool put_own(cJSON *document, const struct study_cost *cost) {
     return complete;
 }
 
+/* Adds what files of nodes take; nothing where there are none. */
+static bool put_kept(cJSON *document, const struct study_kept *kept) {
+    return kept->path == NULL || (field_put(document, "kept_bytes", json_number(kept->bytes)) &&
+                                  field_put(document, "kept_seconds", json_number(kept->seconds)));
+}
+
 static cJSON *case_document(const struct study *study, size_t c) {
     const struct study_case *one = &study->cases[c];
     cJSON *document = cJSON_CreateObject();
@@ -115,7 +133,7 @@ static cJSON *case_document(const struct study *study, size_t c) {
         field_put(document, "seconds", json_number(plan_case_seconds(&study->cases[c]))) &&
         field_put(document, "relative_error", json_number(plan_case_error(&study->cases[c]))) &&
         put_law(document, &one->cost) && put_own(document, &one->cost) &&
-        put_components(document, &study->cases[c]);
+        put_kept(document, &one->cost.kept) && put_components(document, &study->cases[c]);
     return fields_finish(document, complete);
 }
 

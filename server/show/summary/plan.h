@@ -14,6 +14,8 @@ double plan_case_bytes(const struct study_case *one);
 /* Those of the whole study. */
 double plan_seconds(const struct study *study);
 double plan_bytes(const struct study *study);
+/* What the files of nodes of all cases take; path NULL: there are none. */
+struct study_kept plan_kept(const struct study *study);
 
 /* The plan as `rugo check --format json` and POST /v1/check answer it, the caller's to delete; NULL
  * when out of memory. */

@@ -5,8 +5,8 @@
 #include "core/contact/area.h"
 #include "core/contact/contact.h"
 #include "core/contact/patches.h"
+#include "core/full/file/mesh_vtu.h"
 #include "core/full/full.h"
-#include "core/full/mesh_file.h"
 #include "core/statistics/fit.h"
 #include "tests/support/failing/each_allocation.h"
 #include <math.h>
@@ -94,7 +94,7 @@ static int write_mesh(struct full *full, struct error *err) {
     FILE *file = open_memstream(&text, &size);
     if (file == NULL)
         return error_set(err, ERROR_MEMORY, "no stream");
-    int status = mesh_file_write(file, "a block", full_mesh(full), NULL, err);
+    int status = mesh_vtu(file, "a block", full_mesh(full), NULL, err);
     /* Where the C library cannot close it for want of memory, it says so by no text alone. */
     if ((fclose(file) != 0 || text == NULL) && status == 0)
         status = error_set(err, ERROR_MEMORY, "a short stream");

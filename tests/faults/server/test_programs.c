@@ -15,7 +15,8 @@ static const char STUDY[] =
     "\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":4,\"length_ratio\":1,"
     "\"points_per_wavelength\":4,\"rms_slope\":0.3},\"contact\":{\"block_height\":{\"lengths\":1},"
     "\"model\":["
-    "\"layered\",\"full\"],\"pressures\":{\"values\":[0.02,0.05]}}}";
+    "\"layered\",\"full\"],\"pressures\":{\"values\":[0.02,0.05]},\"keep\":{\"realisations\":[1]}}"
+    "}";
 
 enum { MOST_ARGUMENTS = 12, SANITIZER = 99 };
 struct program {
@@ -157,7 +158,14 @@ static void commands_that_show(void **state) {
         {"characterise", {"characterise", "map.csv", NULL}, "", NULL},
         {"page", {"characterise", "map.csv", "--format", "svg", NULL}, "", NULL},
         {"convert", {"convert", "map.csv", "converted.npy", NULL}, "", NULL},
-        {"press", {"press", "map.csv", "--loads", "0.05", NULL}, "", NULL},
+        {"press",
+         {"press", "map.csv", "--loads", "0.05", "--steps", "pressed", "--nodes", "p.csv", NULL},
+         "",
+         NULL},
+        {"steps",
+         {"generate", "study.json", "--steps", "made", "--nodes", "m.csv", NULL},
+         "",
+         NULL},
         {"theory", {"theory", "study.json", NULL}, "", NULL},
         {"help", {"help", "run", NULL}, "", NULL},
     };

@@ -142,6 +142,7 @@ static uint64_t fail_fixed(void) {
     } FIXED[] = {
         {handle_map, "/v1/studies/flat/cases/0/realisations/0/map"},
         {handle_map, "/v1/studies/pressed/cases/0/realisations/1/map?field=gap&load=0.1"},
+        {handle_nodes, "/v1/studies/pressed/cases/0/realisations/1/nodes?load=0.1"},
         {handle_curves, "/v1/studies/small/curves?case=1"},
         {handle_report, "/v1/studies/asked/report"},
         {handle_plot, "/v1/studies/small/plot?quantity=contact_area"},

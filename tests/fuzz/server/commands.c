@@ -203,6 +203,15 @@ static bool holds_map(const char *path, const char *text, size_t size, bool any_
     return status == 0;
 }
 
+/* Whether it is a table of nodes, or a mesh for other programs. */
+static bool is_of_nodes(const char *text) {
+    static const char *const STARTS[] = {"load,node,", "$MeshFormat\n", "*HEADING\n"};
+    bool is_one = false;
+    for (size_t s = 0; s < sizeof STARTS / sizeof *STARTS; s++)
+        is_one = is_one || strncmp(text, STARTS[s], strlen(STARTS[s])) == 0;
+    return is_one;
+}
+
 static void check_file(const struct command *command, const char *path) {
     static const char PNG[] = "\x89PNG\r\n\x1a\n";
     size_t size = 0;
@@ -213,6 +222,8 @@ static void check_file(const struct command *command, const char *path) {
         mend(text);
         check_xml(text, size);
         MUST(!has_word(text, "nan") && !has_word(text, "inf"));
+    } else if (is_of_nodes(text)) {
+        MUST(text[size - 1] == '\n' && !has_word(text, "nan") && !has_word(text, "inf"));
     } else if (strncmp(text, PNG, strlen(PNG)) != 0)
         MUST(holds_map(path, text, size, command == &COMMAND_GENERATE));
     free(text);

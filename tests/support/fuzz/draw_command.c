@@ -4,7 +4,8 @@
 #include <stdarg.h>
 
 #define ENDINGS(name)                                                                              \
-    name, name ".npy", name ".csv", name ".xyz", name ".svg", name ".png", name ".vtu", name ".pdf"
+    name, name ".npy", name ".csv", name ".xyz", name ".svg", name ".png", name ".vtu",            \
+        name ".pdf", name ".msh", name ".inp"
 const char *const DRAWN_FILES[] = {ENDINGS("drawn-first"), ENDINGS("drawn-second"), NULL};
 static const char ABSENT[] = "absent-folder/file.npy";
 
@@ -42,6 +43,10 @@ static const struct text_words {
     {"pressure", LIST_OF("#MPa", "1kPa,1GPa", "#GPa"),
      LIST_OF("#Pa", "1e300GPa", "1e-300Pa", "2MPa,1MPa", "1", "1e-12Pa,1TPa")},
     {"force", LIST_OF("#mN", "#nN", "#N/m"), LIST_OF("#N", "1e300N", "1e-300N", "1e300N/m", "1")},
+    {"R|FIRST..LAST", LIST_OF("0", "@", "1..2"),
+     LIST_OF("2..1", "..", "1..", "-1", "1..x", "99999999999999999")},
+    {"LIST", LIST_OF("0.1", "0.01,0.3", "0.02,#"),
+     LIST_OF("#", "1e300", "0.3,0.2", "0", "1e-9,1e9")},
     {"E", LIST_OF("210GPa", "#GPa"), LIST_OF("#Pa", "1e300Pa", "1e-300Pa", "1e308GPa", "210")},
     {"E*", LIST_OF("210GPa", "#GPa"), LIST_OF("#Pa", "1e300Pa", "1e-300Pa", "1e308GPa", "210")},
     {"Q", LIST_OF("summit_height_pdf", "summit_joint_pdf", "summit_curvature_pdf", "psd"),

@@ -122,7 +122,9 @@ static cJSON *drawn_value(struct choices *choices, const struct parameter *row,
         return cJSON_CreateString(row->choices != NULL ? drawn_choice(choices, row->choices)
                                                        : "contact");
     case PARAMETER_NUMBERS:
-        return drawn_numbers(choices, row, manner);
+        return row->choices != NULL && choose_rarely(choices, 2)
+                   ? cJSON_CreateString(drawn_choice(choices, row->choices))
+                   : drawn_numbers(choices, row, manner);
     case PARAMETER_CHOICES:
         return drawn_choices(choices, row, manner);
     case PARAMETER_MEASURE:

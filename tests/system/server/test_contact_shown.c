@@ -174,6 +174,32 @@ static void what_cannot_be_meshed_is_refused(void **state) {
     shell("refused.db", "$RUGO check --set contact.transition_depth=[1,1e9] steep.json");
 }
 
+/* Kept realisations are files of `run --out`, as `generate` writes them; `check` says what they
+ * take, and refuses what there is not. */
+static void kept_nodes_are_files(void **state) {
+    (void)state;
+    shell("kept.db",
+          "keep='contact.keep={\"realisations\":[1,3],\"loads\":\"all\"}' && "
+          "$RUGO check --set \"$keep\" pressed.json && "
+          "$RUGO run --db $DB --set \"$keep\" --out kept pressed.json && "
+          "find kept/nodes -name '*.vtu' | wc -l && ls kept/nodes/case-0 && "
+          "$RUGO generate pressed.json --realisation 3 --model layered --nodes 3.csv >/dev/null && "
+          "cmp 3.csv kept/nodes/case-0/realisation-3/layered/nodes.csv");
+    check_shown((const char *[]){"nodes of kept realisations: about ",
+                                 "realisation-1\nrealisation-3\n", NULL});
+    shell("kept.db",
+          "for keep in '{\"realisations\":[4]}' '{\"realisations\":[0.5]}' "
+          "'{\"realisations\":[1,0]}' '{\"realisations\":[0],\"loads\":[0.123]}' "
+          "'{\"loads\":[0.3]}' '{\"realisations\":\"all\"}'; do "
+          "$RUGO check --set \"contact.keep=$keep\" pressed.json && exit 1; done 2>&1; true");
+    check_shown((const char *[]){"/contact/keep/realisations: the study has no realisation 4",
+                                 "/contact/keep/realisations: 0.5 is no whole number",
+                                 "/contact/keep/realisations: must rise",
+                                 "/contact/keep/loads: 0.123 is none of the study's pressures",
+                                 "/contact/keep/loads: loads of no realisation",
+                                 "/contact/keep/realisations: \"all\" is not an array", NULL});
+}
+
 /* 24 columns of 13 layers, or half as many, and half of these, as soon as they are as deep as wide.
  */
 static void a_mesh_has_the_columns_asked_for(void **state) {
@@ -195,6 +221,7 @@ int main(void) {
         cmocka_unit_test(missing_realisations_are_told),
         cmocka_unit_test(what_cannot_be_meshed_is_refused),
         cmocka_unit_test(a_mesh_has_the_columns_asked_for),
+        cmocka_unit_test(kept_nodes_are_files),
     };
     return cmocka_run_group_tests(tests, setup, NULL);
 }

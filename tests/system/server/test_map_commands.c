@@ -256,6 +256,62 @@ static void a_measured_map_is_pressed_in_units(void **state) {
     assert_true(contains("shell.err", "--pressure needs the stiffness of the block"));
 }
 
+/* Steps and nodes of a pressed surface, and many surfaces at once. */
+static void steps_and_ranges_are_written(void **state) {
+    (void)state;
+    spit("pressed.json",
+         "{\"name\": \"pressed\", \"kind\": \"contact\", \"surface\": {\"dimension\": 1, "
+         "\"hurst\": 0.8, \"wavelength_ratio\": 2, \"length_ratio\": 2, \"rms_slope\": 0.05}, "
+         "\"contact\": {\"model\": [\"halfspace\", \"full\"], \"pressures\": {\"to\": 0.2, "
+         "\"steps\": 2}}}");
+    assert_int_equal(
+        run_shell("$RUGO generate pressed.json --steps all --nodes all.csv --mesh all.inp && "
+                  "$RUGO generate pressed.json --steps one --nodes one.csv --model halfspace "
+                  "--pressure 0.1 -o z.csv && ls all one && wc -l <all.csv && wc -l <one.csv && "
+                  "grep -c '^[*]STEP' all.inp && head -1 all.csv"),
+        0);
+    assert_true(contains("shell.out", "all:\nstep-1.vtu\nstep-2.vtu\nsteps.pvd\n\none:\n"
+                                      "step-1.vtu\nsteps.pvd\n65\n33\n2\nload,node,x,y,z,gap,"
+                                      "pressure,status,u_x,u_y,u_z\n"));
+    assert_int_equal(run_shell("$RUGO press z.csv --boundary periodic --loads 0.1,0.2 --steps map "
+                               "--nodes map.csv >/dev/null && ls map && wc -l <map.csv"),
+                     0);
+    assert_true(contains("shell.out", "step-1.vtu\nstep-2.vtu\nsteps.pvd\n65\n"));
+    assert_int_equal(
+        run_shell("$RUGO generate pressed.json --realisation 3..5 -o many/ --format csv && ls many "
+                  "&& $RUGO generate pressed.json --realisation 4 -o 4.csv && cmp 4.csv "
+                  "many/realisation-4.csv"),
+        0);
+    assert_true(contains("shell.out", "\nrealisation 5\n"));
+    assert_true(contains("shell.out", "realisation-3.csv\nrealisation-4.csv\nrealisation-5.csv\n"));
+}
+
+static void wrong_steps_and_ranges_are_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *options, *error;
+    } WRONG[] = {
+        {"--realisation 5..3 -o many/", "--realisation 5..3: neither a whole number from 0"},
+        {"--realisation 0..3 -o z.npy", "several realisations need a folder: -o DIR/"},
+        {"--realisation 0..3 -o many/ --mesh m.msh", "are of one realisation"},
+        {"--pressure 0.1", "--pressure belongs to --mesh, --steps or --nodes"},
+        {"--model full", "--model belongs to --mesh, --steps or --nodes"},
+        {"--steps s --pressure 0.2,0.1", "--pressure 0.2,0.1: not up to 1000 rising numbers"},
+        {"--steps s --model layered", "the case has no model layered"},
+        {"--mesh m.msh --set contact.model=[\\\"halfspace\\\"]", "--mesh needs \"full\" among"},
+    };
+    char line[200];
+    for (size_t w = 0; w < sizeof WRONG / sizeof *WRONG; w++) {
+        snprintf(line, sizeof line, "$RUGO generate pressed.json %s", WRONG[w].options);
+        assert_int_equal(run_shell(line), 2);
+        assert_true(contains("shell.err", WRONG[w].error));
+    }
+    assert_int_equal(run_shell("$RUGO generate one.json --nodes n.csv"), 2);
+    assert_true(contains("shell.err", "--nodes needs a study of kind contact"));
+    assert_int_equal(run_shell("$RUGO generate pressed.json --nodes no/such.csv"), 1);
+    assert_true(contains("shell.err", "cannot open no/such.csv"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_surface_goes_out_and_in),
@@ -265,6 +321,8 @@ int main(void) {
         cmocka_unit_test(lengths_have_units),
         cmocka_unit_test(a_map_is_converted),
         cmocka_unit_test(a_measured_map_is_pressed_in_units),
+        cmocka_unit_test(steps_and_ranges_are_written),
+        cmocka_unit_test(wrong_steps_and_ranges_are_refused),
     };
     return cmocka_run_group_tests(tests, setup, NULL);
 }

@@ -149,6 +149,38 @@ static void maps_are_those_of_the_realisation(void **state) {
     assert_true(touching > n / 20 && touching < n);
 }
 
+/* Every node of the study's two loads has a row; the pressures of a load have it as their mean. */
+static void nodes_are_those_of_the_realisation(void **state) {
+    (void)state;
+    char *answer = NULL, path[120];
+    const char *at;
+    double load, pressure, sum[2] = {0};
+    size_t rows[2] = {0};
+    snprintf(path, sizeof path, "/v1/studies/looked%%20at/cases/1/realisations/2/nodes");
+    snprintf(path + strlen(path), sizeof path - strlen(path), "?load=0.05,0.1");
+    assert_int_equal(http_exchange(port, "GET", path, "", NULL, &answer), 200);
+    at = strstr(answer, "load,node,x,y,z,gap,pressure,status\n");
+    assert_non_null(at);
+    while ((at = strchr(at, '\n') + 1) != NULL && *at != '\0') {
+        assert_int_equal(
+            sscanf(at, "%lf,%*[^,],%*[^,],%*[^,],%*[^,],%*[^,],%lf,", &load, &pressure), 2);
+        rows[load > 0.07]++;
+        sum[load > 0.07] += pressure;
+    }
+    assert_int_equal(rows[0], 4 * 4 * 8);
+    assert_int_equal(rows[1], rows[0]);
+    assert_true(fabs(sum[0] / (double)rows[0] - 0.05) < 1e-8); /* 9 digits are written */
+    assert_true(fabs(sum[1] / (double)rows[1] - 0.1) < 1e-8);
+    free(answer);
+    assert_int_equal(
+        http_exchange(port, "GET",
+                      "/v1/studies/looked%20at/cases/1/realisations/2/nodes?load=0.1&format=vtu",
+                      "", NULL, &answer),
+        200);
+    assert_non_null(strstr(answer, "Name=\"pressure\""));
+    free(answer);
+}
+
 static void maps_that_there_are_not(void **state) {
     (void)state;
     static const struct {
@@ -162,7 +194,13 @@ static void maps_that_there_are_not(void **state) {
         {"/v1/studies/looked%20at/cases/0/realisations/0/map?field=slope", 422, "height"},
         {"/v1/studies/looked%20at/cases/0/realisations/0/map?field=gap", 422, "load"},
         {"/v1/studies/looked%20at/cases/0/realisations/0/map?field=gap&load=nan", 422, "load"},
-        {"/v1/studies/nothing/cases/0/realisations/0/map", 404, "nothing"}};
+        {"/v1/studies/nothing/cases/0/realisations/0/map", 404, "nothing"},
+        {"/v1/studies/looked%20at/cases/1/realisations/3/nodes", 404, "cases have 3"},
+        {"/v1/studies/looked%20at/cases/0/realisations/0/nodes?load=0.2,0.1", 422, "rising loads"},
+        {"/v1/studies/looked%20at/cases/0/realisations/0/nodes?load=inf", 422, "rising loads"},
+        {"/v1/studies/looked%20at/cases/0/realisations/0/nodes?format=xml", 422, "csv, vtu"},
+        {"/v1/studies/looked%20at/cases/0/realisations/0/nodes?format=vtu", 422, "one load"},
+        {"/v1/studies/looked%20at/cases/0/realisations/0/nodes?model=full", 422, "no model full"}};
     for (size_t w = 0; w < sizeof WRONG / sizeof *WRONG; w++) {
         char *answer = NULL;
         assert_int_equal(http_exchange(port, "GET", WRONG[w].path, "", NULL, &answer),
@@ -259,6 +297,7 @@ int main(void) {
         cmocka_unit_test(ready_studies_can_run),
         cmocka_unit_test(the_worker_is_listed),
         cmocka_unit_test(maps_are_those_of_the_realisation),
+        cmocka_unit_test(nodes_are_those_of_the_realisation),
         cmocka_unit_test(maps_that_there_are_not),
         cmocka_unit_test(maps_that_nobody_waits_for_are_given_up),
         cmocka_unit_test(a_picture_is_a_png),

@@ -39,7 +39,7 @@ static void rows(void **state) {
             assert_true(row->path[0] == '/' && strlen(row->help) > 0);
             bool named = row->type == PARAMETER_CHOICE || row->type == PARAMETER_CHOICES ||
                          row->type == PARAMETER_MEASURE;
-            assert_true(named == (row->choices != NULL));
+            assert_true(named == (row->choices != NULL) || row->type == PARAMETER_NUMBERS);
             assert_true((row->type == PARAMETER_MEASURE) == (row->units != NULL));
             if (row->default_json != NULL)
                 fits(row, row->default_json);

@@ -8,8 +8,8 @@
  * mean Cauchy stress, tension positive (XX, YY, XY in the plane of a profile; XX, YY, ZZ, XY, YZ,
  * XZ). Arrays of points, in a step, are `displacement`, and on the face `pressure` and `gap`, 0
  * elsewhere. */
-#ifndef RUGO_CORE_FULL_MESH_FILE_H
-#define RUGO_CORE_FULL_MESH_FILE_H
+#ifndef RUGO_CORE_FULL_FILE_MESH_VTU_H
+#define RUGO_CORE_FULL_FILE_MESH_VTU_H
 
 #include "core/full/full.h"
 #include <stdio.h>
@@ -21,7 +21,7 @@ struct mesh_step {
     double unit;               /* in E*: pressures and stresses are written over it */
 };
 /* Writes a mesh; title is one line without "--", step may be NULL for the mesh alone. */
-int mesh_file_write(FILE *file, const char *title, const struct mesh *mesh,
-                    const struct mesh_step *step, struct error *err);
+int mesh_vtu(FILE *file, const char *title, const struct mesh *mesh, const struct mesh_step *step,
+             struct error *err);
 
 #endif

@@ -1,4 +1,4 @@
-#include "server/show/map/map_vtu.h"
+#include "core/nodal/map_vtu.h"
 #include <errno.h>
 #include <nettle/base64.h>
 #include <stdint.h>

@@ -1,5 +1,6 @@
-#include "core/full/mesh_file.h"
+#include "core/full/file/mesh_vtu.h"
 #include "core/full/element.h"
+#include "core/full/file/mesh_points.h"
 #include <errno.h>
 #include <string.h>
 
@@ -23,137 +24,75 @@ static void array_close(const struct vtu_writer *w) {
     fputs("        </DataArray>\n", w->file);
 }
 
-/* --- points ---
- *
- * Each level is a plane of its nodes, in which the last column and row repeat the first. Where
- * columns widen, a second plane follows: that of the corners of the narrower columns, which lie
- * between the nodes. */
+/* --- points --- */
 
-struct vtu_point {
-    double x, y; /* in steps */
-    size_t count, node[4];
-};
-
-/* The point in row j and column i of a level whose nodes are `wide` columns apart. */
-static struct vtu_point point_of(const struct mesh *mesh, size_t k, size_t wide, size_t j,
-                                 size_t i) {
-    const struct level *level = &mesh->level[k];
-    size_t width = level->width / wide;
-    struct vtu_point point = {.x = (double)(i * width), .y = (double)(j * width) * mesh->across};
-    for (size_t back = 0; back <= j % wide; back++)
-        for (size_t right = 0; right <= i % wide; right++)
-            point.node[point.count++] = level_node(level, j / wide + back, i / wide + right);
-    return point;
-}
-
-static double mean_at(const struct vtu_point *point, const double *field, size_t components,
-                      size_t component) {
-    double sum = 0;
-    for (size_t a = 0; a < point->count; a++)
-        sum += field[point->node[a] * components + component];
-    return sum / (double)point->count;
-}
-
-static void put_position(const struct vtu_writer *w, const struct vtu_point *point) {
-    const struct mesh *mesh = w->mesh;
-    double up = mean_at(point, mesh->height, 1, 0) * mesh->unit;
-    if (mesh->dimension == 2)
-        fprintf(w->file, "%.9g %.9g 0\n", point->x * mesh->unit, up);
+static void put_position(void *context, const struct mesh_point *point) {
+    const struct vtu_writer *w = context;
+    double at[3];
+    mesh_point_position(w->mesh, point, at);
+    if (w->mesh->dimension == 2)
+        fprintf(w->file, "%.9g %.9g 0\n", at[0], at[2]);
     else
-        fprintf(w->file, "%.9g %.9g %.9g\n", point->x * mesh->unit, point->y * mesh->unit, up);
+        fprintf(w->file, "%.9g %.9g %.9g\n", at[0], at[1], at[2]);
 }
 
-static void put_displacement(const struct vtu_writer *w, const struct vtu_point *point) {
+static void put_displacement(void *context, const struct mesh_point *point) {
+    const struct vtu_writer *w = context;
     double u[3] = {0};
     size_t d = (size_t)w->mesh->dimension;
     for (size_t k = 0; k < d; k++)
-        u[k] = mean_at(point, w->step->u, d, k);
+        u[k] = mesh_point_mean(point, w->step->u, d, k);
     fprintf(w->file, "%.9g %.9g %.9g\n", u[0], u[1], u[2]);
 }
 
-static void put_of_face(const struct vtu_writer *w, const struct vtu_point *point,
+static void put_of_face(const struct vtu_writer *w, const struct mesh_point *point,
                         const double *field, double unit) {
     bool face = point->node[0] < w->mesh->face;
     fprintf(w->file, "%.9g\n", face ? field[point->node[0]] / unit : 0);
 }
 
-static void put_pressure(const struct vtu_writer *w, const struct vtu_point *point) {
+static void put_pressure(void *context, const struct mesh_point *point) {
+    const struct vtu_writer *w = context;
     put_of_face(w, point, w->step->face.p, w->step->unit);
 }
 
-static void put_gap(const struct vtu_writer *w, const struct vtu_point *point) {
+static void put_gap(void *context, const struct mesh_point *point) {
+    const struct vtu_writer *w = context;
     put_of_face(w, point, w->step->face.gap, 1);
 }
 
-static size_t plane_columns(const struct mesh *mesh, size_t level) {
-    return mesh->level[level].nx + 1;
-}
-static size_t plane_rows(const struct mesh *mesh, size_t level) {
-    return mesh->dimension == 3 ? mesh->level[level].ny + 1 : 1;
-}
-/* Counts the points of a level, with those of its second plane. */
-static size_t plane_points(const struct mesh *mesh, size_t level) {
-    size_t points = plane_columns(mesh, level) * plane_rows(mesh, level);
-    if (level > 0 && mesh_widens(mesh, level - 1))
-        points += plane_columns(mesh, level - 1) * plane_rows(mesh, level - 1);
-    return points;
-}
-
-static void each_point(const struct vtu_writer *w,
-                       void (*put)(const struct vtu_writer *w, const struct vtu_point *point)) {
-    const struct mesh *mesh = w->mesh;
-    for (size_t k = 0; k <= mesh->layers; k++)
-        for (size_t wide = 1; wide <= (k > 0 && mesh_widens(mesh, k - 1) ? 2 : 1); wide++)
-            for (size_t j = 0; j < plane_rows(mesh, k + 1 - wide); j++)
-                for (size_t i = 0; i < plane_columns(mesh, k + 1 - wide); i++) {
-                    struct vtu_point point = point_of(mesh, k, wide, j, i);
-                    put(w, &point);
-                }
-}
-
-static void write_points(const struct vtu_writer *w) {
+static void write_points(struct vtu_writer *w) {
     fputs("      <Points>\n", w->file);
     array_open(w, "Float64", "Points", 3, "");
-    each_point(w, put_position);
+    mesh_points_each(w->mesh, put_position, w);
     array_close(w);
     fputs("      </Points>\n", w->file);
     if (w->step == NULL)
         return;
     fputs("      <PointData Scalars=\"pressure\" Vectors=\"displacement\">\n", w->file);
     array_open(w, "Float64", "displacement", 3, "");
-    each_point(w, put_displacement);
+    mesh_points_each(w->mesh, put_displacement, w);
     array_close(w);
     array_open(w, "Float64", "pressure", 1, "");
-    each_point(w, put_pressure);
+    mesh_points_each(w->mesh, put_pressure, w);
     array_close(w);
     array_open(w, "Float64", "gap", 1, "");
-    each_point(w, put_gap);
+    mesh_points_each(w->mesh, put_gap, w);
     array_close(w);
     fputs("      </PointData>\n", w->file);
 }
 
 /* --- elements --- */
 
-/* Layer and element, and the numbers of elements before those of its layer's upper and lower
- * side. */
-struct vtu_cell {
-    size_t layer, j, i, upper, lower;
-};
-
-/* VTK orders corners around each face; the mesh in binary (element.h). */
-static void put_corners(const struct vtu_writer *w, const struct vtu_cell *cell) {
-    static const int AROUND[] = {0, 1, 3, 2, 4, 5, 7, 6};
-    bool profile = w->mesh->dimension == 2;
-    for (int corner = 0; corner < 1 << w->mesh->dimension; corner++) {
-        int a = AROUND[corner], deep = profile ? a >> 1 : a >> 2, back = profile ? 0 : a >> 1 & 1;
-        size_t row = (cell->j + (size_t)back) * plane_columns(w->mesh, cell->layer);
-        fprintf(w->file, "%zu ",
-                (deep != 0 ? cell->lower : cell->upper) + row + cell->i + (size_t)(a & 1));
-    }
+static void put_corners(void *context, const struct mesh_cell *cell) {
+    const struct vtu_writer *w = context;
+    for (size_t a = 0; a < cell->corners; a++)
+        fprintf(w->file, "%zu ", cell->corner[a]);
     fputc('\n', w->file);
 }
 
-static void put_quality(const struct vtu_writer *w, const struct vtu_cell *cell) {
+static void put_quality(void *context, const struct mesh_cell *cell) {
+    const struct vtu_writer *w = context;
     double position[8][3];
     struct mesh_element element;
     mesh_element(w->mesh, cell->layer, cell->j, cell->i, &element);
@@ -187,7 +126,8 @@ static bool element_stress(const struct vtu_writer *w, double position[8][3], do
     return true;
 }
 
-static void put_stress(const struct vtu_writer *w, const struct vtu_cell *cell) {
+static void put_stress(void *context, const struct mesh_cell *cell) {
+    const struct vtu_writer *w = context;
     const struct mesh *mesh = w->mesh;
     size_t d = (size_t)mesh->dimension;
     struct mesh_element element;
@@ -208,28 +148,12 @@ static void put_stress(const struct vtu_writer *w, const struct vtu_cell *cell) 
                 (s[1][2] + s[2][1]) / 2, (s[0][2] + s[2][0]) / 2);
 }
 
-static void each_element(const struct vtu_writer *w,
-                         void (*put)(const struct vtu_writer *w, const struct vtu_cell *cell)) {
-    const struct mesh *mesh = w->mesh;
-    size_t first = 0;
-    for (size_t k = 0; k < mesh->layers; k++) {
-        size_t next = first + plane_points(mesh, k);
-        size_t hanging =
-            mesh_widens(mesh, k) ? plane_columns(mesh, k + 1) * plane_rows(mesh, k + 1) : 0;
-        struct vtu_cell cell = {.layer = k, .upper = first, .lower = next + hanging};
-        for (cell.j = 0; cell.j < mesh->level[k].ny; cell.j++)
-            for (cell.i = 0; cell.i < mesh->level[k].nx; cell.i++)
-                put(w, &cell);
-        first = next;
-    }
-}
-
-static void write_elements(const struct vtu_writer *w) {
+static void write_elements(struct vtu_writer *w) {
     bool profile = w->mesh->dimension == 2;
     size_t elements = w->mesh->elements, corners = profile ? 4 : 8;
     fputs("      <Cells>\n", w->file);
     array_open(w, "Int64", "connectivity", 1, "");
-    each_element(w, put_corners);
+    mesh_cells_each(w->mesh, put_corners, w);
     array_close(w);
     array_open(w, "Int64", "offsets", 1, "");
     for (size_t e = 1; e <= elements; e++)
@@ -242,7 +166,7 @@ static void write_elements(const struct vtu_writer *w) {
     fputs("      </Cells>\n", w->file);
 }
 
-static void write_element_data(const struct vtu_writer *w) {
+static void write_element_data(struct vtu_writer *w) {
     static const char PLANE[] =
         " ComponentName0=\"XX\" ComponentName1=\"YY\" ComponentName2=\"XY\"";
     static const char SPACE[] =
@@ -251,22 +175,20 @@ static void write_element_data(const struct vtu_writer *w) {
     bool profile = w->mesh->dimension == 2;
     fputs("      <CellData Scalars=\"quality\">\n", w->file);
     array_open(w, "Float64", "quality", 1, "");
-    each_element(w, put_quality);
+    mesh_cells_each(w->mesh, put_quality, w);
     array_close(w);
     if (w->step != NULL) {
         array_open(w, "Float64", "stress", profile ? 3 : 6, profile ? PLANE : SPACE);
-        each_element(w, put_stress);
+        mesh_cells_each(w->mesh, put_stress, w);
         array_close(w);
     }
     fputs("      </CellData>\n", w->file);
 }
 
-int mesh_file_write(FILE *file, const char *title, const struct mesh *mesh,
-                    const struct mesh_step *step, struct error *err) {
+int mesh_vtu(FILE *file, const char *title, const struct mesh *mesh, const struct mesh_step *step,
+             struct error *err) {
     struct vtu_writer w = {file, mesh, step};
-    size_t points = 0;
-    for (size_t level = 0; level <= mesh->layers; level++)
-        points += plane_points(mesh, level);
+    size_t points = mesh_points_count(mesh);
     errno = 0;
     fprintf(file,
             "<?xml version=\"1.0\"?>\n<!-- %s -->\n"

@@ -1,7 +1,7 @@
 /* Protects the VTU files of meshed blocks: well-formed, as many values as they announce, elements
  * of VTK's order and positive volume that fill the block, and a step whose stresses carry the load.
  */
-#include "core/full/mesh_file.h"
+#include "core/full/file/mesh_vtu.h"
 #include "tests/support/check.h"
 #include <stdlib.h>
 #include <string.h>
@@ -216,7 +216,7 @@ static void one_file(struct grid grid, enum kinematics kinematics, size_t wideni
     for (int pressed = 0; pressed < 2; pressed++) {
         FILE *file = tmpfile();
         assert_non_null(file);
-        if (mesh_file_write(file, "a test", mesh, pressed ? &step : NULL, &err) != 0)
+        if (mesh_vtu(file, "a test", mesh, pressed ? &step : NULL, &err) != 0)
             fail_msg("%s", err.text);
         struct parsed parsed = parse(file);
         assert_int_equal(parsed.cells, mesh->elements);
@@ -250,7 +250,7 @@ static void a_full_disk_is_told(void **state) {
     if (file == NULL)
         skip();
     assert_int_equal(mesh_create(&mesh, &grid, &block, INFINITY, &err), 0);
-    assert_int_equal(mesh_file_write(file, "a test", mesh, NULL, &err), ERROR_SYSTEM);
+    assert_int_equal(mesh_vtu(file, "a test", mesh, NULL, &err), ERROR_SYSTEM);
     assert_non_null(strstr(err.text, "cannot write the mesh"));
     mesh_destroy(&mesh);
     fclose(file);

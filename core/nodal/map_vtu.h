@@ -3,8 +3,8 @@
  *
  * A surface is made of quadrangles between its points, with z upward; a profile of lines in the
  * plane z = 0 with y upward. Numbers are in base64, without loss. */
-#ifndef RUGO_SERVER_SHOW_MAP_MAP_VTU_H
-#define RUGO_SERVER_SHOW_MAP_MAP_VTU_H
+#ifndef RUGO_CORE_NODAL_MAP_VTU_H
+#define RUGO_CORE_NODAL_MAP_VTU_H
 
 #include "core/surface/grid.h"
 #include <stdio.h>

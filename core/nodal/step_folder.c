@@ -1,0 +1,102 @@
+#include "core/nodal/step_folder.h"
+#include "core/nodal/map_vtu.h"
+#include "core/nodal/node_table.h"
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static int file_open(FILE **file, const char *path, struct error *err) {
+    *file = fopen(path, "wb");
+    return *file != NULL
+               ? 0
+               : error_set(err, ERROR_SYSTEM, "cannot open %s: %s", path, strerror(errno));
+}
+
+static int file_close(FILE **file, const char *path, int status, struct error *err) {
+    if (*file == NULL)
+        return status;
+    bool failed = ferror(*file) != 0;
+    if ((fclose(*file) != 0 || failed) && status == 0)
+        status = error_set(err, ERROR_SYSTEM, "cannot write %s: %s", path, strerror(errno));
+    *file = NULL;
+    return status;
+}
+
+/* Writes the path of a file of the folder into folder->name. */
+static void name_step(struct step_folder *folder, size_t number) {
+    snprintf(folder->name, folder->name_size, "%s/step-%zu.vtu", folder->path, number);
+}
+
+static void name_collection(struct step_folder *folder) {
+    snprintf(folder->name, folder->name_size, "%s/steps.pvd", folder->path);
+}
+
+static int collection_open(struct step_folder *folder, struct error *err) {
+    if (mkdir(folder->path, 0777) != 0 && errno != EEXIST)
+        return error_set(err, ERROR_SYSTEM, "cannot make %s: %s", folder->path, strerror(errno));
+    folder->name_size = strlen(folder->path) + 40; /* "/step-", 20 digits, ".vtu" */
+    folder->name = array_create(folder->name_size, 1);
+    if (folder->name == NULL)
+        return error_memory(err, folder->name_size, "a path");
+    name_collection(folder);
+    int status = file_open(&folder->collection, folder->name, err);
+    if (status == 0)
+        fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
+              "byte_order=\"LittleEndian\">\n  <Collection>\n",
+              folder->collection);
+    return status;
+}
+
+int step_folder_open(struct step_folder *out, const char *path, const char *nodes,
+                     struct error *err) {
+    *out = (struct step_folder){.path = path, .nodes = nodes};
+    int status = path != NULL ? collection_open(out, err) : 0;
+    if (status == 0 && nodes != NULL)
+        status = file_open(&out->table, nodes, err);
+    return status == 0 ? 0 : step_folder_close(out, status, err);
+}
+
+int step_vtu(FILE *file, const struct nodal_step *step, struct error *err) {
+    const struct map_field fields[] = {
+        {"pressure", step->p}, {"gap", step->gap}, {"contact", step->contact}};
+    if (step->mesh != NULL)
+        return mesh_vtu(file, step->title, step->mesh, step->load > 0 ? step->step : NULL, err);
+    return map_vtu(file, step->title, &step->grid, step->z, sizeof fields / sizeof *fields, fields,
+                   err);
+}
+
+static int put_vtu(struct step_folder *folder, const struct nodal_step *step, struct error *err) {
+    FILE *file;
+    name_step(folder, folder->count);
+    int status = file_open(&file, folder->name, err);
+    if (status != 0)
+        return status;
+    status = step_vtu(file, step, err);
+    status = file_close(&file, folder->name, status, err);
+    if (status == 0)
+        fprintf(folder->collection,
+                "    <DataSet timestep=\"%.9g\" group=\"\" part=\"0\" file=\"step-%zu.vtu\"/>\n",
+                step->load, folder->count);
+    return status;
+}
+
+int step_folder_put(struct step_folder *folder, const struct nodal_step *step, struct error *err) {
+    folder->count++;
+    int status = folder->path != NULL ? put_vtu(folder, step, err) : 0;
+    if (status == 0 && folder->table != NULL)
+        status = node_table_put(folder->table, folder->count == 1, step, err);
+    return status;
+}
+
+int step_folder_close(struct step_folder *folder, int status, struct error *err) {
+    if (folder->collection != NULL) {
+        fputs("  </Collection>\n</VTKFile>\n", folder->collection);
+        name_collection(folder);
+        status = file_close(&folder->collection, folder->name, status, err);
+    }
+    status = file_close(&folder->table, folder->nodes, status, err);
+    free(folder->name);
+    *folder = (struct step_folder){0};
+    return status;
+}
