@@ -26,7 +26,8 @@ static const struct {
      "\"pressures\":{\"values\":[0.02,0.1]},\"model\":[\"halfspace\",\"layered\"]}}"},
     {"own", "realisations=6", "realisations=9",
      "{\"name\":\"o\",\"kind\":\"contact\",\"seed\":4,\"realisations\":1,\"random\":"
-     "\"independent\"," SURFACE ",\"contact\":{\"pressures\":{\"values\":[0.02,0.1]}}}"},
+     "\"independent\"," SURFACE
+     ",\"contact\":{\"cell_error\":\"none\",\"pressures\":{\"values\":[0.02,0.1]}}}"},
 };
 enum { STUDY_COUNT = sizeof STUDIES / sizeof *STUDIES };
 
