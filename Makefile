@@ -304,15 +304,15 @@ run-threads:
 nightly: all
 	$(MAKE) test
 	$(MAKE) lint
-	RUGO_EFFORT=4 $(MAKE) validation
-	$(MAKE) faults
+	RUGO_EFFORT=4 $(MAKE) unit validation
+	RUGO_EFFORT=4 $(MAKE) faults
 	$(MAKE) check-documents check-install check-units check-openapi check-figures tour
 	-@tests/install-deps "" "slurmctld slurmd slurm-client munge" munged slurmctld slurmd sbatch
 	$(MAKE) slurm-test
 	$(MAKE) check-static
 	$(MAKE) BUILD=$(BUILD)-O2 CFLAGS=-O2 run-unit
 	$(MAKE) BUILD=$(BUILD)-address SAN=address,undefined run-unit
-	$(MAKE) BUILD=$(BUILD)-address SAN=address,undefined run-faults
+	RUGO_EFFORT=4 $(MAKE) BUILD=$(BUILD)-address SAN=address,undefined run-faults
 	$(MAKE) BUILD=$(BUILD)-thread SAN=thread run-threads
 	$(MAKE) fuzz SECONDS=$(SECONDS)
 .PHONY: nightly
