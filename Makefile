@@ -179,10 +179,11 @@ $(BUILD)/rugo.bash: $(BUILD)/rugo
 	@$< help bash >$@
 
 # Tests: tests/<ladder>/<layer>/<name>.c is a program; tests/*.c are shared by all of them. Those that compute little
-# themselves are compiled in two thirds of the time, and all are linked by gold, where there is one, in a third of it.
+# themselves are compiled in two thirds of the time, and all are linked by gold in half of it, where there is one. It
+# warns of hundreds of symbols of clang's sanitizers.
 QUICK = support system faults fuzz $(addprefix unit/,schema jobs worker server)
 $(foreach folder,$(QUICK),$(eval $(BUILD)/tests/$(folder)/%.c.o: private LEVEL = -O1))
-GOLD := $(if $(shell command -v ld.gold),-fuse-ld=gold)
+GOLD := $(if $(SAN),,$(if $(shell command -v ld.gold),-fuse-ld=gold))
 SUPPORT = $(call objects,$(wildcard tests/support/*.c))
 # What draws whole inputs by choices: an archive, of which each test links what it uses.
 DRAWING = $(BUILD)/libdrawing.a
