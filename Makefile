@@ -209,9 +209,11 @@ test: deps
 # So do the ladders.
 EVERY_TEST = $(foreach ladder,validation faults system unit fuzz,$(call all_tests,$(ladder))) \
              $(BUILD)/tests/system/faults/kills
+# The page is tried beside them, as a browser mostly waits; what it says follows.
 run-tests-built: all $(EVERY_TEST)
-	@RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(EVERY_TEST)
-	@tests/browser/run $(abspath $(BUILD))/rugo
+	@tests/browser/run $(abspath $(BUILD))/rugo >$(BUILD)/browser.log 2>&1 & browser=$$!; \
+	RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(EVERY_TEST); tests=$$?; \
+	wait $$browser; page=$$?; cat $(BUILD)/browser.log; [ $$tests -eq 0 ] && [ $$page -eq 0 ]
 browser: all
 	@tests/browser/run $(abspath $(BUILD))/rugo
 unit validation system: all
