@@ -13,7 +13,8 @@ import rugo
 
 URL, FOLDER = sys.argv[1], sys.argv[2]
 STUDY = {"name": "again", "kind": "statistics", "seed": 1, "realisations": 8,
-         "surface": {"hurst": [0.2, 0.8], "wavelength_ratio": 4, "length_ratio": 4}}
+         "surface": {"hurst": [0.2, 0.8], "wavelength_ratio": 4, "length_ratio": 4},
+         "statistics": {"bins": {"height": [-4, 8, 120], "curvature": [-16, 0, 16]}}}
 
 
 def refused(call, status, *words):
