@@ -20,7 +20,8 @@ struct work {
 
 static const char PROFILE[] =
     "{\"surface\": {\"dimension\": 1, \"hurst\": 0.6, \"wavelength_ratio\": 4, \"length_ratio\": 2,"
-    " \"points_per_wavelength\": 4}, \"statistics\": {\"summits\": \"refined\"}}";
+    " \"points_per_wavelength\": 4}, \"statistics\": {\"summits\": \"refined\",\"bins\": "
+    "{\"height\": [-4, 8, 24], \"curvature\": [-16, 0, 16]}}}";
 static const char WEIBULL[] =
     "{\"surface\": {\"hurst\": 0.4, \"wavelength_ratio\": 2, \"length_ratio\": 2,"
     " \"points_per_wavelength\": 4, \"heights\": {\"distribution\": \"weibull_max\", \"shape\": "

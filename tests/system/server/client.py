@@ -80,7 +80,7 @@ def faults_are_told(server):
 
 
 def many_cases_are_asked_for_one_by_one(server):
-    many = dict(STUDY, name="many", realisations=1)
+    many = dict(STUDY, name="many", realisations=1, statistics={"bins": {"height": [-4, 8, 12], "curvature": [-16, 0, 8]}})
     many["surface"] = dict(STUDY["surface"], length_ratio=2, points_per_wavelength=2,
                            hurst=[round(0.1 + c / 100, 3) for c in range(65)])
     rows = server.submit(many).wait(timeout=300).curves("summit_height_pdf")
