@@ -288,7 +288,8 @@ static double try_set(const struct scene *scene, double response[SIZE][SIZE], co
 static void check_by_every_set(struct scene *scene) {
     size_t nx = scene->grid.nx, n = scene_points(scene);
     double *unit = scene_response(scene), *weighted = zeros(n), *z = zeros(n);
-    double response[SIZE][SIZE], p[NODES_MOST] = {0}, best[NODES_MOST] = {0}, least = INFINITY;
+    double response[SIZE][SIZE] = {{0}}, p[NODES_MOST] = {0}, best[NODES_MOST] = {0},
+           least = INFINITY;
     scene_weigh(scene, unit, weighted);
     scene_weigh(scene, scene->z, z);
     for (size_t b = 0; b < n; b++)
