@@ -309,7 +309,7 @@ nightly: all
 	$(MAKE) lint
 	RUGO_EFFORT=4 $(MAKE) unit validation
 	RUGO_EFFORT=4 $(MAKE) faults
-	$(MAKE) check-documents check-install check-units check-openapi check-figures tour
+	$(MAKE) check-documents check-install check-units check-openapi check-figures check-results tour
 	-@tests/install-deps "" "slurmctld slurmd slurm-client munge" munged slurmctld slurmd sbatch
 	$(MAKE) slurm-test
 	$(MAKE) check-static
@@ -375,6 +375,12 @@ figures: all
 	@$(FIGURES)/draw $(BUILD)/rugo $(FIGURES)
 page-figures: all
 	@tests/browser/run $(abspath $(BUILD))/rugo $(FIGURES)
+# Needs sqlite3, as the documents do.
+check-results: all
+	@tests/install-deps "" sqlite3 sqlite3
+	@tests/check-results --self-test
+	@tests/check-results $(BUILD)/rugo
+.PHONY: check-results
 check-figures: all
 	@tests/same-figures --self-test
 	@$(FIGURES)/draw $(BUILD)/rugo $(BUILD)/figures

@@ -38,7 +38,8 @@ static const double CACHE_SLOPE = 0.4, CACHE_DOUBLINGS = 20;
 /* Returns the number of fast iterations until they stall or reach the tolerance. */
 static double fast_iterations(const struct surface_options *options, const struct grid *grid) {
     struct height_moments moments;
-    double reach = grid != NULL ? options->tolerance * sqrt((double)grid_points(grid)) : 0;
+    double tolerance = options->tolerance_h > 0 ? options->tolerance_h : options->tolerance;
+    double reach = grid != NULL ? tolerance * sqrt((double)grid_points(grid)) : 0;
     if (!(reach > 0) || heights_moments(&options->heights, &moments, NULL) != 0)
         return FAST_ITERATIONS;
     double reached = REACH * pow(reach, -FALL) + SKEWED * moments.skewness * moments.skewness;
@@ -187,13 +188,30 @@ double cost_full_transforms(const struct grid *grid) {
 
 /* --- scatter --- */
 
-/* A cell of n longest waves holds about n^dimension independent parts of surface. Fitted to
- * profiles of 2 to 32 and surfaces of 4 and 8 waves. Spectra of small Hurst exponents have more of
- * the short waves, of which there are many, and scatter less. */
-static const double PROFILE_SCATTER = 0.2, SURFACE_SCATTER = 0.05, HURST_LEAST = 0.25;
+/* A cell of n longest waves holds about n^dimension independent parts of surface, of which fewer
+ * bear a light load, and more where short waves have a larger share. Logarithms of the scatter
+ * times n^(dimension/2), about the load 0.03 and the ratio 4, fitted by least squares. A cell that
+ * few patches bear scatters no more than SCATTER_MOST. */
+struct scatter_fit {
+    double mean, load, ratio, ratio_hurst, hurst, fixed, fixed_load, skewness, skewness_load,
+        skewness_ratio, load_ratio;
+};
+static const struct scatter_fit SCATTER_FITS[] = {
+    {-1.006, -0.250, -0.346, 0.200, 0.137, -0.192, -0.047, 0.193, 0.017, -0.001, -0.068},
+    {-1.613, -0.348, -0.845, 0.506, 0.300, -0.366, -0.136, 0.377, 0.031, -0.096, -0.059}};
+static const double SCATTER_MOST = 0.4, SCATTER_LOAD = 0.03, SCATTER_RATIO = 4, SCATTER_HURST = 0.8,
+                    SKEWNESS_MOST = 2;
 
-double cost_area_scatter(int dimension, double long_waves, double hurst) {
-    double scatter =
-        dimension == 1 ? PROFILE_SCATTER / sqrt(long_waves) : SURFACE_SCATTER / long_waves;
-    return isnan(hurst) ? scatter : scatter * (HURST_LEAST + hurst);
+double cost_area_scatter(const struct area_scatter *of) {
+    const struct scatter_fit *fit = &SCATTER_FITS[of->dimension - 1];
+    double load = log(of->load / SCATTER_LOAD), ratio = log(of->ratio / SCATTER_RATIO);
+    double hurst = isnan(of->hurst) ? SCATTER_HURST : of->hurst;
+    double skewness = fmax(-SKEWNESS_MOST, fmin(of->skewness, SKEWNESS_MOST));
+    double logarithm = fit->mean + fit->load * load + fit->ratio * ratio +
+                       fit->ratio_hurst * ratio * hurst + fit->hurst * hurst +
+                       fit->skewness * skewness + fit->skewness_load * skewness * load +
+                       fit->skewness_ratio * skewness * ratio + fit->load_ratio * load * ratio;
+    if (of->fixed)
+        logarithm += fit->fixed + fit->fixed_load * load;
+    return fmin(exp(logarithm) * pow(of->long_waves, -of->dimension / 2.0), SCATTER_MOST);
 }

@@ -51,8 +51,19 @@ double cost_full_bytes(const struct grid *grid, const struct block *block,
  * long as an iteration of Newton's method on a degree of freedom. */
 double cost_full_transforms(const struct grid *grid);
 
-/* Standard deviation of the contact fraction between realisations, over its mean. long_waves: side
- * of the cell in longest waves; hurst: NaN for spectra that are not self-affine. */
-double cost_area_scatter(int dimension, double long_waves, double hurst);
+/* What the contact fraction of a realisation scatters with. */
+struct area_scatter {
+    int dimension;
+    bool fixed;        /* amplitudes, of Gaussian heights */
+    double long_waves; /* side of the cell in longest waves */
+    double ratio;      /* of the longest and the shortest wave */
+    double hurst;      /* NaN for spectra that are not self-affine */
+    double skewness;   /* of the heights */
+    double load;       /* p/(E* h') */
+};
+/* Returns the standard deviation of the contact fraction between realisations, over its mean. Of
+ * 743 fractions (H 0.2 to 0.8, ratios 4 to 32, cells of 2 to 16 waves, Gaussian and Weibull heights
+ * of both tails, loads 0.003 to 0.3) the scatter was 0.7 to 1.5 of it in nine of ten. */
+double cost_area_scatter(const struct area_scatter *of);
 
 #endif

@@ -101,14 +101,16 @@ RUGO_API int rugo_ratio_of_alpha(int dimension, double hurst, double rolloff, do
 
 /* --- random surfaces --- */
 
-/* RUGO_GAUSSIAN, RUGO_WEIBULL_MIN, RUGO_WEIBULL_MAX, RUGO_LOGNORMAL, RUGO_QUANTILE. */
+/* RUGO_GAUSSIAN, RUGO_WEIBULL_MIN, RUGO_WEIBULL_MAX, RUGO_LOGNORMAL, RUGO_GAMMA, RUGO_BETA,
+ * RUGO_QUANTILE. */
 enum rugo_heights_type { RUGO_DISTRIBUTIONS(RUGO_ENTRY) RUGO_QUANTILE = RUGO_QUANTILE_VALUE };
 /* Heights are scaled to mean 0 and to the RMS height of the spectrum, whatever the distribution. A
  * non-Gaussian surface is made by alternating between the spectrum and the heights (Perez-Rafols &
  * Almqvist 2019). */
 struct rugo_surface_options {
     enum rugo_heights_type heights;
-    double shape; /* Weibull's, [0.5, 20]; of the log-normal one, [0.01, 1] */
+    double shape; /* Weibull's, [0.5, 20]; of the log-normal one, [0.01, 1]; gamma, [0.25, 1000];
+                     beta, [0.5, 100] */
     double (*quantile)(double probability, const void *context); /* rising on (0, 1) */
     const void *quantile_context;                                /* borrowed */
     int keep_heights;      /* which is exact in the result: 0 the spectrum, 1 the heights */
@@ -116,6 +118,7 @@ struct rugo_surface_options {
     size_t max_iterations; /* of the iteration */
     int random_amplitudes; /* 0: each surface has the spectrum; 1: their mean has it, and waves have
                               Rayleigh's amplitudes, as a part of an infinite surface has */
+    double second_shape;   /* of beta, [0.5, 100]; 0: as the first */
 };
 /* Returns options for Gaussian surfaces, with a tolerance of 1e-3 and at most 1000 iterations. */
 RUGO_API struct rugo_surface_options rugo_surface_defaults(void);

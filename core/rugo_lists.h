@@ -12,12 +12,15 @@
     ENTRY(TABLE, "table", 2)
 
 /* Distributions of heights: normal; F(z) = 1 - exp(-z^shape), z > 0, and its mirror image; log z
- * normal with the standard deviation `shape`. */
+ * normal with the standard deviation `shape`; density z^(shape - 1) exp(-z), z > 0; density
+ * z^(shape - 1) (1 - z)^(second shape - 1), 0 < z < 1. */
 #define RUGO_DISTRIBUTIONS(ENTRY)                                                                  \
     ENTRY(GAUSSIAN, "gaussian", 0)                                                                 \
     ENTRY(WEIBULL_MIN, "weibull_min", 1)                                                           \
     ENTRY(WEIBULL_MAX, "weibull_max", 2)                                                           \
-    ENTRY(LOGNORMAL, "lognormal", 4)
+    ENTRY(LOGNORMAL, "lognormal", 4)                                                               \
+    ENTRY(GAMMA, "gamma", 5)                                                                       \
+    ENTRY(BETA, "beta", 6)
 /* Beside them: any distribution of finite mean and deviation, by its quantiles. */
 #define RUGO_QUANTILE_VALUE 3
 

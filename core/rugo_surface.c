@@ -112,6 +112,7 @@ static int options_take(struct surface_options *out, const struct rugo_surface_o
         return error_set(err, ERROR_INPUT, "a distribution by its quantiles has no function");
     out->heights = (struct heights){.type = TYPES[from->heights],
                                     .shape = from->shape,
+                                    .second = from->second_shape,
                                     .quantile = from->quantile,
                                     .context = from->quantile_context};
     out->amplitudes = from->random_amplitudes != 0 ? AMPLITUDES_RANDOM : AMPLITUDES_FIXED;

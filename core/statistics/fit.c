@@ -78,16 +78,34 @@ struct residuals {
     double rr, rj, jj;
 };
 
-static struct residuals residuals_at(double a, const struct points *points) {
+static struct residuals residuals_at(double a, size_t n, const double *load,
+                                     const double *fraction) {
     struct sum rr = {0}, rj = {0}, jj = {0};
-    for (size_t i = 0; i < points->n; i++) {
-        double x = sqrt(M_PI) / 2 * a * points->load[i];
-        double r = points->fraction[i] - erf(x), j = points->load[i] * exp(-x * x);
+    for (size_t i = 0; i < n; i++) {
+        double x = sqrt(M_PI) / 2 * a * load[i];
+        double r = fraction[i] - erf(x), j = load[i] * exp(-x * x);
         sum_add(&rr, r * r);
         sum_add(&rj, r * j);
         sum_add(&jj, j * j);
     }
     return (struct residuals){sum_value(&rr), sum_value(&rj), sum_value(&jj)};
+}
+
+static struct residuals residuals_of(double a, const struct points *points) {
+    return residuals_at(a, points->n, points->load, points->fraction);
+}
+
+double fit_erf_near(size_t n, const double *load, const double *fraction, double near) {
+    enum { STEPS_MOST = 50 };
+    double a = near;
+    for (int step = 0; step < STEPS_MOST && a > 0; step++) {
+        struct residuals at = residuals_at(a, n, load, fraction);
+        double next = a + at.rj / at.jj;
+        if (fabs(next - a) <= 1e-14 * a)
+            return next;
+        a = next;
+    }
+    return NAN;
 }
 
 /* The slope where the gradient -2 sum(rJ) changes from falling to rising: Gauss-Newton steps kept
@@ -99,11 +117,11 @@ static double least_squares_slope(const struct points *points) {
     /* erf(sqrt(pi)/2 a load) <= a load: at `low` the curve lies under all points. */
     low = fmax(low, DBL_MIN);
     double high = 2 * low;
-    while (residuals_at(high, points).rj > 0)
+    while (residuals_of(high, points).rj > 0)
         high *= 2;
     double a = low;
     for (int step = 0; step < 200 && high - low > 4e-16 * high; step++) {
-        struct residuals at = residuals_at(a, points);
+        struct residuals at = residuals_of(a, points);
         if (at.rj > 0)
             low = a;
         else
@@ -127,7 +145,7 @@ int fit_erf(size_t n, const double *load, const double *fraction, struct fit *ou
     struct fit fit = nothing(points.n);
     if (points.n >= 1) {
         fit.a = least_squares_slope(&points);
-        struct residuals at = residuals_at(fit.a, &points);
+        struct residuals at = residuals_of(fit.a, &points);
         if (points.n >= 2)
             fit.error_a = sqrt(at.rr / (double)(points.n - 1) / at.jj);
     }

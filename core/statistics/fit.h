@@ -25,5 +25,8 @@ int fit_power_law(size_t n, const double *load, const double *fraction, struct f
  * (Persson: sqrt(8/pi)). At least one point; its error needs two. */
 int fit_erf(size_t n, const double *load, const double *fraction, struct fit *out,
             struct error *err);
+/* Returns the same slope, to rounding, by steps from one near it, such as that of all points but
+ * the last; NaN where they do not end. All points are in the range. */
+double fit_erf_near(size_t n, const double *load, const double *fraction, double near);
 
 #endif

@@ -19,6 +19,7 @@ struct height_error {
     double first_edge, width; /* lower edge of bin 1 */
     uint32_t *target;         /* counts of z_h */
     uint32_t *count;          /* counts of z_s */
+    double weights[3];        /* of eps_h, eps_s and eps_s0 */
 };
 
 /* Returns an upper bound of the number of bins: n values of standard deviation 1 lie within sqrt(n)
@@ -62,6 +63,7 @@ int height_error_create(struct height_error **out, const struct modes *modes, st
         return error_memory(err, sizeof *e, "errors of heights");
     e->modes = modes;
     e->bins_most = bins_for(grid_points(grid));
+    e->weights[0] = e->weights[1] = e->weights[2] = 1;
     e->target = array_create(e->bins_most, sizeof *e->target);
     e->count = array_create(e->bins_most, sizeof *e->count);
     int status = 0;
@@ -200,13 +202,18 @@ double height_error_measure(struct height_error *e, const double *z_s, const dou
     histogram_count(e, z_s, e->count);
     report->eps_h = height_error_heights(e);
     double null_power = fmax(1 - band_errors(e, spectrum, report), 0);
-    double worst = fmax(report->eps_h, report->eps_s);
+    double worst = fmax(e->weights[0] * report->eps_h, e->weights[1] * report->eps_s);
     report->eps_s0 = report->eps_s0_amplitude = 0;
     if (null_count > 0) {
         report->eps_s0_amplitude = sqrt(null_power / null_count) / e->mean_amplitude;
         report->eps_s0 = null_power / sqrt(null_count) * count;
-        if (complete || report->eps_s0 > worst)
+        if (complete || e->weights[2] * report->eps_s0 > worst)
             report->eps_s0 = sqrt(null_squares(e, z_h, spectrum) / null_count) * count;
     }
-    return fmax(worst, report->eps_s0);
+    return fmax(worst, e->weights[2] * report->eps_s0);
+}
+
+void height_error_weigh(struct height_error *e, const double weights[3]) {
+    for (size_t a = 0; a < 3; a++)
+        e->weights[a] = weights[a];
 }

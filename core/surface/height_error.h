@@ -26,11 +26,14 @@ void height_error_heights_start(struct height_error *e);
 void height_error_heights_add(struct height_error *e, size_t n, const double *z_s);
 double height_error_heights(const struct height_error *e);
 
-/* Fills the errors of report and returns the largest. spectrum: the half spectrum of z_h on the
- * band, as transform_forward leaves it. eps_s0 needs a transform of the whole grid. Without
- * `complete` that is done only where its bound by Parseval's sum exceeds both other errors;
- * otherwise eps_s0 is that bound. The largest error is exact in both cases, because a bound below
- * another error does not change it. */
+/* Sets what eps_h, eps_s and eps_s0 are multiplied by before the largest is taken; 1 each before.
+ */
+void height_error_weigh(struct height_error *e, const double weights[3]);
+/* Fills the errors of report and returns the largest, with their weights. spectrum: the half
+ * spectrum of z_h on the band, as transform_forward leaves it. eps_s0 needs a transform of the
+ * whole grid. Without `complete` that is done only where its bound by Parseval's sum exceeds both
+ * other errors; otherwise eps_s0 is that bound. The largest error is exact in both cases, because a
+ * bound below another error does not change it. */
 double height_error_measure(struct height_error *e, const double *z_s, const double *z_h,
                             const double complex *spectrum, bool complete,
                             struct surface_report *report);

@@ -1,4 +1,5 @@
 #include "core/surface/heights.h"
+#include "core/surface/inverse_cdf.h"
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stddef.h>
@@ -11,23 +12,28 @@ static const double PROBABILITY_MOST = 1 - 0x1p-53;
 
 /* --- Gaussian --- */
 
-static void gaussian_moments(double shape, struct height_moments *out) {
-    (void)shape;
+static void gaussian_moments(const struct heights *of, struct height_moments *out) {
+    (void)of;
     *out = (struct height_moments){0, 1, 0, 3, -INFINITY, INFINITY};
 }
 
-static double gaussian_quantile(double shape, double probability) {
-    (void)shape;
+static double gaussian_quantile(const struct heights *of, double probability) {
+    (void)of;
     return gsl_cdf_ugaussian_Pinv(probability);
 }
 
-static double gaussian_cdf(double shape, double raw) {
-    (void)shape;
-    return erfc(-raw / M_SQRT2) / 2;
+/* Returns the share of standard Gaussian numbers below a score. */
+static double share_below(double score) {
+    return erfc(-score / M_SQRT2) / 2;
 }
 
-static double gaussian_at_score(double shape, double score) {
-    (void)shape;
+static double gaussian_cdf(const struct heights *of, double raw) {
+    (void)of;
+    return share_below(raw);
+}
+
+static double gaussian_at_score(const struct heights *of, double score) {
+    (void)of;
     return score;
 }
 
@@ -35,7 +41,8 @@ static double gaussian_at_score(double shape, double score) {
 
 /* Central moments of a Weibull minimum of scale 1 in units of its mean, F4.2. They are written in
  * e_k = Gamma(1 + k/C)/Gamma(1 + 1/C)^k - 1, so that the large equal terms cancel exactly. */
-static void weibull_min_moments(double shape, struct height_moments *out) {
+static void weibull_min_moments(const struct heights *of, struct height_moments *out) {
+    double shape = of->shape;
     int sign; /* lgamma() would write a global variable */
     double log1 = lgamma_r(1 + 1 / shape, &sign);
     double e2 = expm1(lgamma_r(1 + 2 / shape, &sign) - 2 * log1);
@@ -50,45 +57,45 @@ static void weibull_min_moments(double shape, struct height_moments *out) {
     out->highest = INFINITY;
 }
 
-static double weibull_min_quantile(double shape, double probability) {
-    return pow(-log1p(-probability), 1 / shape);
+static double weibull_min_quantile(const struct heights *of, double probability) {
+    return pow(-log1p(-probability), 1 / of->shape);
 }
 
-static double weibull_min_cdf(double shape, double raw) {
-    return -expm1(-(raw > 0 ? pow(raw, shape) : 0));
+static double weibull_min_cdf(const struct heights *of, double raw) {
+    return -expm1(-(raw > 0 ? pow(raw, of->shape) : 0));
 }
 
 /* The logarithm of the share above a score: from the share below where that is the smaller. */
-static double weibull_min_at_score(double shape, double score) {
+static double weibull_min_at_score(const struct heights *of, double score) {
     double smaller = erfc(fabs(score) / M_SQRT2) / 2;
-    return pow(score > 0 ? -log(smaller) : -log1p(-smaller), 1 / shape);
+    return pow(score > 0 ? -log(smaller) : -log1p(-smaller), 1 / of->shape);
 }
 
-static void weibull_max_moments(double shape, struct height_moments *out) {
-    weibull_min_moments(shape, out);
+static void weibull_max_moments(const struct heights *of, struct height_moments *out) {
+    weibull_min_moments(of, out);
     out->mean = -out->mean;
     out->skewness = -out->skewness;
     out->highest = -out->lowest;
     out->lowest = -INFINITY;
 }
 
-static double weibull_max_quantile(double shape, double probability) {
-    return -pow(-log(probability), 1 / shape);
+static double weibull_max_quantile(const struct heights *of, double probability) {
+    return -pow(-log(probability), 1 / of->shape);
 }
 
-static double weibull_max_cdf(double shape, double raw) {
-    return exp(-(raw < 0 ? pow(-raw, shape) : 0));
+static double weibull_max_cdf(const struct heights *of, double raw) {
+    return exp(-(raw < 0 ? pow(-raw, of->shape) : 0));
 }
 
-static double weibull_max_at_score(double shape, double score) {
-    return -weibull_min_at_score(shape, -score);
+static double weibull_max_at_score(const struct heights *of, double score) {
+    return -weibull_min_at_score(of, -score);
 }
 
 /* --- log-normal: exp(s x) of a Gaussian x, median 1 (Johnson, Kotz & Balakrishnan 1994, chapter
  * 14); the shape is s, the standard deviation of the logarithm --- */
 
-static void lognormal_moments(double shape, struct height_moments *out) {
-    double square = shape * shape, spread = sqrt(expm1(square)); /* deviation over mean */
+static void lognormal_moments(const struct heights *of, struct height_moments *out) {
+    double square = of->shape * of->shape, spread = sqrt(expm1(square)); /* deviation over mean */
     out->mean = exp(square / 2);
     out->deviation = out->mean * spread;
     out->skewness = (exp(square) + 2) * spread;
@@ -97,16 +104,71 @@ static void lognormal_moments(double shape, struct height_moments *out) {
     out->highest = INFINITY;
 }
 
-static double lognormal_quantile(double shape, double probability) {
-    return exp(shape * gsl_cdf_ugaussian_Pinv(probability));
+static double lognormal_quantile(const struct heights *of, double probability) {
+    return exp(of->shape * gsl_cdf_ugaussian_Pinv(probability));
 }
 
-static double lognormal_cdf(double shape, double raw) {
-    return raw > 0 ? gaussian_cdf(0, log(raw) / shape) : 0;
+static double lognormal_cdf(const struct heights *of, double raw) {
+    return raw > 0 ? share_below(log(raw) / of->shape) : 0;
 }
 
-static double lognormal_at_score(double shape, double score) {
-    return exp(shape * score);
+static double lognormal_at_score(const struct heights *of, double score) {
+    return exp(of->shape * score);
+}
+
+/* --- gamma, scale 1 (Johnson, Kotz & Balakrishnan 1994, chapter 17), F4.7 --- */
+
+/* Scores beyond these have probabilities that no number holds. */
+static const double SCORE_MOST = 37;
+
+static void gamma_moments(const struct heights *of, struct height_moments *out) {
+    double root = sqrt(of->shape);
+    *out = (struct height_moments){of->shape, root, 2 / root, 3 + 6 / of->shape, -root, INFINITY};
+}
+
+static double gamma_quantile(const struct heights *of, double probability) {
+    return gamma_quantile_of(of->shape, probability, 1 - probability);
+}
+
+static double gamma_cdf(const struct heights *of, double raw) {
+    return raw > 0 ? gsl_cdf_gamma_P(raw, of->shape, 1) : 0;
+}
+
+static double gamma_at_score(const struct heights *of, double score) {
+    score = fmax(-SCORE_MOST, fmin(SCORE_MOST, score));
+    return gamma_quantile_of(of->shape, share_below(score), share_below(-score));
+}
+
+/* --- beta on [0, 1] (Johnson, Kotz & Balakrishnan 1995, chapter 25), F4.8 --- */
+
+/* Without a second shape the distribution is symmetric. */
+static double second_shape(const struct heights *of) {
+    return of->second > 0 ? of->second : of->shape;
+}
+
+static void beta_moments(const struct heights *of, struct height_moments *out) {
+    double a = of->shape, b = second_shape(of), sum = a + b;
+    double root = sqrt(a * b / (sum + 1)); /* deviation times the sum */
+    out->mean = a / sum;
+    out->deviation = root / sum;
+    out->skewness = 2 * (b - a) * sqrt((sum + 1) / (a * b)) / (sum + 2);
+    out->kurtosis = 3 + 6 * ((a - b) * (a - b) * (sum + 1) - a * b * (sum + 2)) /
+                            (a * b * (sum + 2) * (sum + 3));
+    out->lowest = -a / root;
+    out->highest = b / root;
+}
+
+static double beta_quantile(const struct heights *of, double probability) {
+    return beta_quantile_of(of->shape, second_shape(of), probability, 1 - probability);
+}
+
+static double beta_cdf(const struct heights *of, double raw) {
+    return gsl_cdf_beta_P(fmax(0, fmin(1, raw)), of->shape, second_shape(of));
+}
+
+static double beta_at_score(const struct heights *of, double score) {
+    score = fmax(-SCORE_MOST, fmin(SCORE_MOST, score));
+    return beta_quantile_of(of->shape, second_shape(of), share_below(score), share_below(-score));
 }
 
 /* The functions of a distribution have its name at their beginning. */
@@ -126,6 +188,17 @@ static const struct distribution DISTRIBUTIONS[] = {
                            .shape_low = 0.01,
                            .shape_high = 1,
                            FUNCTIONS(lognormal)},
+    [HEIGHTS_GAMMA] = {.family = "gamma",
+                       .shape_means = "shape of a gamma distribution",
+                       .shape_low = 0.25,
+                       .shape_high = 1000,
+                       FUNCTIONS(gamma)},
+    [HEIGHTS_BETA] = {.family = "beta",
+                      .shape_means = "first shape of a beta distribution",
+                      .shape_low = 0.5,
+                      .shape_high = 100,
+                      .has_second = true,
+                      FUNCTIONS(beta)},
 };
 _Static_assert(sizeof DISTRIBUTIONS / sizeof *DISTRIBUTIONS == HEIGHTS_QUANTILE,
                "every distribution with a name has its row");
@@ -221,32 +294,43 @@ int heights_moments(const struct heights *heights, struct height_moments *out, s
         !(heights->shape >= row->shape_low && heights->shape <= row->shape_high))
         return error_set(err, ERROR_INPUT, "%s: %g is not in [%g, %g]", row->shape_means,
                          heights->shape, row->shape_low, row->shape_high);
-    row->moments(heights->shape, out);
+    if (row->has_second && heights->second != 0 &&
+        !(heights->second >= row->shape_low && heights->second <= row->shape_high))
+        return error_set(err, ERROR_INPUT,
+                         "second shape of a %s distribution: %g is not in [%g, %g]", row->family,
+                         heights->second, row->shape_low, row->shape_high);
+    row->moments(heights, out);
     return 0;
 }
 
-static double skewness_at(const struct distribution *row, double shape) {
+static double skewness_at(const struct distribution *row, const struct heights *of, double shape) {
+    struct heights heights = *of;
     struct height_moments moments;
-    row->moments(shape, &moments);
+    heights.shape = shape;
+    row->moments(&heights, &moments);
     return moments.skewness;
 }
 
-/* The skewness of each distribution rises or falls over the whole range of its shape. */
-int heights_shape_of_skewness(enum heights_type type, double skewness, double *shape,
+/* The skewness of each distribution rises or falls over the whole range of its shape, unless it is
+ * symmetric for all. */
+int heights_shape_of_skewness(const struct heights *of, double skewness, double *shape,
                               struct error *err) {
     enum { HALVINGS = 100 };
-    const struct distribution *row = heights_distribution(type);
+    const struct distribution *row = heights_distribution(of->type);
     if (row == NULL || row->shape_means == NULL)
         return error_set(err, ERROR_INPUT, "these heights have no shape to be solved for");
     double low = row->shape_low, high = row->shape_high;
-    double at_low = skewness_at(row, low), at_high = skewness_at(row, high);
+    double at_low = skewness_at(row, of, low), at_high = skewness_at(row, of, high);
+    if (at_low == at_high)
+        return error_set(err, ERROR_INPUT,
+                         "with equal shapes the skewness is %g; give the second shape", at_low);
     double sign = at_high > at_low ? 1 : -1;
     if (!(sign * skewness >= sign * at_low && sign * skewness <= sign * at_high))
         return error_set(err, ERROR_INPUT, "no shape has the skewness %g; allowed: %.4g to %.4g",
                          skewness, fmin(at_low, at_high), fmax(at_low, at_high));
     for (int n = 0; n < HALVINGS; n++) {
         double middle = (low + high) / 2;
-        if (sign * skewness_at(row, middle) < sign * skewness)
+        if (sign * skewness_at(row, of, middle) < sign * skewness)
             low = middle;
         else
             high = middle;
@@ -255,10 +339,34 @@ int heights_shape_of_skewness(enum heights_type type, double skewness, double *s
     return 0;
 }
 
+/* F4.8. */
+int heights_shapes_of_moments(double skewness, double kurtosis, struct heights *out,
+                              struct error *err) {
+    const struct distribution *row = &DISTRIBUTIONS[HEIGHTS_BETA];
+    double square = skewness * skewness, least = square + 1, most = 3 + 1.5 * square;
+    if (!(kurtosis > least && kurtosis < most))
+        return error_set(err, ERROR_INPUT,
+                         "no beta distribution of skewness %g has the kurtosis %g; allowed: (%.4g, "
+                         "%.4g)",
+                         skewness, kurtosis, least, most);
+    double sum = 6 * (kurtosis - least) / (2 * (most - kurtosis));
+    double apart = (sum + 2) * skewness / sqrt((sum + 2) * (sum + 2) * square + 16 * (sum + 1));
+    double a = sum / 2 * (1 - apart), b = sum / 2 * (1 + apart);
+    if (!(fmin(a, b) >= row->shape_low && fmax(a, b) <= row->shape_high))
+        return error_set(
+            err, ERROR_INPUT,
+            "skewness %g and kurtosis %g are those of a beta distribution of the shapes "
+            "%.4g and %.4g; allowed: [%g, %g]",
+            skewness, kurtosis, a, b, row->shape_low, row->shape_high);
+    out->shape = a;
+    out->second = b;
+    return 0;
+}
+
 double heights_quantile(const struct heights *heights, const struct height_moments *moments,
                         double probability) {
     const struct distribution *row = heights_distribution(heights->type);
-    double raw = row != NULL ? row->quantile(heights->shape, probability)
+    double raw = row != NULL ? row->quantile(heights, probability)
                  : heights->type == HEIGHTS_TABLE
                      ? height_table_quantile(heights->table, probability)
                      : heights->quantile(probability, heights->context);
@@ -270,11 +378,11 @@ double heights_at_score(const struct heights *heights, const struct height_momen
     const struct distribution *row = heights_distribution(heights->type);
     double raw;
     if (row != NULL)
-        raw = row->at_score(heights->shape, score);
+        raw = row->at_score(heights, score);
     else if (heights->type == HEIGHTS_TABLE)
         raw = height_table_at_score(heights->table, score);
     else
-        raw = heights->quantile(fmin(gaussian_cdf(0, score), PROBABILITY_MOST), heights->context);
+        raw = heights->quantile(fmin(share_below(score), PROBABILITY_MOST), heights->context);
     return (raw - moments->mean) / moments->deviation;
 }
 
@@ -282,6 +390,6 @@ double heights_cdf(const struct heights *heights, const struct height_moments *m
     const struct distribution *row = heights_distribution(heights->type);
     double raw = moments->mean + moments->deviation * z;
     if (row != NULL)
-        return row->cdf(heights->shape, raw);
+        return row->cdf(heights, raw);
     return heights->type == HEIGHTS_TABLE ? height_table_cdf(heights->table, raw) : NAN;
 }

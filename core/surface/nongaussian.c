@@ -209,15 +209,27 @@ struct nongaussian {
                        iteration */
     struct fast_step *fast; /* NULL for iterations that always rank exactly */
     struct height_error *height_error;
+    double limit;         /* of the largest error with its weight */
+    double heights_limit; /* of eps_h */
 };
 
 static bool is_fast(const struct surface_options *options) {
     return options->iteration == ITERATION_REFLECTIONS || options->iteration == ITERATION_MOMENTUM;
 }
 
+/* Returns whether an error has a tolerance of its own. */
+static bool has_own(const struct surface_options *o) {
+    return o->tolerance_h != 0 || o->tolerance_s != 0 || o->tolerance_s0 != 0;
+}
+
 static int options_check(const struct surface_options *o, struct error *err) {
     if (!(o->tolerance >= 0 && isfinite(o->tolerance)))
         return error_set(err, ERROR_INPUT, "tolerance = %g; allowed: 0 or more", o->tolerance);
+    if (!(o->tolerance_h >= 0 && o->tolerance_s >= 0 && o->tolerance_s0 >= 0) ||
+        (has_own(o) && !(o->tolerance > 0)))
+        return error_set(err, ERROR_INPUT,
+                         "tolerances = %g, %g, %g; allowed: 0 or more, beside a tolerance above 0",
+                         o->tolerance_h, o->tolerance_s, o->tolerance_s0);
     if (!(o->stall_gain >= 0 && o->stall_gain < 1))
         return error_set(err, ERROR_INPUT, "stall gain = %g; allowed: 0 to below 1", o->stall_gain);
     if (o->stall_iterations < 1 || o->max_iterations < 1)
@@ -229,6 +241,19 @@ static int options_check(const struct surface_options *o, struct error *err) {
         return error_set(err, ERROR_INPUT, "relaxation = %g; allowed: above 0, up to 1",
                          o->relaxation);
     return 0;
+}
+
+/* Sets the weights of errors, by which the largest is at most `limit` where all are within their
+ * tolerances. */
+static void tolerances_set(struct nongaussian *g) {
+    const struct surface_options *o = &g->options;
+    const double own[3] = {o->tolerance_h, o->tolerance_s, o->tolerance_s0};
+    double weights[3] = {1, 1, 1};
+    g->limit = has_own(o) ? 1 : o->tolerance;
+    g->heights_limit = o->tolerance_h > 0 ? o->tolerance_h : o->tolerance;
+    for (size_t a = 0; a < 3 && has_own(o); a++)
+        weights[a] = 1 / (own[a] > 0 ? own[a] : o->tolerance);
+    height_error_weigh(g->height_error, weights);
 }
 
 static size_t band_size(const struct modes *modes) {
@@ -287,6 +312,7 @@ int nongaussian_create(struct nongaussian **out, const struct modes *modes,
         nongaussian_destroy(&g);
         return status;
     }
+    tolerances_set(g);
     *out = g;
     return 0;
 }
@@ -407,7 +433,7 @@ static int plain_phase(struct nongaussian *g, struct transform *transform, doubl
         bool gained = worst <= best * (1 - options->stall_gain);
         best = gained ? worst : best;
         stuck = gained ? 0 : stuck + 1;
-        if (worst <= options->tolerance)
+        if (worst <= g->limit)
             report->end = END_CONVERGED;
         else if (stuck >= options->stall_iterations)
             report->end = END_STALLED;
@@ -462,7 +488,7 @@ static void fast_phase(struct nongaussian *g, struct transform *transform, doubl
             best = eps;
             best_at = number;
         }
-        if (eps <= options->tolerance)
+        if (eps <= g->heights_limit)
             report->end = END_CONVERGED;
         else if (number - best_at >= options->stall_iterations)
             report->end = END_STALLED;
@@ -511,6 +537,8 @@ static int iterate(struct nongaussian *g, struct transform *transform, double *z
 void nongaussian_aim(struct nongaussian *g, const struct surface_aim *aim) {
     g->options.iteration = aim->iteration;
     g->options.tolerance = aim->tolerance;
+    g->options.tolerance_h = g->options.tolerance_s = g->options.tolerance_s0 = 0;
+    tolerances_set(g);
     g->options.stall_iterations = aim->stall_iterations;
     g->options.max_iterations = aim->max_iterations;
 }

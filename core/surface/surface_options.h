@@ -34,6 +34,8 @@ struct surface_options {
     enum surface_draw draw; /* target heights drawn at random, or exact quantiles */
     double
         tolerance; /* on eps_h, eps_s and eps_s0 (F5.2); default 1e-3; 0 iterates until it stalls */
+    /* On eps_h, eps_s and eps_s0 alone, in place of it; 0: as it, which is above 0 where one is. */
+    double tolerance_h, tolerance_s, tolerance_s0;
     double stall_gain; /* default 0.05: it stalls when the largest error has not fallen by this
                           share */
     size_t stall_iterations;   /* default 10: ... in this many iterations */
@@ -66,7 +68,7 @@ enum surface_end { END_DIRECT, END_CONVERGED, END_STALLED, END_LIMIT };
 struct surface_report {
     size_t iterations;
     enum surface_end end;
-    double eps_h, eps_s, eps_s0;              /* of the PSD, compared with the tolerance */
+    double eps_h, eps_s, eps_s0;              /* of the PSD, compared with the tolerances */
     double eps_s_amplitude, eps_s0_amplitude; /* of the amplitude, as in the authors' code */
 };
 

@@ -78,18 +78,18 @@ static struct asperity_contact spheres_contact(const void *theory, double separa
  * kappa_1 - kappa_2 is independent of height and mean curvature but for the factor
  * kappa_1 kappa_2. */
 
-static void shape_at(double theta, double weight, double *square, double *area, double *load) {
+struct asperity_ellipse asperity_ellipse_at(double theta) {
     double lambda = tanh(theta / 2), less = 2 / (1 + exp(theta)); /* 1 - lambda */
     double m = lambda * lambda, rest = less * (1 + lambda);       /* 1 - m */
     double b = rest * gsl_sf_ellint_RD(0, 1, rest, GSL_PREC_DOUBLE) / 3;
-    double d = rest * gsl_sf_ellint_RD(0, rest, 1, GSL_PREC_DOUBLE) / 3; /* (1 - m) D */
-    double n = (1 + m) * b + d, first = rest * b + d;                    /* first = (1 - m) K */
-    double rho = lambda * (2 * b + d) / n, less_rho = less * (less * b + d) / n;
+    double d = rest * gsl_sf_ellint_RD(0, rest, 1, GSL_PREC_DOUBLE) / 3;   /* (1 - m) D */
+    double n = (1 + m) * b + d, first = rest * b + d;                      /* first = (1 - m) K */
     double slope = (rest * b * b + (3 + m) * b * d + 2 * d * d) / (n * n); /* drho/dlambda */
-    double measure = weight * rest / 2 * slope * less_rho * (1 + rho) * rho;
-    *square = rho * rho;
-    *area = measure * n / first;
-    *load = measure * M_PI_2 * sqrt(n * rest / first) / first;
+    return (struct asperity_ellipse){.elongation = lambda * (2 * b + d) / n,
+                                     .roundness = less * (less * b + d) / n,
+                                     .rate = rest / 2 * slope,
+                                     .area = n / first,
+                                     .load = M_PI_2 * sqrt(n * rest / first) / first};
 }
 
 void asperity_shapes_fill(struct asperity_shapes *shapes) {
@@ -102,8 +102,12 @@ void asperity_shapes_fill(struct asperity_shapes *shapes) {
         quadrature_panel(ENDS[panel], ENDS[panel + 1], theta, weight);
         for (size_t node = 0; node < QUADRATURE_NODES; node++) {
             size_t n = panel * QUADRATURE_NODES + node;
-            shape_at(theta[node], weight[node], &shapes->square[n], &shapes->area[n],
-                     &shapes->load[n]);
+            const struct asperity_ellipse ellipse = asperity_ellipse_at(theta[node]);
+            double rho = ellipse.elongation;
+            double measure = weight[node] * ellipse.rate * ellipse.roundness * (1 + rho) * rho;
+            shapes->square[n] = rho * rho;
+            shapes->area[n] = measure * ellipse.area;
+            shapes->load[n] = measure * ellipse.load;
         }
     }
 }

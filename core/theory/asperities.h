@@ -12,6 +12,14 @@ struct asperity_contact {
 /* separation: from the mean plane, in sqrt(m0); load and area fall as it grows. */
 typedef struct asperity_contact asperity_contact_at(const void *theory, double separation);
 
+/* Hertz's ellipse with the ratio exp(-theta) of its axes, theta >= 0: the elongation rho of the
+ * summit, 1 - rho, drho/dtheta, and what the shape does to the area pi w/kappa_m and the load
+ * (4/3) E* w^(3/2)/sqrt(kappa_m) of a sphere of its mean curvature. */
+struct asperity_ellipse {
+    double elongation, roundness, rate, area, load;
+};
+struct asperity_ellipse asperity_ellipse_at(double theta);
+
 /* A rule over the elongation rho of summits, rising in rho^2; weights with (1 - rho^2) rho and with
  * what the shape does to the area and the load of Hertz's sphere. */
 enum { ASPERITY_PANELS = 5, ASPERITY_SHAPES = ASPERITY_PANELS * QUADRATURE_NODES };

@@ -169,14 +169,13 @@ static int fit_rows(const struct contact_tally *tally, enum contact_measure fit,
                     double *values, struct error *err) {
     const struct contact_case *one_case = tally->one_case;
     const struct contact_rows *rows = &tally->rows;
-    double *fits = array_create(3 * n, sizeof *fits);
+    double *fits = array_create(MEASURE_FITS * n, sizeof *fits);
     size_t column = 0;
     if (fits == NULL)
-        return error_memory(err, 3 * n * sizeof *fits, "fits");
+        return error_memory(err, MEASURE_FITS * n * sizeof *fits, "fits");
     contact_rows_column(one_case, 0, MEASURE_EDGES, &column);
     for (size_t r = 0; r < rows->count; r++) {
-        contact_measure_fits(n, one_case->loads, rows->values + r * rows->width + column, fits,
-                             fits + n, fits + 2 * n);
+        contact_measure_fits(n, one_case->loads, rows->values + r * rows->width + column, fits, n);
         values[r] = fits[(size_t)(fit - MEASURE_KAPPA) * n + n - 1];
     }
     free(fits);
@@ -339,7 +338,7 @@ const struct job_kind CONTACT_KIND = {
     .realise = realise,
     .merge = merge,
     .format = 0x434f, /* "CO" */
-    .format_version = 15,
+    .format_version = 16,
     .put = put,
     .get = get,
     .adds_up = adds_up,

@@ -9,6 +9,14 @@ const struct choice KINEMATICS_CHOICES[] = {{"hencky", KINEMATICS_HENCKY},
                                             {"small", KINEMATICS_SMALL},
                                             {0}};
 
+double contact_case_transition(const struct contact_case *one_case, const struct grid *grid) {
+    double width = grid_dx(grid);
+    if (!(one_case->fine_height > 0))
+        return one_case->transition_depth;
+    return one_case->fine_height /
+           (2 * (grid_is_profile(grid) ? width : fmax(width, grid_dy(grid))));
+}
+
 bool contact_case_has_scale(const struct contact_case *one_case) {
     enum spectrum_scale scale = one_case->surface.spectrum.scale;
     return scale == SCALE_RMS_HEIGHT || scale == SCALE_RMS_SLOPE;

@@ -15,14 +15,21 @@
 
 enum { CONTACT_LEVELS_MOST = 8, CONTACT_LOADS_MOST = 1000 };
 
-enum height_unit { HEIGHT_RMS_HEIGHTS, HEIGHT_LENGTHS };
+enum height_unit { HEIGHT_RMS_HEIGHTS, HEIGHT_LENGTHS, HEIGHT_WAVELENGTHS };
 enum area_estimator { AREA_NODES, AREA_EDGES, AREA_PERIMETER, AREA_ESTIMATORS };
 /* Whether an error is estimated by companions (companion/companion.h). */
 enum companion_choice { COMPANION_PROBED, COMPANION_NONE };
 
 enum stiffness_choice { STIFFNESS_MEASURED, STIFFNESS_OMITTED };
+enum asperities_choice { ASPERITIES_OMITTED, ASPERITIES_COUNTED };
 /* Whether differences of densities of pressure are summed by realisation (contact_densities.h). */
 enum pairs_choice { PAIRS_OMITTED, PAIRS_COUNTED };
+
+/* What the loads of a study are given in; those of a case are p/(E* h'). */
+enum load_unit { LOAD_UNIT_REDUCED, LOAD_UNIT_PASCAL };
+/* The most that a load may be, in E* h' and as a number in either unit. */
+#define CONTACT_LOAD_MOST 1e6
+#define CONTACT_LOAD_NUMBER_MOST 1e15
 
 extern const struct choice KINEMATICS_CHOICES[]; /* of enum kinematics */
 extern const struct parameter_table CONTACT_PARAMETERS;
@@ -37,8 +44,9 @@ struct contact_case {
     const struct contact_model *models[CONTACT_MODELS_MOST]; /* in the order given */
     struct block blocks[CONTACT_MODELS_MOST];                /* one a model */
     enum kinematics kinematics;                              /* of strain */
-    double transition_depth;                                 /* of columns (mesh.h) */
-    double rms_slope; /* of the prescribed spectrum; 0 where no model needs it */
+    double transition_depth; /* of columns (mesh.h), unless fine_height has it */
+    double fine_height;      /* depth of the columns as wide as those of the face; 0: not given */
+    double rms_slope;        /* of the prescribed spectrum; 0 where no model needs it */
     size_t level_count;
     struct contact_level levels[CONTACT_LEVELS_MOST]; /* rising: the last is the finest */
     struct companion_plan companions[COMPANION_COUNT];
@@ -49,6 +57,7 @@ struct contact_case {
     double *loads;                /* owned: p/(E* h'), rising, > 0 */
     bool nodes, edges, perimeter; /* estimators shown */
     bool stiffness;               /* is measured */
+    bool asperities;              /* theories by counted summits are wanted */
     double tolerance;
     size_t pdf_count;
     size_t *pdf_loads;    /* owned: loads whose pressures are counted, rising */
@@ -86,6 +95,8 @@ double contact_case_block_bound(const struct contact_case *one_case, size_t mode
 
 /* Returns the most complete of the models, of which the others differ by their errors. */
 size_t contact_case_complete(const struct contact_case *one_case);
+/* Returns the depth on a mesh from which columns become wider, in widths of the wide ones. */
+double contact_case_transition(const struct contact_case *one_case, const struct grid *grid);
 /* Return whether the surface has a scale, and its RMS height and slope by the prescribed spectrum,
  * in lambda_s; NaN without a scale. */
 bool contact_case_has_scale(const struct contact_case *one_case);

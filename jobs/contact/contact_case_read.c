@@ -24,7 +24,12 @@ struct asked {
     bool block;    /* has no fault */
     double height; /* in height_unit; INFINITY; NaN: that of each model */
     int height_unit;
+    double fine; /* in fine_unit; INFINITY; NaN: by transition_depth */
+    int fine_unit;
+    double modulus; /* E* in Pa of loads in Pa; 0: loads are in E* h' */
 };
+
+static const char FINE_HEIGHT[] = "/contact/block_fine_height";
 
 static void read_block(struct contact_case *out, struct asked *asked, struct values *values) {
     int models[CONTACT_MODELS_MOST];
@@ -38,6 +43,7 @@ static void read_block(struct contact_case *out, struct asked *asked, struct val
     out->kinematics = (enum kinematics)values_choice(values, "/contact/kinematics");
     out->transition_depth = values_number(values, "/contact/transition_depth");
     asked->height = values_measure(values, "/contact/block_height", &asked->height_unit);
+    asked->fine = values_measure(values, FINE_HEIGHT, &asked->fine_unit);
     for (size_t m = 0; m < out->model_count; m++) {
         out->models[m] = CONTACT_MODELS[models[m]];
         out->blocks[m] = block;
@@ -63,9 +69,30 @@ static void check_rising(struct values *values, const char *path, size_t n, cons
     }
 }
 
+static const char LOAD_VALUES[] = "/contact/pressures/values";
+
+/* Reads the unit of loads. */
+static void read_load_unit(struct asked *asked, struct values *values) {
+    double young = values_number(values, "/contact/young");
+    double nu = values_number(values, "/contact/poisson");
+    if (values_choice(values, "/contact/pressures/unit") == LOAD_UNIT_PASCAL)
+        asked->modulus = young / (1 - nu * nu);
+}
+
+/* Checks loads in E* h'. */
+static void check_loads(const struct contact_case *one_case, struct values *values) {
+    for (size_t k = 0; k < one_case->load_count; k++)
+        if (!(one_case->loads[k] > 0 && one_case->loads[k] <= CONTACT_LOAD_MOST)) {
+            values_fault(values, LOAD_VALUES, "number %zu is a load of %g E* h'; allowed: (0, %g]",
+                         k, one_case->loads[k], CONTACT_LOAD_MOST);
+            return;
+        }
+}
+
 /* Reads the loads; there are none where they are at fault. */
-static int read_loads(struct contact_case *out, struct values *values, struct error *err) {
-    static const char path[] = "/contact/pressures/values";
+static int read_loads(struct contact_case *out, const struct asked *asked, struct values *values,
+                      struct error *err) {
+    const char *path = LOAD_VALUES;
     double to = values_number(values, "/contact/pressures/to");
     double steps = values_number(values, "/contact/pressures/steps");
     int status = values_numbers(values, path, &out->loads, &out->load_count, err);
@@ -79,6 +106,12 @@ static int read_loads(struct contact_case *out, struct values *values, struct er
         check_rising(values, path, out->load_count, out->loads);
         if (values_fault_count(values) > before)
             out->load_count = 0;
+        if (!(asked->modulus > 0))
+            check_loads(out, values);
+        return 0;
+    }
+    if (asked->modulus > 0 && isnan(to)) {
+        values_fault(values, path, "loads in Pa have no default: give values, or to and steps");
         return 0;
     }
     /* A case of a store whose program did not yet write out the loads: they keep their values. */
@@ -106,6 +139,13 @@ static void read_estimators(struct contact_case *out, struct values *values) {
     out->nodes = all || wanted[AREA_NODES];
     out->edges = all || wanted[AREA_EDGES];
     out->perimeter = wanted[AREA_PERIMETER] || (all && !profile);
+}
+
+static void read_asperities(struct contact_case *out, struct values *values) {
+    static const char path[] = "/contact/asperities";
+    out->asperities = values_choice(values, path) == ASPERITIES_COUNTED;
+    if (out->asperities && surface_case_dimension(values) == 1)
+        values_fault(values, path, "\"counted\" is for surfaces, and this is a profile");
 }
 
 static int read_levels(struct asked *out, struct values *values, struct error *err) {
@@ -171,8 +211,10 @@ static int read_alone(struct contact_case *out, struct asked *asked, struct valu
     out->tolerance = values_number(values, "/contact/tolerance");
     out->stiffness = values_choice(values, "/contact/stiffness") != STIFFNESS_OMITTED;
     read_estimators(out, values);
+    read_asperities(out, values);
     read_block(out, asked, values);
-    int status = read_loads(out, values, err);
+    read_load_unit(asked, values);
+    int status = read_loads(out, asked, values, err);
     if (status == 0)
         status = read_levels(asked, values, err);
     return status == 0 ? read_pdf(out, values, err) : status;
@@ -219,18 +261,73 @@ static bool scale_fits(const struct contact_case *one_case, const struct asked *
                        struct values *values) {
     const struct grid *grid = &one_case->surface.grid;
     bool needed = isfinite(asked->height) && asked->height_unit != HEIGHT_LENGTHS;
+    needed = needed || asked->modulus > 0;
+    needed = needed || (isfinite(asked->fine) && asked->fine_unit == HEIGHT_RMS_HEIGHTS);
     for (size_t m = 0; m < one_case->model_count; m++)
         needed = needed || one_case->models[m]->check != NULL;
     if (!needed || !contact_case_has_scale(one_case) ||
         (double)grid_points(grid) <= SCALE_POINTS_MOST)
         return true;
-    values_fault(
-        values, "/surface/points_per_wavelength",
-        "%zu by %zu points: blocks in rms_heights, and the model full, need the RMS height "
-        "and slope of the surface, which are computed of %.0f points at most. Give "
-        "block_height in lengths, or take fewer points",
-        grid->nx, grid->ny, SCALE_POINTS_MOST);
+    values_fault(values, "/surface/points_per_wavelength",
+                 "%zu by %zu points: blocks in rms_heights, loads in Pa, and the model full, need "
+                 "the RMS height "
+                 "and slope of the surface, which are computed of %.0f points at most. Give "
+                 "block_height in lengths, or take fewer points",
+                 grid->nx, grid->ny, SCALE_POINTS_MOST);
     return false;
+}
+
+/* Columns of one width, as deep as the block may be. */
+#define FINE_WHOLE 1e9
+
+/* Sets the depth of the fine zone in lambda_s. On the coarsest mesh it is a width of the wide
+ * columns at least. */
+static int set_fine_height(struct contact_case *out, const struct asked *asked,
+                           struct values *values, struct error *err) {
+    static const double TRANSITION = 8; /* unless given */
+    double rms_height = 1, rms_slope;
+    bool meshed = false;
+    if (isnan(asked->fine) || out->level_count == 0)
+        return 0;
+    for (size_t m = 0; m < out->model_count; m++)
+        meshed = meshed || out->models[m]->mesh_floor != NULL;
+    int status = isfinite(asked->fine) && asked->fine_unit == HEIGHT_RMS_HEIGHTS
+                     ? contact_case_scale(out, &rms_height, &rms_slope, err)
+                     : 0;
+    if (status != 0)
+        return status;
+    out->fine_height = isinf(asked->fine) ? FINE_WHOLE : asked->fine * rms_height;
+    if (!meshed)
+        values_fault(values, FINE_HEIGHT, "belongs to the model full, which is not asked for");
+    else if (out->transition_depth != TRANSITION)
+        values_fault(values, FINE_HEIGHT, "give it or transition_depth, not both");
+    else if (isnan(out->fine_height))
+        values_fault(values, FINE_HEIGHT,
+                     "rms_heights need the scale of the surface: give rms_slope or rms_height");
+    else if (!(contact_case_transition(out, &out->levels[0].grid) >= 1))
+        values_fault(values, FINE_HEIGHT,
+                     "%.4g lambda_s is less than two columns of the mesh of %g points a shortest "
+                     "wave, the least that a fine zone takes",
+                     out->fine_height, out->levels[0].points);
+    return 0;
+}
+
+/* Brings loads in Pa to E* h'. */
+static int convert_loads(struct contact_case *out, const struct asked *asked, struct values *values,
+                         struct error *err) {
+    double rms_height, rms_slope;
+    if (!(asked->modulus > 0))
+        return 0;
+    int status = contact_case_scale(out, &rms_height, &rms_slope, err);
+    if (status == 0 && isnan(rms_slope))
+        values_fault(values, "/contact/pressures/unit",
+                     "Pa needs the scale of the surface: give rms_slope or rms_height");
+    if (status != 0 || isnan(rms_slope))
+        return status;
+    for (size_t k = 0; k < out->load_count; k++)
+        out->loads[k] /= asked->modulus * rms_slope;
+    check_loads(out, values);
+    return 0;
 }
 
 /* Sets the block of each model, and checks whether the model can have it. */
@@ -363,7 +460,11 @@ static int set_on_surface(struct contact_case *out, const struct asked *asked,
     size_t before = values_fault_count(values);
     if (!asked->block || !faces_fit(out, values) || !scale_fits(out, asked, values))
         return 0;
-    int status = set_blocks(out, asked, values, err);
+    int status = convert_loads(out, asked, values, err);
+    if (status == 0)
+        status = set_blocks(out, asked, values, err);
+    if (status == 0)
+        status = set_fine_height(out, asked, values, err);
     if (status == 0 && values_fault_count(values) == before)
         check_meshes(out, values);
     return status;

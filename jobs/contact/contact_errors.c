@@ -92,9 +92,10 @@ static void limit_errors(const struct contact_tally *tally, enum contact_measure
 double contact_errors_mesh_floor(const struct contact_case *one_case, enum contact_measure measure,
                                  size_t model) {
     const struct contact_model *of = one_case->models[model];
+    const struct grid *grid = &contact_case_finest(one_case)->grid;
     return of->mesh_floor != NULL
                ? of->mesh_floor(one_case->surface.dimension, MEASURES[measure].field,
-                                one_case->transition_depth)
+                                contact_case_transition(one_case, grid))
                : 0;
 }
 

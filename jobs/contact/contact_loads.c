@@ -4,6 +4,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 double contact_load(double to, size_t k, size_t count) {
     char text[40];
@@ -30,8 +31,12 @@ static cJSON *object_in(cJSON *parent, const char *name) {
 }
 
 int contact_loads_fill(const cJSON *document, cJSON *parameters, struct error *err) {
+    const char *unit = cJSON_GetStringValue(json_at(parameters, "/contact/pressures/unit"));
     if (json_at(parameters, "/contact/pressures/values") != NULL)
         return 0; /* with it "to" and "steps" are a fault of the case */
+    if (unit != NULL && strcmp(unit, "Pa") == 0 &&
+        json_at(parameters, "/contact/pressures/to") == NULL)
+        return 0; /* likewise */
     double to = json_number_at(parameters, "/contact/pressures/to", CONTACT_LOAD_HIGHEST);
     double steps = json_number_at(parameters, "/contact/pressures/steps", CONTACT_LOADS);
     cJSON *contact = object_in(parameters, "contact");

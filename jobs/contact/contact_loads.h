@@ -16,7 +16,8 @@ enum { CONTACT_LOADS = 30 };
 double contact_load(double to, size_t k, size_t count);
 
 /* Puts the loads as a list into /contact/pressures/values of a case without one, in place of
- * "steps", and of "to" where the study does not sweep it. ERROR_MEMORY. */
+ * "steps", and of "to" where the study does not sweep it. Loads in Pa have no default.
+ * ERROR_MEMORY. */
 int contact_loads_fill(const cJSON *document, cJSON *parameters, struct error *err);
 
 #endif

@@ -1,5 +1,6 @@
 #include "jobs/contact/contact_measure.h"
 #include "core/contact/stretch.h"
+#include "core/statistics/fit.h"
 #include "jobs/contact/contact_case.h"
 #include <math.h>
 #include <stdio.h>
@@ -69,6 +70,8 @@ static double stretched(const struct measure_context *context, double edges, dou
     ROW(POWER_LAW_A, false, false, NAN,                                                            \
         NULL, "", NULL, NONE, 2, SMOOTH, PRESSURE, STAYS, SAME, SOME, ONE)                         \
     ROW(POWER_LAW_B, false, false, NAN,                                                            \
+        NULL, "", NULL, NONE, 2, SMOOTH, PRESSURE, STAYS, SAME, SOME, ONE)                         \
+    ROW(ERF_KAPPA  , false, false, NAN,                                                            \
         NULL, "", NULL, NONE, 2, SMOOTH, PRESSURE, STAYS, SAME, SOME, ONE)                         \
     ROW(ITERATIONS, true, false, (double)state->iterations,                                        \
         "iterations", "", "iterations", NONE, 1, COUNTED, NONE, STAYS, SAME, ALL, ONE)             \
@@ -142,9 +145,11 @@ struct line_sums {
     double n, x, y, xx, xy;
 };
 
-void contact_measure_fits(size_t n, const double *loads, const double *edges, double *kappa,
-                          double *power_law_a, double *power_law_b) {
-    double products = 0, squares = 0;
+void contact_measure_fits(size_t n, const double *loads, const double *edges, double *fits,
+                          size_t stride) {
+    double *kappa = fits, *power_law_a = fits + stride, *power_law_b = fits + 2 * stride;
+    double *erf_kappa = fits + 3 * stride;
+    double products = 0, squares = 0, slope = edges[0] < 1 ? edges[0] / loads[0] : (double)NAN;
     struct line_sums logs = {0};
     for (size_t k = 0; k < n; k++) {
         double x = log(loads[k]), y = edges[k] > 0 ? log(edges[k]) : (double)NAN;
@@ -152,9 +157,14 @@ void contact_measure_fits(size_t n, const double *loads, const double *edges, do
         squares += loads[k] * loads[k];
         logs = (struct line_sums){logs.n + 1, logs.x + x, logs.y + y, logs.xx + x * x,
                                   logs.xy + x * y};
-        double slope = (logs.n * logs.xy - logs.x * logs.y) / (logs.n * logs.xx - logs.x * logs.x);
+        double power = (logs.n * logs.xy - logs.x * logs.y) / (logs.n * logs.xx - logs.x * logs.x);
+        if (!(edges[k] > 0))
+            slope = NAN;
+        else if (edges[k] < 1)
+            slope = fit_erf_near(k + 1, loads, edges, slope);
         kappa[k] = edges[k] > 0 ? limited(products / squares) : (double)NAN;
-        power_law_a[k] = k > 0 ? limited(exp((logs.y - slope * logs.x) / logs.n)) : (double)NAN;
-        power_law_b[k] = k > 0 ? limited(slope) : (double)NAN;
+        power_law_a[k] = k > 0 ? limited(exp((logs.y - power * logs.x) / logs.n)) : (double)NAN;
+        power_law_b[k] = k > 0 ? limited(power) : (double)NAN;
+        erf_kappa[k] = limited(slope);
     }
 }

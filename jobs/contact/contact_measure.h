@@ -21,10 +21,12 @@ struct measure_context {
 /* Fills all measures but the fits. */
 void contact_measure(const struct measure_context *context, const struct contact_pressed *pressed,
                      double values[MEASURE_OWN]);
-/* Fits through rising loads, from the areas by edges there: at load k over the loads up to it. NaN
- * from the first load on that has no area. FORMULAS.md, F16.1 and F16.2. */
-void contact_measure_fits(size_t n, const double *loads, const double *edges, double *kappa,
-                          double *power_law_a, double *power_law_b);
+/* Fits through rising loads, from the areas by edges there: at load k over the loads up to it, in
+ * fits[k], one stride behind the other in the order of the measures from MEASURE_KAPPA on. NaN from
+ * the first load on that has no area. Of the error function loads of full contact are left out.
+ * FORMULAS.md, F16.1 to F16.3. */
+void contact_measure_fits(size_t n, const double *loads, const double *edges, double *fits,
+                          size_t stride);
 
 /* What a measure that depends on the cell is reported of. */
 enum measure_unit { UNIT_CELL, UNIT_WAVE };

@@ -6,6 +6,9 @@
 static const struct choice HEIGHTS[] = {{"infinite", 0}, {0}};
 static const struct choice HEIGHT_UNITS[] = {
     {"rms_heights", HEIGHT_RMS_HEIGHTS}, {"lengths", HEIGHT_LENGTHS}, {0}};
+static const struct choice FINE_HEIGHTS[] = {{"whole", 0}, {0}};
+static const struct choice FINE_UNITS[] = {
+    {"rms_heights", HEIGHT_RMS_HEIGHTS}, {"wavelengths", HEIGHT_WAVELENGTHS}, {0}};
 static const struct choice WEIGHTINGS[] = {{"standard", GAP_STANDARD}, {"dual", GAP_DUAL}, {0}};
 static const struct choice COMPANION_CHOICES[] = {
     {"probed", COMPANION_PROBED}, {"none", COMPANION_NONE}, {0}};
@@ -15,6 +18,11 @@ static const struct choice ESTIMATORS[] = {
 
 static const struct choice STIFFNESSES[] = {
     {"measured", STIFFNESS_MEASURED}, {"omitted", STIFFNESS_OMITTED}, {0}};
+
+static const struct choice ASPERITIES[] = {
+    {"omitted", ASPERITIES_OMITTED}, {"counted", ASPERITIES_COUNTED}, {0}};
+static const struct choice LOAD_UNITS[] = {
+    {"E* h'", LOAD_UNIT_REDUCED}, {"Pa", LOAD_UNIT_PASCAL}, {0}};
 
 static const struct parameter ROWS[] = {
     {.path = "/contact/model",
@@ -76,6 +84,22 @@ static const struct parameter ROWS[] = {
      .example_json = "1e9",
      .help = "full: depth from which columns of elements are twice as wide, and twice again; 1e9: "
              "all as wide as those of the surface"},
+    {.path = "/contact/block_fine_height",
+     .type = PARAMETER_MEASURE,
+     .choices = FINE_HEIGHTS,
+     .units = FINE_UNITS,
+     .minimum = 0,
+     .maximum = 1e9,
+     .above_minimum = true,
+     .sweep = true,
+     .target_refusal = "a target chooses the depth of the fine zone by transition_depth",
+     .later = true,
+     .unit = "the named one",
+     .example_json = "{\"rms_heights\": 40}",
+     .help = "full: depth of the fine zone, in which columns of elements are as wide as those of "
+             "the surface, in RMS heights of the surface (rms_heights) or in lambda_s "
+             "(wavelengths); or whole, the block. In place of transition_depth, which is in "
+             "widths"},
     {.path = "/contact/gap_weighting",
      .type = PARAMETER_CHOICE,
      .choices = WEIGHTINGS,
@@ -96,12 +120,12 @@ static const struct parameter ROWS[] = {
     {.path = "/contact/pressures/to",
      .type = PARAMETER_NUMBER,
      .minimum = 0,
-     .maximum = 1e6,
+     .maximum = CONTACT_LOAD_NUMBER_MOST,
      .above_minimum = true,
      .sweep = true,
      .unit = "E* h'",
      .example_json = "0.1",
-     .help = "highest load; 0.3 unless given"},
+     .help = "highest load, up to 1e6 E* h'; 0.3 unless given"},
     {.path = "/contact/pressures/steps",
      .type = PARAMETER_INTEGER,
      .minimum = 1,
@@ -111,13 +135,23 @@ static const struct parameter ROWS[] = {
     {.path = "/contact/pressures/values",
      .type = PARAMETER_NUMBERS,
      .minimum = 0,
-     .maximum = 1e6,
+     .maximum = CONTACT_LOAD_NUMBER_MOST,
      .above_minimum = true,
      .items_low = 1,
      .items_high = CONTACT_LOADS_MOST,
      .unit = "E* h'",
      .example_json = "[0.001, 0.01, 0.1]",
-     .help = "rising loads, in place of the two above"},
+     .help = "rising loads, up to 1e6 E* h', in place of the two above"},
+    {.path = "/contact/pressures/unit",
+     .type = PARAMETER_CHOICE,
+     .choices = LOAD_UNITS,
+     .target_refusal = "a target has loads in E* h'",
+     .target_choice = "E* h'",
+     .later = true,
+     .example_json = "\"Pa\"",
+     .help = "of the loads above and of /contact/pressure_pdf/at: E* h' (unless given), or Pa, "
+             "which needs young in Pa and a surface with rms_slope or rms_height; curves have "
+             "loads in E* h' and in Pa"},
     {.path = "/contact/estimators",
      .type = PARAMETER_CHOICES,
      .choices = ESTIMATORS,
@@ -133,6 +167,15 @@ static const struct parameter ROWS[] = {
      .help =
          "measured or omitted, which spares half-spaces up to a quarter of their work and other "
          "models none; unless given measured, with a target omitted"},
+    {.path = "/contact/asperities",
+     .type = PARAMETER_CHOICE,
+     .choices = ASPERITIES,
+     .target_refusal = "a target answers contact that is solved",
+     .target_choice = "omitted",
+     .later = true,
+     .example_json = "\"counted\"",
+     .help = "theories of asperities by the summits of each surface, without a profile's: counted, "
+             "or omitted unless given"},
     {.path = "/contact/levels",
      .type = PARAMETER_NUMBERS,
      .minimum = 2,
@@ -179,7 +222,7 @@ static const struct parameter ROWS[] = {
     {.path = "/contact/pressure_pdf/at",
      .type = PARAMETER_NUMBERS,
      .minimum = 0,
-     .maximum = 1e6,
+     .maximum = CONTACT_LOAD_NUMBER_MOST,
      .above_minimum = true,
      .items_low = 1,
      .items_high = CONTACT_LOADS_MOST,

@@ -5,17 +5,21 @@
 #include "jobs/contact/contact_errors.h"
 #include "jobs/estimate.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
-/* Fractions up to these are fitted (FORMULAS.md, F16.1 and F16.2). */
+/* Mean fractions up to these are fitted (FORMULAS.md, section 16). */
 #define LIGHT_LOAD_MOST 0.1
 #define POWER_LAW_MOST 0.5
+#define ERF_MOST (1 - 1e-9)
 
 const struct contact_fit CONTACT_FITS[CONTACT_FIT_COUNT] = {
-    {"kappa", MEASURE_KAPPA, LIGHT_LOAD_MOST, "kappa_loads", "kappa_highest_load"},
+    {"kappa", MEASURE_KAPPA, LIGHT_LOAD_MOST, "kappa_loads", "kappa_highest_load",
+     "kappa_residual"},
     {"power_law_a", MEASURE_POWER_LAW_A, POWER_LAW_MOST, "power_law_loads",
-     "power_law_highest_load"},
-    {"power_law_b", MEASURE_POWER_LAW_B, POWER_LAW_MOST, NULL, NULL},
+     "power_law_highest_load", "power_law_residual"},
+    {"power_law_b", MEASURE_POWER_LAW_B, POWER_LAW_MOST, NULL, NULL, NULL},
+    {"erf_kappa", MEASURE_ERF_KAPPA, ERF_MOST, "erf_loads", "erf_highest_load", "erf_residual"},
 };
 
 /* Scalars that the tally has at a load, with errors by source, in place of the mean of
@@ -29,7 +33,7 @@ static const struct own_scalar {
     [CONTACT_SCALAR_KAPPA] = {"kappa", true, MEASURE_KAPPA, &CONTACT_FITS[0]},
     [CONTACT_SCALAR_POWER_LAW_A] = {"power_law_a", true, MEASURE_POWER_LAW_A, &CONTACT_FITS[1]},
     [CONTACT_SCALAR_POWER_LAW_B] = {"power_law_b", true, MEASURE_POWER_LAW_B, &CONTACT_FITS[2]},
-    [CONTACT_SCALAR_ERF_KAPPA] = {.name = "erf_kappa"},
+    [CONTACT_SCALAR_ERF_KAPPA] = {"erf_kappa", true, MEASURE_ERF_KAPPA, &CONTACT_FITS[3]},
     [CONTACT_SCALAR_AREA_LAST] = {"contact_area_last", true, MEASURE_EDGES, NULL},
     [CONTACT_SCALAR_GAP_LAST] = {"mean_gap_last", true, MEASURE_GAP, NULL},
     [CONTACT_SCALAR_ITERATIONS] = {.name = "iterations"},
@@ -76,6 +80,16 @@ const char *contact_scalar_name(size_t scalar) {
         return NULL;
     struct origin origin = origin_of(scalar);
     return origin.model != NULL ? origin.model->scalars[origin.at] : OWN[origin.at].name;
+}
+
+/* "layered_kappa": the name of a scalar of a model. */
+struct model_text {
+    char text[64];
+};
+static struct model_text model_text(const char *model, const char *name) {
+    struct model_text out;
+    (void)snprintf(out.text, sizeof out.text, "%s_%s", model, name);
+    return out;
 }
 
 /* Returns the position of a model in a case; model_count if the case does not have it. */
@@ -186,32 +200,38 @@ static void theories(const struct contact_case *one_case, const struct moments *
 
 /* --- scalars of the tally --- */
 
-/* Returns the number of loads, from the lightest on, at which the mean area is at most this. */
-static size_t loads_within(const struct contact_tally *tally, double most) {
+/* Returns the mean of a measure of a model on the finest level. */
+static struct estimate mean_of(const struct contact_tally *tally, enum contact_measure measure,
+                               size_t model, size_t load) {
+    return contact_mean(tally, measure, model, tally->one_case->level_count - 1, load);
+}
+
+/* Returns the number of loads, from the lightest on, at which the mean area of a model is at most
+ * this. */
+static size_t loads_within(const struct contact_tally *tally, size_t model, double most) {
     size_t n = 0;
-    while (n < tally->one_case->load_count &&
-           contact_mean(tally, MEASURE_EDGES, 0, tally->one_case->level_count - 1, n).value <= most)
+    while (n < tally->one_case->load_count && mean_of(tally, MEASURE_EDGES, model, n).value <= most)
         n++;
     return n;
 }
 
-/* Sets a scalar to a measure of the first model at the last of the first `loads` loads; none
- * without loads. */
+/* Sets a scalar to a measure of a model at the last of the first `loads` loads; none without
+ * loads. */
 static int put_measure(const struct contact_tally *tally, enum contact_measure measure,
-                       size_t loads, struct scalar *out, struct error *err) {
+                       size_t model, size_t loads, struct scalar *out, struct error *err) {
     const struct contact_case *one_case = tally->one_case;
     struct estimate mean = {NAN, NAN};
     struct contact_error *errors = array_create(one_case->load_count, sizeof *errors);
     if (errors == NULL)
         return error_memory(err, one_case->load_count * sizeof *errors, "errors of a scalar");
     if (loads > 0)
-        mean = contact_mean(tally, measure, 0, one_case->level_count - 1, loads - 1);
+        mean = mean_of(tally, measure, model, loads - 1);
     out->value = mean.value;
     out->standard_error = mean.standard_error;
     for (enum error_source s = 0; s < ERROR_SOURCES; s++) {
         struct scalar_error *to = &out->errors[s];
-        to->applies = contact_error_applies(tally, measure, 0, one_case->level_count - 1, s);
-        if (loads == 0 || !contact_errors(tally, measure, 0, s, errors))
+        to->applies = contact_error_applies(tally, measure, model, one_case->level_count - 1, s);
+        if (loads == 0 || !contact_errors(tally, measure, model, s, errors))
             continue;
         const struct contact_error *from = &errors[loads - 1];
         *to = (struct scalar_error){.applies = true,
@@ -225,13 +245,13 @@ static int put_measure(const struct contact_tally *tally, enum contact_measure m
 }
 
 /* Sets the law difference of the same. */
-static int put_law(const struct contact_tally *tally, enum contact_measure measure, size_t loads,
-                   struct scalar *out, struct error *err) {
+static int put_law(const struct contact_tally *tally, enum contact_measure measure, size_t model,
+                   size_t loads, struct scalar *out, struct error *err) {
     size_t count = tally->one_case->load_count;
     struct estimate *differences = array_create(count, sizeof *differences);
     if (differences == NULL)
         return error_memory(err, count * sizeof *differences, "differences of a scalar");
-    if (loads > 0 && companion_law_difference(tally, measure, 0, differences)) {
+    if (loads > 0 && companion_law_difference(tally, measure, model, differences)) {
         out->law_difference = differences[loads - 1].value;
         out->law_standard_error = differences[loads - 1].standard_error;
     }
@@ -244,7 +264,7 @@ bool contact_scalar_fit(const struct contact_tally *tally, size_t scalar, enum c
     if (scalar >= CONTACT_SCALARS_OF_MODELS || OWN[scalar].fit == NULL)
         return false;
     *fit = OWN[scalar].measure;
-    *loads = loads_within(tally, OWN[scalar].fit->area_most);
+    *loads = loads_within(tally, 0, OWN[scalar].fit->area_most);
     return true;
 }
 
@@ -254,22 +274,93 @@ static int put_tallied(const struct contact_tally *tally, size_t scalar, struct 
     const struct own_scalar *own = &OWN[scalar];
     if (!own->tallied)
         return 0;
-    size_t loads =
-        own->fit != NULL ? loads_within(tally, own->fit->area_most) : tally->one_case->load_count;
-    int status = put_measure(tally, own->measure, loads, out, err);
-    return status != 0 ? status : put_law(tally, own->measure, loads, out, err);
+    size_t loads = own->fit != NULL ? loads_within(tally, 0, own->fit->area_most)
+                                    : tally->one_case->load_count;
+    int status = put_measure(tally, own->measure, 0, loads, out, err);
+    return status != 0 ? status : put_law(tally, own->measure, 0, loads, out, err);
 }
 
-int contact_scalars_put_range(const struct contact_fit *fit, const struct contact_case *one_case,
-                              size_t loads, struct case_result *out, struct error *err) {
+/* --- fits of each model --- */
+
+static double fitted(enum contact_measure fit, double a, double b, double load) {
+    if (fit == MEASURE_POWER_LAW_A)
+        return a * pow(load, b);
+    return fit == MEASURE_KAPPA ? a * load : erf(sqrt(M_PI) / 2 * a * load);
+}
+
+static int put_named(struct case_result *out, const char *model, const char *name, double value,
+                     double standard_error, struct error *err) {
+    const char *whole = model != NULL ? result_text(out, model_text(model, name).text) : name;
+    if (whole == NULL)
+        return error_set(err, ERROR_MEMORY, "no memory left for scalars");
+    const struct scalar scalar = scalar_named(whole, value, standard_error, NAN);
+    return result_add_scalar(out, &scalar, err);
+}
+
+int contact_scalars_put_range(const struct contact_fit *fit, const char *model,
+                              const struct contact_case *one_case, size_t loads, const double *area,
+                              double a, double b, struct case_result *out, struct error *err) {
+    double squares = 0, size = 0;
     if (fit->count == NULL)
         return 0;
-    const struct scalar count = scalar_named(fit->count, (double)loads, 0, NAN);
-    int status = result_add_scalar(out, &count, err);
+    int status = put_named(out, model, fit->count, (double)loads, 0, err);
     if (status != 0 || loads == 0)
         return status;
-    const struct scalar load = scalar_named(fit->highest, one_case->loads[loads - 1], 0, NAN);
-    return result_add_scalar(out, &load, err);
+    for (size_t k = 0; k < loads; k++) {
+        double residual = area[k] - fitted(fit->measure, a, b, one_case->loads[k]);
+        squares += residual * residual;
+        size += area[k] * area[k];
+    }
+    status = put_named(out, model, fit->highest, one_case->loads[loads - 1], 0, err);
+    return status != 0 ? status
+                       : put_named(out, model, fit->residual, sqrt(squares / size), NAN, err);
+}
+
+/* Appends the value of a fit of a model that is not the first, whose values are scalars of each
+ * realisation. */
+static int put_value(const struct contact_tally *tally, const struct contact_fit *fit, size_t model,
+                     size_t loads, struct case_result *out, struct error *err) {
+    const char *name = contact_model_name(tally->one_case->models[model]);
+    struct scalar scalar =
+        scalar_named(result_text(out, model_text(name, fit->name).text), NAN, NAN, NAN);
+    if (scalar.name == NULL)
+        return error_set(err, ERROR_MEMORY, "no memory left for scalars");
+    int status = put_measure(tally, fit->measure, model, loads, &scalar, err);
+    if (status == 0)
+        status = put_law(tally, fit->measure, model, loads, &scalar, err);
+    return status == 0 ? result_add_scalar(out, &scalar, err) : status;
+}
+
+/* Appends the fits of a model with what they were made on. area: scratch, a value a load. */
+static int put_fits(const struct contact_tally *tally, size_t model, double *area,
+                    struct case_result *out, struct error *err) {
+    const struct contact_case *one_case = tally->one_case;
+    const char *name = model > 0 ? contact_model_name(one_case->models[model]) : NULL;
+    int status = 0;
+    for (size_t k = 0; k < one_case->load_count; k++)
+        area[k] = mean_of(tally, MEASURE_EDGES, model, k).value;
+    for (size_t f = 0; f < CONTACT_FIT_COUNT && status == 0; f++) {
+        const struct contact_fit *fit = &CONTACT_FITS[f];
+        size_t loads = loads_within(tally, model, fit->area_most), last = loads > 0 ? loads - 1 : 0;
+        if (model > 0)
+            status = put_value(tally, fit, model, loads, out, err);
+        if (status == 0)
+            status = contact_scalars_put_range(
+                fit, name, one_case, loads, area, mean_of(tally, fit->measure, model, last).value,
+                mean_of(tally, MEASURE_POWER_LAW_B, model, last).value, out, err);
+    }
+    return status;
+}
+
+static int put_all_fits(const struct contact_tally *tally, struct case_result *out,
+                        struct error *err) {
+    const struct contact_case *one_case = tally->one_case;
+    double *area = array_create(one_case->load_count, sizeof *area);
+    int status = area != NULL ? 0 : error_memory(err, sizeof *area, "fits");
+    for (size_t m = 0; m < one_case->model_count && status == 0; m++)
+        status = put_fits(tally, m, area, out, err);
+    free(area);
+    return status;
 }
 
 static int add_scalars(const struct contact_case *one_case, const struct moments *moments,
@@ -296,9 +387,8 @@ static int add_scalars(const struct contact_case *one_case, const struct moments
         if (status == 0)
             status = result_add_scalar(out, &scalar, err);
     }
-    for (size_t a = 0; a < CONTACT_FIT_COUNT && status == 0; a++)
-        status = contact_scalars_put_range(
-            &CONTACT_FITS[a], one_case, loads_within(tally, CONTACT_FITS[a].area_most), out, err);
+    if (status == 0)
+        status = put_all_fits(tally, out, err);
     const struct scalar hurst = scalar_named("hurst", one_case->surface.spectrum.hurst, 0, NAN);
     if (status == 0 && one_case->surface.hurst_solved)
         status = result_add_scalar(out, &hurst, err);

@@ -53,12 +53,18 @@ struct contact_fit {
     double area_most;
     const char *count, *highest; /* names of its number of loads, and of the highest; NULL: it
                                   * shares those of the fit before */
+    const char *residual;        /* name of the RMS of the mean area less the fit, over that of the
+                                  * mean area; NULL likewise */
 };
-enum { CONTACT_FIT_COUNT = 3 };
+enum { CONTACT_FIT_COUNT = MEASURE_FITS };
 extern const struct contact_fit CONTACT_FITS[CONTACT_FIT_COUNT];
-/* Appends the number of loads of a fit, and the highest of them; none without loads. */
-int contact_scalars_put_range(const struct contact_fit *fit, const struct contact_case *one_case,
-                              size_t loads, struct case_result *out, struct error *err);
+/* Appends on how many loads a fit was made, the highest of them, and the residual of an area of so
+ * many loads from the line with these parameters; b: of the power law. Without loads the number
+ * alone; nothing for a fit that shares another's. model: names begin with it; NULL: with nothing.
+ */
+int contact_scalars_put_range(const struct contact_fit *fit, const char *model,
+                              const struct contact_case *one_case, size_t loads, const double *area,
+                              double a, double b, struct case_result *out, struct error *err);
 
 /* Returns whether a scalar is a fit over loads, which one, and over how many loads from the
  * lightest on. */

@@ -265,10 +265,32 @@ static double plain_bytes(const struct contact_case *one_case) {
     return bytes;
 }
 
+/* Returns the scatter of the area at the lightest load, where it is largest. */
+static double area_scatter(const struct contact_case *one_case) {
+    const struct surface_case *surface = &one_case->surface;
+    bool affine = surface->spectrum.type == SPECTRUM_SELF_AFFINE;
+    double ratio = surface->wavelength_ratio;
+    struct height_moments moments;
+    if (heights_moments(&surface->options.heights, &moments, NULL) != 0)
+        moments.skewness = 0;
+    return cost_area_scatter(
+        &(struct area_scatter){.dimension = surface->dimension,
+                               .fixed = surface->options.amplitudes == AMPLITUDES_FIXED,
+                               .long_waves = surface_case_mean_side(surface),
+                               .ratio = ratio > 1 ? ratio : 1,
+                               .hurst = affine ? surface->spectrum.hurst : NAN,
+                               .skewness = moments.skewness,
+                               .load = one_case->loads[0]});
+}
+
 void contact_case_estimate(const struct contact_case *one_case, struct study_cost *out) {
     const struct surface_case *surface = &one_case->surface;
     const struct grid *finest = &contact_case_finest(one_case)->grid;
-    surface_law_estimate(surface->translation, out);
+    surface_case_estimate(surface, out);
+    out->fine_height = 0;
+    for (size_t m = 0; m < one_case->model_count; m++)
+        if (one_case->fine_height > 0 && one_case->models[m]->mesh_floor != NULL)
+            out->fine_height = fmin(one_case->fine_height, one_case->blocks[m].height);
     out->nx = finest->nx;
     out->ny = finest->ny;
     out->memory_bytes = surface_case_bytes(surface) + plain_bytes(one_case) +
@@ -282,7 +304,5 @@ void contact_case_estimate(const struct contact_case *one_case, struct study_cos
     out->result_bytes = contact_rows_bytes(one_case);
     out->runs_most = RUNS_MOST;
     out->case_seconds = case_seconds(one_case) + companions_first_seconds(one_case);
-    bool affine = surface->spectrum.type == SPECTRUM_SELF_AFFINE;
-    out->relative_error = cost_area_scatter(surface->dimension, surface_case_mean_side(surface),
-                                            affine ? surface->spectrum.hurst : NAN);
+    out->relative_error = area_scatter(one_case);
 }

@@ -166,8 +166,7 @@ static void fill_fits(struct contact_tally *tally) {
         contact_measure_fits(one_case->load_count, one_case->loads,
                              contact_tally_values(tally, MEASURE_EDGES) + cell,
                              contact_tally_values(tally, MEASURE_KAPPA) + cell,
-                             contact_tally_values(tally, MEASURE_POWER_LAW_A) + cell,
-                             contact_tally_values(tally, MEASURE_POWER_LAW_B) + cell);
+                             contact_case_cells(one_case));
 }
 
 int contact_tally_add(struct contact_tally *tally, struct error *err) {

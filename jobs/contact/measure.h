@@ -23,7 +23,9 @@ enum contact_measure {
     MEASURE_KAPPA, /* of the line area = kappa load through the loads up to this one, by edges */
     MEASURE_POWER_LAW_A, /* likewise of area = a load^b; none at the first load */
     MEASURE_POWER_LAW_B,
-    MEASURE_PAIRED, /* measures above: differences are summed too */
+    MEASURE_ERF_KAPPA, /* likewise of area = erf(sqrt(pi)/2 kappa load) */
+    MEASURE_PAIRED,    /* measures above: differences are summed too */
+    MEASURE_FITS = MEASURE_PAIRED - MEASURE_KAPPA, /* the last of these */
     MEASURE_ITERATIONS = MEASURE_PAIRED,
     MEASURE_WORK, /* transforms of the level's grid */
     MEASURE_VIOLATION,

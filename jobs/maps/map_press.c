@@ -21,7 +21,15 @@ static const struct measure OWN_MEASURES[PRESS_VALUES - PRESS_LOAD] = {
                      .field = FIELD_GAP,
                      .over = OVER_HEIGHT},
     OWN(CONTACT_NODES) = {.quantity = "contact_nodes", .y_label = "nodes in contact"},
-    OWN(VIOLATION) = {.quantity = "violation", .y_label = "largest violation/sqrt(m0)"}};
+    OWN(VIOLATION) = {.quantity = "violation", .y_label = "largest violation/sqrt(m0)"},
+    OWN(BGT_COUNTED) = {.quantity = "asperity_area",
+                        .series = "bgt_counted",
+                        .y_label = "A/A0 of counted summits",
+                        .over = OVER_AREA},
+    OWN(GW_COUNTED) = {.quantity = "asperity_area",
+                       .series = "gw_counted",
+                       .y_label = "A/A0 of counted summits",
+                       .over = OVER_AREA}};
 #undef OWN
 
 const struct measure *press_measure(size_t value) {
@@ -43,7 +51,9 @@ const struct press_column PRESS_COLUMNS[PRESS_COLUMN_COUNT] = {
     {"patches", "patch_count", MEASURE_PATCHES, true, false},
     {"contact nodes", "contact_nodes", PRESS_CONTACT_NODES, false, false},
     {"iterations", "iterations", MEASURE_ITERATIONS, false, false},
-    {"violation", "violation", PRESS_VIOLATION, false, false}};
+    {"violation", "violation", PRESS_VIOLATION, false, false},
+    {"bgt counted", "bgt_counted", PRESS_BGT_COUNTED, false, false},
+    {"gw counted", "gw_counted", PRESS_GW_COUNTED, false, false}};
 
 static const struct contact_model *model_of(const struct map_press *press) {
     return press->one_case.models[0];
@@ -60,6 +70,7 @@ void map_press_release(struct map_press *press) {
 
 void map_press_clear(struct map_press *press) {
     map_press_release(press);
+    counted_asperities_destroy(&press->asperities);
     *press = (struct map_press){0};
 }
 
@@ -165,6 +176,14 @@ int map_press_check(enum press_boundary boundary, const struct contact_model *mo
                      contact_model_name(model), others);
 }
 
+static int count_summits(struct map_press *press, const struct height_map *map, struct error *err) {
+    int status = counted_asperities_create(&press->asperities, &map->grid,
+                                           press->boundary == PRESS_OPEN, err);
+    return status != 0 ? status
+                       : counted_asperities_take(press->asperities, map->z, press->height,
+                                                 press->slope, err);
+}
+
 int map_press_begin(struct map_press *press, struct height_map *map, enum press_boundary boundary,
                     struct error *err) {
     press->map = map->grid;
@@ -176,7 +195,7 @@ int map_press_begin(struct map_press *press, struct height_map *map, enum press_
         press->copies = grid_is_profile(&map->grid) ? 2 : 4;
     }
     press->grid = map->grid;
-    return status;
+    return status == 0 && !grid_is_profile(&map->grid) ? count_summits(press, map, err) : status;
 }
 
 int map_press_lift(struct map_press *press, const double *z, const struct press_block *block,
@@ -234,6 +253,11 @@ static void measure_load(const struct map_press *press, const struct contact_pre
     value[PRESS_PEAK] = largest(grid_points(&press->grid), state->p) / press->slope;
     value[PRESS_APPROACH] = state->approach / press->height;
     value[PRESS_CONTACT_NODES] = (double)state->nodes / press->copies;
+    if (press->asperities != NULL) {
+        double load = value[PRESS_LOAD];
+        value[PRESS_BGT_COUNTED] = counted_asperities_area(press->asperities, COUNTED_BGT, load);
+        value[PRESS_GW_COUNTED] = counted_asperities_area(press->asperities, COUNTED_GW, load);
+    }
 }
 
 /* Makes the row of a load without a solution. */

@@ -7,6 +7,7 @@
 #ifndef RUGO_JOBS_MAPS_MAP_PRESS_H
 #define RUGO_JOBS_MAPS_MAP_PRESS_H
 
+#include "core/contact/counted_asperities.h"
 #include "core/map/height_map.h"
 #include "jobs/contact/contact_case.h"
 #include "jobs/contact/contact_measure.h"
@@ -29,6 +30,8 @@ enum press_value {
     PRESS_APPROACH,
     PRESS_CONTACT_NODES,
     PRESS_VIOLATION,
+    PRESS_BGT_COUNTED, /* areas by theories of counted summits (counted_asperities.h) */
+    PRESS_GW_COUNTED,
     PRESS_VALUES
 };
 /* Returns what a value is, but for the model's own: its curve, its unit and how it errs. */
@@ -42,7 +45,7 @@ struct press_column {
     bool fold;      /* tables for people may start a line here */
     bool uncertain; /* its errors stand in tables for people */
 };
-enum { PRESS_COLUMN_COUNT = 15 };
+enum { PRESS_COLUMN_COUNT = 17 };
 extern const struct press_column PRESS_COLUMNS[PRESS_COLUMN_COUNT];
 
 /* (reported - true) lies within value +- bound; NaN: not known. */
@@ -76,6 +79,7 @@ struct map_press {
     struct contact_solver *solver;
     struct area_workspace *areas;
     struct patch_finder *patches;
+    struct counted_asperities *asperities; /* of the map as it is pressed; NULL: a profile */
 };
 
 /* Returns ERROR_INPUT where the model does not press a map with this boundary. */

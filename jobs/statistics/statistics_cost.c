@@ -83,7 +83,7 @@ void statistics_case_estimate(const struct statistics_case *one_case, struct stu
         fmax(1, spectrum_expected_summits(&surface->spectrum, grid, surface->length_ratio,
                                           (double)band.x, &alpha));
     double spread = sqrt(fmax(0.05, 1 - 0.8968 / fmax(alpha, 1))); /* of summit heights */
-    surface_law_estimate(surface->translation, out);
+    surface_case_estimate(surface, out);
     out->nx = grid->nx;
     out->ny = grid->ny;
     /* a list of summits doubles as it grows */

@@ -4,6 +4,7 @@
 #include "jobs/statistics/statistics_scalars.h"
 #include "jobs/statistics/statistics_spectra.h"
 #include "jobs/statistics/statistics_theory.h"
+#include "jobs/units.h"
 #include "schema/json/field.h"
 #include "schema/result/result_json.h"
 #include <math.h>
@@ -187,6 +188,65 @@ static int add_moments(struct expectation *e, struct error *err) {
         {"skewness", heights.skewness, NAN},
         {"kurtosis", heights.kurtosis, few_waves ? grid.kurtosis : (double)NAN},
     };
+    return add_scalars(e, sizeof list / sizeof *list, list, err);
+}
+
+/* --- quantities by the names of the reference (FORMULAS.md, section 19) --- */
+
+/* Returns the density C0 of a self-affine spectrum on its plateau, or at its roll-off where it has
+ * none, by the power of one of its waves. */
+static double plateau(const struct spectrum *spectrum, const struct modes *modes) {
+    const struct grid *grid = &modes->grid;
+    bool profile = grid_is_profile(grid);
+    double unit_x = 2 * M_PI / grid->lx, unit_y = profile ? 1 : 2 * M_PI / grid->ly;
+    double rolloff = 2 * M_PI / spectrum->wavelength_rolloff;
+    double exponent = profile ? 1 + 2 * spectrum->hurst : 2 * (spectrum->hurst + 1);
+    for (size_t mx = 1; mx <= modes->mode_x; mx++)
+        if (modes_power(modes, mx, 0) > 0 && 2 * mx < grid->nx)
+            return modes_power(modes, mx, 0) / (unit_x * unit_y) *
+                   pow(fmax(1, unit_x * (double)mx / rolloff), exponent);
+    return NAN;
+}
+
+/* Returns the scale G of profiles or g of surfaces of (2.49), of which there is none at H = 1. */
+static double fractal_scale(const struct spectrum *spectrum, int dimension, double density) {
+    double hurst = spectrum->hurst, rolloff = 2 * M_PI / spectrum->wavelength_rolloff;
+    double factor = dimension == 1 ? 2 * M_PI : 4 * M_PI * M_PI; /* of Phi over C */
+    double exponent = dimension == 1 ? 1 + 2 * hurst : 2 * (hurst + 1);
+    if (hurst == 1)
+        return NAN;
+    return pow(factor * density * pow(rolloff, exponent), 1 / (2 * (1 - hurst)));
+}
+
+static int add_fractal(struct expectation *e, struct error *err) {
+    const struct surface_case *surface = &e->one_case.surface;
+    const struct spectrum *spectrum = &surface->spectrum;
+    if (spectrum->type != SPECTRUM_SELF_AFFINE || spectrum->anisotropy > 1 ||
+        surface_case_translated(surface))
+        return 0;
+    double density = plateau(spectrum, e->modes);
+    const struct expected_scalar list[] = {
+        {"fractal_dimension", surface->dimension + 1 - spectrum->hurst, NAN},
+        {"psd_plateau", density, NAN},
+        {"fractal_scale", fractal_scale(spectrum, surface->dimension, density), NAN}};
+    return add_scalars(e, sizeof list / sizeof *list, list, err);
+}
+
+/* Returns the lag at which the autocorrelation first falls to a level; NaN where it does not. */
+static double lag_at(const struct curve *acf, double level) {
+    for (size_t a = 1; acf != NULL && a < acf->n; a++) {
+        double before = acf->y[a - 1], here = acf->y[a];
+        if (before > level && here <= level)
+            return acf->x[a - 1] + (acf->x[a] - acf->x[a - 1]) * (before - level) / (before - here);
+    }
+    return NAN;
+}
+
+/* Adds correlation lengths: at 0.2, as ISO 25178-2 has it, and at 1/e. */
+static int add_lengths(struct expectation *e, struct error *err) {
+    const struct curve *acf = result_curve(e->result, "acf");
+    const struct expected_scalar list[] = {{"correlation_length", lag_at(acf, 0.2), NAN},
+                                           {"correlation_length_e", lag_at(acf, exp(-1)), NAN}};
     return add_scalars(e, sizeof list / sizeof *list, list, err);
 }
 
@@ -375,13 +435,19 @@ int statistics_expectation(const cJSON *parameters, bool joint, struct case_resu
     if (status == 0)
         status = add_alphas(&e, err);
     if (status == 0)
+        status = add_fractal(&e, err);
+    if (status == 0)
         status = add_heights(&e, err);
     if (status == 0)
         status = add_summits(&e, joint, err);
     if (status == 0)
         status = spectra_prescribed(&e.one_case, e.modes, out, err);
     if (status == 0)
+        status = add_lengths(&e, err);
+    if (status == 0)
         status = add_alpha(&e, err);
+    if (status == 0)
+        units_set(out);
     modes_destroy(&e.modes);
     statistics_case_clear(&e.one_case);
     if (status != 0)

@@ -1,4 +1,5 @@
 #include "jobs/surface/surface_case.h"
+#include "core/surface/acf_spectrum.h"
 #include "jobs/surface/surface_parameters.h"
 #include <math.h>
 #include <stdlib.h>
@@ -9,9 +10,14 @@ static const double ROUNDING = 1e-9; /* relative: guards integers behind divisio
 
 static const struct parameter_table *const TABLES[] = {&SURFACE_PARAMETERS, NULL};
 
-static const char SKEWNESS[] = "/surface/heights/skewness";
+static const char LAGS[] = "/surface/spectrum/lag", CORRELATION[] = "/surface/spectrum/correlation";
+enum { ACF_ROWS = 1000 }; /* most, of the table that an autocorrelation becomes */
 
-/* A skewness beside heights that have another would be overlooked; a shape is known to be none. */
+static const char SKEWNESS[] = "/surface/heights/skewness",
+                  KURTOSIS[] = "/surface/heights/kurtosis", SHAPE[] = "/surface/heights/shape",
+                  SECOND[] = "/surface/heights/second_shape";
+
+/* What other heights have would be overlooked beside these; a shape is known to be none. */
 static void refuse_skewness(struct values *values) {
     double skewness = values_number(values, SKEWNESS);
     if (!isnan(skewness))
@@ -21,30 +27,57 @@ static void refuse_skewness(struct values *values) {
                      skewness);
 }
 
-/* Returns the shape; NaN, or what is at fault, with a fault. */
-static double read_shape(enum heights_type type, const struct distribution *distribution,
-                         struct values *values) {
+/* Refuses what belongs to a distribution of two shapes. */
+static void refuse_second(struct values *values) {
+    static const char *const PATHS[] = {SECOND, KURTOSIS};
+    for (size_t p = 0; p < 2; p++)
+        if (!isnan(values_number(values, PATHS[p])))
+            values_fault(values, PATHS[p], "%g: belongs to a distribution of two shapes, beta",
+                         values_number(values, PATHS[p]));
+}
+
+/* Reads the shape, or solves for it; a fault where there is none. */
+static void read_shape(struct heights *heights, const struct distribution *distribution,
+                       struct values *values) {
     struct error reason = {0};
-    double shape = values_number(values, "/surface/heights/shape");
-    double skewness = values_number(values, SKEWNESS);
+    double shape = values_number(values, SHAPE), skewness = values_number(values, SKEWNESS);
+    heights->shape = shape;
     if (!isnan(shape) && !isnan(skewness))
         values_fault(values, SKEWNESS, "give shape or skewness, not both");
-    else if (!isnan(skewness) && heights_shape_of_skewness(type, skewness, &shape, &reason) != 0)
+    else if (!isnan(skewness) &&
+             heights_shape_of_skewness(heights, skewness, &heights->shape, &reason) != 0)
         values_fault(values, SKEWNESS, "%s", reason.text);
     else if (isnan(skewness) &&
              !(shape >= distribution->shape_low && shape <= distribution->shape_high))
-        values_fault(values, "/surface/heights/shape",
+        values_fault(values, SHAPE,
                      "the distribution needs its shape (%s), a number in [%g, %g], or its skewness",
                      distribution->shape_means, distribution->shape_low, distribution->shape_high);
-    return shape;
+}
+
+/* Solves for both shapes of a skewness and a kurtosis. */
+static void read_kurtosis(struct heights *heights, struct values *values, double kurtosis) {
+    struct error reason = {0};
+    double skewness = values_number(values, SKEWNESS);
+    if (isnan(skewness) || !isnan(values_number(values, SHAPE)) ||
+        !isnan(values_number(values, SECOND)))
+        values_fault(values, KURTOSIS, "belongs to skewness, and takes the place of both shapes");
+    else if (heights_shapes_of_moments(skewness, kurtosis, heights, &reason) != 0)
+        values_fault(values, KURTOSIS, "%s", reason.text);
 }
 
 static void read_distribution(struct surface_case *out, struct values *values) {
     struct heights *heights = &out->options.heights;
     const struct distribution *distribution = heights_distribution(heights->type);
+    double second = values_number(values, SECOND), kurtosis = values_number(values, KURTOSIS);
     out->heights_name = distribution->family;
-    if (distribution->shape_means != NULL)
-        heights->shape = read_shape(heights->type, distribution, values);
+    if (!distribution->has_second)
+        refuse_second(values);
+    else if (!isnan(second))
+        heights->second = second;
+    if (distribution->has_second && !isnan(kurtosis))
+        read_kurtosis(heights, values, kurtosis);
+    else if (distribution->shape_means != NULL)
+        read_shape(heights, distribution, values);
     else
         refuse_skewness(values);
 }
@@ -67,6 +100,7 @@ static int read_samples(struct surface_case *out, struct values *values, struct 
         return status;
     out->heights_name = "samples";
     refuse_skewness(values);
+    refuse_second(values);
     if (samples == NULL) {
         values_fault(values, path, "the distribution needs its samples, heights in any order");
         return 0;
@@ -83,6 +117,7 @@ static int read_quantiles(struct surface_case *out, struct values *values, struc
     struct error reason = {0};
     out->heights_name = "quantiles";
     refuse_skewness(values);
+    refuse_second(values);
     int status = values_numbers(values, at, &probability, &n, err);
     if (status == 0)
         status = values_numbers(values, path, &quantile, &quantiles, err);
@@ -101,10 +136,28 @@ static int read_quantiles(struct surface_case *out, struct values *values, struc
     return status;
 }
 
+/* Reads tolerances on single errors. */
+static void read_tolerances(struct surface_options *options, struct values *values) {
+    static const char *const PATHS[] = {"/surface/heights/tolerances/eps_h",
+                                        "/surface/heights/tolerances/eps_s",
+                                        "/surface/heights/tolerances/eps_s0"};
+    double *const own[] = {&options->tolerance_h, &options->tolerance_s, &options->tolerance_s0};
+    for (size_t a = 0; a < 3; a++) {
+        double tolerance = values_number(values, PATHS[a]);
+        if (isnan(tolerance))
+            continue;
+        *own[a] = tolerance;
+        if (options->tolerance == 0)
+            values_fault(values, PATHS[a], "%g beside a tolerance of 0, which has no end",
+                         tolerance);
+    }
+}
+
 static void read_iteration(struct surface_options *options, struct values *values) {
     options->law = (enum height_law)values_choice(values, "/surface/heights/law");
     options->amplitudes = (enum surface_amplitudes)values_choice(values, "/surface/amplitudes");
     options->tolerance = values_number(values, "/surface/heights/tolerance");
+    read_tolerances(options, values);
     options->keep = (enum surface_keep)values_choice(values, "/surface/heights/keep");
     options->iteration =
         (enum surface_iteration)values_choice(values, "/surface/heights/iteration");
@@ -146,6 +199,9 @@ static void read_scale(struct surface_case *out, struct values *values) {
                           : !isnan(height) ? SCALE_RMS_HEIGHT
                                            : SCALE_NONE;
     out->spectrum.scale_value = !isnan(slope) ? slope : !isnan(height) ? height : 1;
+    if (!isnan(values_number(values, "/surface/unit")) && out->spectrum.scale == SCALE_NONE)
+        values_fault(values, "/surface/unit",
+                     "heights have no unit without a scale: give rms_slope or rms_height");
 }
 
 /* Solves for the lambda_l/lambda_s of nayak_alpha; NaN with a fault where no ratio gives it. */
@@ -264,7 +320,8 @@ static int read_bandwidth(struct surface_case *out, struct values *values, doubl
         values_fault(values, "/surface/hurst",
                      "a self-affine spectrum needs it: a number in (0, 1]; or wavelength_ratio and "
                      "nayak_alpha, which give it");
-    if (!isnan(alpha) && !has_ratio)
+    out->ratio_solved = !isnan(alpha) && !has_ratio;
+    if (out->ratio_solved)
         return solve_ratio(out, values, alpha, rolloff, err);
     if (!isnan(alpha)) {
         values_fault(values, "/surface/nayak_alpha",
@@ -364,6 +421,68 @@ static int read_table(struct surface_case *out, struct values *values, double po
     return status;
 }
 
+/* The wave numbers of the table that an autocorrelation becomes: from below the cell's first to the
+ * shortest waves that the points or the lags resolve, close enough for the last lag. */
+static size_t acf_wave_numbers(const struct surface_case *surface, const struct acf_table *acf,
+                               double points, double *out) {
+    double length = surface->length_ratio_y > surface->length_ratio ? surface->length_ratio_y
+                                                                    : surface->length_ratio;
+    double least = TWO_PI / (length * surface->wavelength_ratio), gap = acf->lag[1];
+    for (size_t a = 1; a < acf->n; a++)
+        gap = fmin(gap, acf->lag[a] - acf->lag[a - 1]);
+    double highest = TWO_PI / 2 * fmin(points, 1 / gap), lowest = 0.9 * least;
+    double step = fmax(TWO_PI / 6 / acf->lag[acf->n - 1], (highest - lowest) / (ACF_ROWS - 1));
+    if (!(highest > least))
+        return 0;
+    size_t m = (size_t)fmin(ACF_ROWS, ceil((highest - lowest) / step) + 1);
+    for (size_t a = 0; a < m; a++)
+        out[a] = lowest + (highest - lowest) * (double)a / (double)(m - 1);
+    return m;
+}
+
+/* Makes the table of an autocorrelation, which has no other fault. */
+static int table_of_acf(struct surface_case *out, struct values *values,
+                        const struct acf_table *acf, double points, struct error *err) {
+    struct error reason = {0};
+    if (isnan(out->wavelength_ratio) || isnan(out->length_ratio) || isnan(points))
+        return 0; /* at fault */
+    out->table = array_create(2 * (size_t)ACF_ROWS, sizeof *out->table);
+    if (out->table == NULL)
+        return error_memory(err, 2 * (size_t)ACF_ROWS * sizeof *out->table, "a table spectrum");
+    size_t m = acf_wave_numbers(out, acf, points, out->table);
+    if (m < 2) {
+        values_fault(values, LAGS, "lags are so far apart that no wave of the cell is resolved");
+        return 0;
+    }
+    int status = acf_spectrum(out->dimension, acf, m, out->table, out->table + ACF_ROWS, &reason);
+    out->spectrum.table_count = m;
+    out->spectrum.table_wave_number = out->table;
+    out->spectrum.table_density = out->table + ACF_ROWS;
+    return table_status(values, CORRELATION, status, &reason, err);
+}
+
+static int read_acf(struct surface_case *out, struct values *values, double points,
+                    struct error *err) {
+    double *lag = NULL, *correlation = NULL;
+    size_t n = 0, correlations = 0;
+    struct error reason = {0};
+    read_anisotropy(out, values);
+    int status = values_numbers(values, LAGS, &lag, &n, err);
+    if (status == 0)
+        status = values_numbers(values, CORRELATION, &correlation, &correlations, err);
+    struct acf_table acf = {n, lag, correlation};
+    if (status == 0 && (lag == NULL || correlation == NULL || n != correlations))
+        values_fault(values, CORRELATION,
+                     "an acf_table needs lag and correlation, as many of each");
+    else if (status == 0 && acf_table_check(&acf, &reason) != 0)
+        values_fault(values, LAGS, "%s", reason.text);
+    else if (status == 0)
+        status = table_of_acf(out, values, &acf, points, err);
+    free(lag);
+    free(correlation);
+    return status;
+}
+
 static void read_lengths(struct surface_case *out, struct values *values) {
     static const char path[] = "/surface/length_ratio_y";
     double along_y = values_number(values, path);
@@ -384,7 +503,9 @@ static int read_surface(struct surface_case *out, struct values *values, struct 
     out->dimension = surface_case_dimension(values);
     read_lengths(out, values);
     out->wavelength_ratio = values_number(values, "/surface/wavelength_ratio");
-    out->spectrum.type = (enum spectrum_type)values_choice(values, "/surface/spectrum/type");
+    int type = values_choice(values, "/surface/spectrum/type");
+    bool acf = type == SPECTRUM_GIVEN_ACF;
+    out->spectrum.type = acf ? SPECTRUM_TABLE : (enum spectrum_type)type;
     int status = read_heights(out, values, err);
     read_scale(out, values);
     if (status == 0 && out->spectrum.type == SPECTRUM_SELF_AFFINE)
@@ -396,7 +517,7 @@ static int read_surface(struct surface_case *out, struct values *values, struct 
     if (status == 0 && out->spectrum.type == SPECTRUM_EXPONENTIAL_ACF)
         status = read_exponential(out, values, err);
     if (status == 0 && out->spectrum.type == SPECTRUM_TABLE)
-        status = read_table(out, values, points, err);
+        status = (acf ? read_acf : read_table)(out, values, points, err);
     if (status == 0 &&
         !isnan(out->length_ratio * out->wavelength_ratio * points)) /* else at fault */
         surface_case_grid(out, points, "/surface/points_per_wavelength", values, &out->grid);
@@ -475,6 +596,17 @@ struct surface_band surface_case_sampled_band(const struct surface_case *surface
 double surface_case_bytes(const struct surface_case *surface) {
     struct surface_band band = surface_case_band(surface);
     return generator_bytes(&surface->grid, band.x, band.y, &surface->options);
+}
+
+void surface_case_estimate(const struct surface_case *surface, struct study_cost *out) {
+    struct height_moments heights;
+    bool gaussian = surface->options.heights.type == HEIGHTS_GAUSSIAN;
+    bool known = !gaussian && heights_moments(&surface->options.heights, &heights, NULL) == 0;
+    surface_law_estimate(surface->translation, out);
+    out->wavelength_ratio = surface->ratio_solved ? surface->wavelength_ratio : 0;
+    out->hurst = surface->hurst_solved ? surface->spectrum.hurst : 0;
+    out->skewness = known ? heights.skewness : 0;
+    out->kurtosis = known ? heights.kurtosis : 0;
 }
 
 /* --- the grid of the cell --- */

@@ -15,6 +15,7 @@ struct surface_case {
     struct surface_options options;
     double wavelength_ratio;             /* as given, or solved for nayak_alpha */
     bool hurst_solved;                   /* for nayak_alpha and wavelength_ratio */
+    bool ratio_solved;                   /* for nayak_alpha and hurst */
     double length_ratio, length_ratio_y; /* sides of the cell in longest waves; of profiles both are
                                             the length */
     double *table;                       /* owned: memory behind a table spectrum */
@@ -102,5 +103,9 @@ bool surface_case_grid(const struct surface_case *surface, double points, const 
                        struct values *values, struct grid *out);
 /* A grid has at most 2^31 points. */
 #define SURFACE_POINTS_MOST 2147483648.0
+
+/* Fills what is known of a surface before it is made: its law, what was solved for, skewness and
+ * kurtosis of heights that are not Gaussian. */
+void surface_case_estimate(const struct surface_case *surface, struct study_cost *out);
 
 #endif

@@ -28,6 +28,9 @@ static void refuse_iteration(const struct surface_options *of, struct values *va
         bool given;
     } values_of[] = {
         {"/surface/heights/tolerance", of->tolerance != usual->tolerance},
+        {"/surface/heights/tolerances/eps_h", of->tolerance_h != 0},
+        {"/surface/heights/tolerances/eps_s", of->tolerance_s != 0},
+        {"/surface/heights/tolerances/eps_s0", of->tolerance_s0 != 0},
         {"/surface/heights/keep", of->keep != usual->keep},
         {"/surface/heights/iteration", of->iteration != usual->iteration},
         {"/surface/heights/draw", of->draw != usual->draw},

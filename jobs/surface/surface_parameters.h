@@ -10,6 +10,9 @@ enum alpha_formula { ALPHA_DISCRETE, ALPHA_CONTINUOUS };
  * HEIGHTS_TABLE. */
 enum heights_given { GIVEN_SAMPLES = HEIGHTS_TABLE, GIVEN_QUANTILES };
 
+/* The choice of /surface/spectrum/type beside the RUGO_SPECTRA, which becomes a table. */
+enum spectrum_given { SPECTRUM_GIVEN_ACF = 100 };
+
 extern const struct parameter_table SURFACE_PARAMETERS;
 
 #endif

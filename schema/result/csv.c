@@ -10,12 +10,13 @@
 struct columns {
     size_t count;       /* of theories */
     const char **names; /* owned: room for every theory of every curve */
-    bool difference;
+    bool difference, units;
     const struct study_result *study;
 };
 
 static void collect_theories(struct columns *columns, const struct curve *curve) {
     columns->difference = columns->difference || curve->minuend != NULL;
+    columns->units = columns->units || curve->x_unit.unit != NULL || curve->y_unit.unit != NULL;
     for (size_t t = 0; t < curve->theory_count; t++) {
         size_t n = 0;
         while (n < columns->count && strcmp(columns->names[n], curve->theories[t].name) != 0)
@@ -87,14 +88,32 @@ static void print_difference(FILE *file, const struct case_result *one, const st
     fputs(!difference ? "," : curve->paired ? ",true" : ",false", file);
 }
 
+/* Prints a number in its unit and the unit; empty without one. */
+static void print_physical(FILE *file, const struct physical_unit *unit, double number) {
+    print_field(file, unit->unit != NULL ? unit->scale * number : (double)NAN);
+    fprintf(file, ",%s", unit->unit != NULL ? unit->unit : "");
+}
+
+/* Prints the columns of physical units: x, x2, y and its standard error. */
+static void print_units(FILE *file, const struct curve *curve, double x, double x2, size_t n) {
+    const struct physical_unit none = {0};
+    print_physical(file, &curve->x_unit, x);
+    print_physical(file, isnan(x2) ? &none : &curve->x2_unit, x2);
+    print_physical(file, &curve->y_unit, curve->y[n]);
+    print_field(file, curve->y_unit.unit != NULL ? curve->y_unit.scale * curve->standard_error[n]
+                                                 : (double)NAN);
+}
+
 /* Prints value number `n` of the curve: a point, or an occupied cell of a matrix. */
 static void print_line(FILE *file, const struct case_result *one, const struct curve *curve,
                        size_t n, const struct columns *columns) {
     bool matrix = curve->columns > 0;
     size_t at = matrix ? curve->cells[n] : n;
+    double x = curve->x[matrix ? at / curve->columns : n];
+    double x2 = matrix ? curve->x2[at % curve->columns] : (double)NAN;
     print_labels(file, columns->study, one, curve);
-    print_field(file, curve->x[matrix ? at / curve->columns : n]);
-    print_field(file, matrix ? curve->x2[at % curve->columns] : (double)NAN);
+    print_field(file, x);
+    print_field(file, x2);
     print_field(file, curve->y[n]);
     print_field(file, curve->standard_error[n]);
     for (size_t s = 0; s < ERROR_SOURCES; s++) {
@@ -109,6 +128,8 @@ static void print_line(FILE *file, const struct case_result *one, const struct c
         print_difference(file, one, curve, n);
     for (size_t t = 0; t < columns->count; t++)
         print_field(file, theory_at(curve, columns->names[t], at));
+    if (columns->units)
+        print_units(file, curve, x, x2, n);
     fputc('\n', file);
 }
 
@@ -143,6 +164,9 @@ static void print_heading(FILE *file, const struct columns *columns) {
         fputs(",less,minuend,subtrahend,paired", file);
     for (size_t t = 0; t < columns->count; t++)
         fprintf(file, ",theory_%s", columns->names[t]);
+    if (columns->units)
+        fputs(",x_physical,x_unit,x2_physical,x2_unit,y_physical,y_unit,standard_error_physical",
+              file);
     fputc('\n', file);
 }
 

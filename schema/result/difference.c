@@ -351,6 +351,14 @@ static int set_theories(struct maker *maker, const struct curve_pair *pair, stru
     return 0;
 }
 
+/* Sets the unit that both have with the same scale; without memory none. */
+static struct physical_unit common_unit(struct case_result *out, const struct physical_unit *a,
+                                        const struct physical_unit *b) {
+    struct physical_unit unit = {result_text(out, a->unit), result_text(out, a->symbol), a->scale};
+    bool same = same_text(a->unit, b->unit) && same_x(a->scale, b->scale);
+    return same && unit.symbol != NULL ? unit : (struct physical_unit){0};
+}
+
 static int set_names(struct maker *maker, const struct curve_pair *pair, struct curve *out,
                      struct error *err) {
     const struct curve *a = pair->minuend, *b = pair->subtrahend;
@@ -363,6 +371,8 @@ static int set_names(struct maker *maker, const struct curve_pair *pair, struct 
     out->pressure = a->pressure;
     out->level = same_number(a->level, b->level) ? a->level : (double)NAN;
     out->points = same_number(a->points, b->points) ? a->points : (double)NAN;
+    out->x_unit = common_unit(maker->out, &a->x_unit, &b->x_unit);
+    out->y_unit = common_unit(maker->out, &a->y_unit, &b->y_unit);
     bool done = out->quantity != NULL && out->x_label != NULL && out->y_label != NULL &&
                 out->series != NULL &&
                 (out->model != NULL || (a->model == NULL && b->model == NULL)) &&
@@ -450,6 +460,7 @@ static int add_scalar(struct maker *maker, const struct scalar *a, struct error 
         return 0;
     out.minuend = a->value;
     out.subtrahend = b->value;
+    out.unit = common_unit(maker->out, &a->unit, &b->unit);
     out.theory = a->theory - b->theory;
     out.grid = a->grid - b->grid;
     for (size_t s = 0; s < ERROR_SOURCES; s++)

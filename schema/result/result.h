@@ -62,6 +62,15 @@ struct scalar_error {
     double value, bound, standard_error;
 };
 
+/* --- physical units --- */
+
+/* What the numbers of an axis or a scalar are in an SI unit: each times the scale. */
+struct physical_unit {
+    const char *unit;   /* "Pa"; NULL: not known, or there is none */
+    const char *symbol; /* what is in that unit: "p" */
+    double scale;
+};
+
 /* --- curves --- */
 
 struct theory {
@@ -107,6 +116,7 @@ struct curve {
     bool paired;                /* of a difference: its standard error is that of pairs */
     bool counted;               /* from a histogram, or over its bins, with the counts outside */
     double underflow, overflow; /* counts below and above the bins */
+    struct physical_unit x_unit, x2_unit, y_unit;
 };
 
 /* Makes a curve without points, attributes and errors. */
@@ -156,6 +166,7 @@ struct scalar {
     double minuend, subtrahend; /* of a difference */
     struct scalar_error errors[ERROR_SOURCES];
     double law_difference, law_standard_error; /* as of curves; NaN: not known */
+    struct physical_unit unit;
 };
 /* Returns a scalar without sources of error, a theory of the grid and another law. */
 struct scalar scalar_named(const char *name, double value, double standard_error, double theory);

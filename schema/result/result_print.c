@@ -94,6 +94,20 @@ bool curve_print_attributes(FILE *file, const struct curve *curve, bool all) {
     return done;
 }
 
+/* Prints what is known of a unit. */
+static bool put_unit(FILE *file, bool *first, const char *key, const struct physical_unit *unit) {
+    bool none = true;
+    if (unit->unit == NULL)
+        return true;
+    bool done = put_key(file, first, key);
+    fputc('{', file);
+    done = done && put_text(file, &none, "unit", unit->unit) &&
+           put_text(file, &none, "symbol", unit->symbol) &&
+           put_number(file, &none, "scale", unit->scale);
+    fputc('}', file);
+    return done;
+}
+
 static bool put_error(FILE *file, bool *first, const struct curve *curve,
                       enum error_source source) {
     const struct error_source_row *row = &ERROR_SOURCE_ROWS[source];
@@ -167,6 +181,9 @@ static bool print_curve(FILE *file, const struct curve *curve) {
         done = put_numbers(file, &first, "minuend", curve->n, curve->minuend) &&
                put_numbers(file, &first, "subtrahend", curve->n, curve->subtrahend) &&
                put_flag(file, &first, "paired", curve->paired);
+    done = done && put_unit(file, &first, "x_unit", &curve->x_unit) &&
+           put_unit(file, &first, "x2_unit", &curve->x2_unit) &&
+           put_unit(file, &first, "y_unit", &curve->y_unit);
     fputc('}', file);
     return done;
 }
@@ -231,6 +248,7 @@ static bool print_scalar(FILE *file, const struct scalar *scalar) {
         done = put_number(file, &first, "minuend", scalar->minuend) &&
                put_number(file, &first, "subtrahend", scalar->subtrahend) &&
                put_flag(file, &first, "paired", scalar->paired);
+    done = done && put_unit(file, &first, "unit", &scalar->unit);
     fputc('}', file);
     return done;
 }

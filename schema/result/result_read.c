@@ -180,6 +180,26 @@ static int read_theories(const struct reading *reading, const cJSON *object, str
     return 0;
 }
 
+/* Reads a unit; without a member there is none. */
+static int read_unit(const struct reading *reading, const cJSON *object, const char *key,
+                     struct physical_unit *out) {
+    const cJSON *unit = field_at(object, key);
+    if (unit == NULL)
+        return 0;
+    out->scale = field_number(unit, "scale");
+    if (!(out->scale > 0 && isfinite(out->scale)))
+        return fault(reading, key, "a unit with a scale above 0");
+    int status = read_text(reading, unit, "unit", &out->unit);
+    return status != 0 ? status : read_text(reading, unit, "symbol", &out->symbol);
+}
+
+static int read_units(const struct reading *reading, const cJSON *object, struct curve *curve) {
+    int status = read_unit(reading, object, "x_unit", &curve->x_unit);
+    if (status == 0)
+        status = read_unit(reading, object, "x2_unit", &curve->x2_unit);
+    return status != 0 ? status : read_unit(reading, object, "y_unit", &curve->y_unit);
+}
+
 static int read_points(const struct reading *reading, const cJSON *object, struct curve *curve) {
     const cJSON *x = field_at(object, "x"), *x2 = field_at(object, "x2");
     if (!cJSON_IsArray(x) || (x2 != NULL && !cJSON_IsArray(x2)))
@@ -232,6 +252,8 @@ static int read_curve(const struct reading *reading, const cJSON *object) {
         status = read_numbers(reading, object, "valueless", curve.n, &curve.valueless);
     if (status == 0 && field_at(object, "minuend") != NULL)
         status = read_difference(reading, object, &curve);
+    if (status == 0)
+        status = read_units(reading, object, &curve);
     curve.counted = field_at(object, "underflow") != NULL;
     curve.underflow = field_number(object, "underflow");
     curve.overflow = field_number(object, "overflow");
@@ -269,8 +291,11 @@ static int read_scalars(const struct reading *reading, const cJSON *scalars) {
                                 .minuend = field_number(item, "minuend"),
                                 .subtrahend = field_number(item, "subtrahend")};
         read_scalar_errors(item, &scalar);
-        status = scalar.name != NULL ? result_add_scalar(reading->result, &scalar, reading->err)
-                                     : no_memory(reading);
+        if (scalar.name == NULL)
+            return no_memory(reading);
+        status = read_unit(reading, item, "unit", &scalar.unit);
+        if (status == 0)
+            status = result_add_scalar(reading->result, &scalar, reading->err);
     }
     return status;
 }

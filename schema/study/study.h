@@ -23,11 +23,16 @@ struct study_cost {
     double seconds;        /* CPU seconds a realisation on a 3 GHz core */
     double case_seconds;   /* the same of a case besides: merging and publishing it */
     double result_bytes;   /* of a realisation in a job's result, where they grow with these */
-    double relative_error; /* standard error of the main curve after one realisation; / sqrt(n) */
+    double relative_error; /* standard error of the main curve after one realisation, of contact
+                            * at the load where it is largest; / sqrt(n) */
     uint64_t runs_most;    /* most realisations of a job; 0: no limit but that of all jobs */
     /* Of surfaces by the law "translation": the share of m0 outside the band, and of the variance
      * in the band at other waves than asked for (FORMULAS.md, F5.11). 0 without the law. */
     double law_outside, law_misfit;
+    double fine_height; /* of blocks of finite elements, in lambda_s, where it is given; else 0 */
+    /* Of surfaces: what was solved for nayak_alpha, and what heights that are not Gaussian have;
+     * else 0. */
+    double wavelength_ratio, hurst, skewness, kurtosis;
 };
 
 struct study_case;

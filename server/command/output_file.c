@@ -1,4 +1,5 @@
 #include "server/command/output_file.h"
+#include "core/memory_file.h"
 #include "server/command/rasterise.h"
 #include "server/show/map/map_png.h"
 #include <errno.h>
@@ -33,32 +34,69 @@ int output_file_close(FILE *file, const char *path, int status, struct error *er
     return status;
 }
 
-bool output_file_is_png(const char *path) {
-    size_t length = strlen(path);
-    return length > 4 && strcmp(path + length - 4, ".png") == 0;
+static bool ends_in(const char *path, const char *ending) {
+    size_t length = strlen(path), last = strlen(ending);
+    return length > last && strcmp(path + length - last, ending) == 0;
 }
 
-int output_file_picture(const char *path, const struct map_picture *picture, struct error *err) {
-    FILE *file;
-    int status = output_file_open(&file, path, err);
-    if (status != 0)
-        return status;
-    status = output_file_is_png(path) ? map_png(file, picture->grid, picture->z, err)
-                                      : plot_map(picture, file, err);
-    return output_file_close(file, path, status, err);
+bool output_file_is_png(const char *path) {
+    return ends_in(path, ".png");
+}
+
+int output_file_check_drawn(const char *path, struct error *err) {
+    static const char *const ENDINGS[] = {".svg", ".png", ".pdf", ".eps"};
+    for (size_t a = 0; a < sizeof ENDINGS / sizeof *ENDINGS; a++)
+        if (ends_in(path, ENDINGS[a]))
+            return 0;
+    return error_set(err, ERROR_INPUT,
+                     "picture %.200s: its name ends in none of .svg, .png, .pdf, .eps", path);
+}
+
+static int write_drawn(const char *path, const char *svg, size_t size, FILE *file,
+                       struct error *err) {
+    if (output_file_is_png(path))
+        return rasterise(svg, size, file, err);
+    if (!ends_in(path, ".svg"))
+        return print_as(path + strlen(path) - strlen("pdf"), svg, size, file, err);
+    (void)fwrite(svg, 1, size, file); /* the file remembers a failure */
+    return 0;
 }
 
 int output_file_drawn(const char *path, const char *svg, size_t size, struct error *err) {
     FILE *file;
-    int status = output_file_open(&file, path, err);
+    int status = output_file_check_drawn(path, err);
+    if (status == 0)
+        status = output_file_open(&file, path, err);
     if (status != 0)
         return status;
-    if (output_file_is_png(path))
-        status = rasterise(svg, size, file, err);
-    else
-        (void)fwrite(svg, 1, size, file); /* the file remembers a failure */
-    status = output_file_close(file, path, status, err);
+    status = output_file_close(file, path, write_drawn(path, svg, size, file, err), err);
     if (status != 0)
         (void)unlink(path);
+    return status;
+}
+
+/* A map in PNG has a pixel a point, which is no drawing of an SVG. */
+static int write_pixels(const char *path, const struct map_picture *picture, struct error *err) {
+    FILE *file;
+    int status = output_file_open(&file, path, err);
+    return status != 0
+               ? status
+               : output_file_close(file, path, map_png(file, picture->grid, picture->z, err), err);
+}
+
+int output_file_picture(const char *path, const struct map_picture *picture, struct error *err) {
+    struct memory_file memory;
+    size_t size = 0;
+    if (output_file_is_png(path))
+        return write_pixels(path, picture, err);
+    if (!memory_file_open(&memory))
+        return error_memory(err, 0, "a picture");
+    int status = plot_map(picture, memory.file, err);
+    char *text = memory_file_close(&memory, &size);
+    if (status == 0 && text == NULL)
+        status = error_memory(err, 0, "a picture");
+    if (status == 0)
+        status = output_file_drawn(path, text, size, err);
+    free(text);
     return status;
 }

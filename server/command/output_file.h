@@ -15,11 +15,13 @@ int output_file_open(FILE **file, const char *path, struct error *err);
 int output_file_close(FILE *file, const char *path, int status, struct error *err);
 /* Whether a file of this name is to hold a PNG. */
 bool output_file_is_png(const char *path);
-/* Writes a picture into a file of its own: a pixel a point where its name ends in .png, else SVG.
- */
+/* Writes a picture into a file of its own: a pixel a point where its name ends in .png, else as
+ * output_file_drawn. */
 int output_file_picture(const char *path, const struct map_picture *picture, struct error *err);
-/* Writes a drawn SVG into a file of its own: as pixels, by rsvg-convert, where its name ends in
- * .png. No file is left after a failure. */
+/* Returns ERROR_INPUT for a name that ends in none of .svg, .png, .pdf and .eps. */
+int output_file_check_drawn(const char *path, struct error *err);
+/* Writes a drawn SVG into a file of its own, in the format that its name ends in: but for .svg by
+ * rsvg-convert. No file is left after a failure. */
 int output_file_drawn(const char *path, const char *svg, size_t size, struct error *err);
 
 #endif

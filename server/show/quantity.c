@@ -1,5 +1,7 @@
 #include "server/show/quantity.h"
+#include "core/map/length_unit.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -65,4 +67,33 @@ const char *quantity_prefix(double value, double *scale) {
     /* The names of one prefix follow each other, the one to print first. */
     *scale = PREFIXES[a].scale;
     return PREFIXES[a].name;
+}
+
+/* Of inverse units, for numbers of 1 to 1000 rather than of 0.001 to 1. */
+static const double LARGER = 999.999;
+
+/* Writes a unit that is no power of a length. */
+static double prefixed_unit(const char *unit, double most, char *out, size_t size) {
+    bool inverse = strncmp(unit, "1/", 2) == 0;
+    double scale = 1;
+    const char *prefix = quantity_prefix(inverse ? LARGER / most : most, &scale);
+    snprintf(out, size, "%s%s%s", inverse ? "1/" : "", prefix, inverse ? unit + 2 : unit);
+    return inverse ? 1 / scale : scale;
+}
+
+double unit_readable(const char *unit, double most, char *out, size_t size) {
+    bool inverse = strncmp(unit, "1/", 2) == 0;
+    const char *length = inverse ? unit + 2 : unit, *power = *length == 'm' ? length + 1 : "-";
+    double scale, exponent = *power == '^' ? strtod(power + 1, NULL) : 1;
+    most = most > 0 && isfinite(most) ? most : 1; /* nothing to read */
+    *out = '\0';
+    if (strcmp(unit, "1") == 0)
+        return 1;
+    if (*power != '\0' && *power != '^')
+        return prefixed_unit(unit, most, out, size);
+    const char *name =
+        length_unit_readable(pow(inverse ? LARGER / most : most, 1 / exponent), &scale);
+    snprintf(out, size, "%s%s%s", inverse ? "1/" : "", name, power);
+    scale = pow(scale, exponent);
+    return inverse ? 1 / scale : scale;
 }

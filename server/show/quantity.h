@@ -14,5 +14,8 @@ bool quantities_parse(const char *text, const char *unit, size_t most, double *o
 /* Returns the prefix with which a value is best read, and sets *scale to what it stands for: 1e6
  * and "M" of 3.2e6. "" and 1 of 0 and of what is not finite. */
 const char *quantity_prefix(double value, double *scale);
+/* Writes the unit in which numbers of an SI unit ("Pa", "m^2", "1/m", "N/m") up to `most` are best
+ * read, such as "1/nm"; "" for "1". Returns what it stands for. */
+double unit_readable(const char *unit, double most, char *out, size_t size);
 
 #endif

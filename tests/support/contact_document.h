@@ -45,16 +45,16 @@ static inline bool text_is(const cJSON *object, const char *key, const char *tex
     return cJSON_IsString(value) && strcmp(value->valuestring, text) == 0;
 }
 
-/* The first curve of that name: finest level. */
+/* The first curve of that name: finest level. model NULL: a curve of none. */
 static inline const cJSON *curve_of(const cJSON *document, const char *quantity, const char *series,
                                     const char *model) {
     const cJSON *curve;
     cJSON_ArrayForEach(curve, json_at(document, "/curves")) {
         if (text_is(curve, "/quantity", quantity) && text_is(curve, "/series", series) &&
-            text_is(curve, "/model", model))
+            (model == NULL || text_is(curve, "/model", model)))
             return curve;
     }
-    fail_msg("no curve %s of %s, %s", quantity, series, model);
+    fail_msg("no curve %s of %s, %s", quantity, series, model != NULL ? model : "no model");
     return NULL;
 }
 

@@ -2,6 +2,7 @@
 #include "core/memory_file.h"
 #include "jobs/merger.h"
 #include "jobs/realisations.h"
+#include "jobs/units.h"
 #include "schema/result/result_json.h"
 #include "schema/store/store.h"
 #include "schema/study/sweep.h"
@@ -369,6 +370,8 @@ static int finish_result(struct store *store, const struct aggregate *aggregate,
         status = refuse_quantity(store, aggregate, case_number, info, quantity, err);
     if (status == 0 && filter->complete)
         status = merger_complete(aggregate->kind, info->parameters, result, err);
+    if (status == 0)
+        units_set(result);
     return status;
 }
 

@@ -1,5 +1,6 @@
 #include "worker/publish/comparison.h"
 #include "jobs/pairs.h"
+#include "jobs/units.h"
 #include "schema/result/result_json.h"
 #include "worker/publish/aggregate.h"
 #include <stdio.h>
@@ -46,6 +47,8 @@ static int read_case(struct store *store, const struct aggregate *aggregate, uin
             aggregate_merge(store, aggregate, case_number, &info, &out->merger, &out->result, err);
     if (status == 0)
         status = result_set_parameters(&out->result, info.parameters, err);
+    if (status == 0)
+        units_set(&out->result);
     out->result.case_number = case_number;
     result_keep(&out->result, quantity, false);
     if (status == 0 && quantity != NULL && out->result.curve_count == 0)

@@ -15,9 +15,10 @@
  * PROBE: the half-space, series 0, and where blocks are low the block of each model; on the surface
  * of the case.
  * LAW: the surface of the case, series 0, and that of the other law of heights.
- * LIKE: the mirrored sub-map of a surface like a measured one; one series. */
+ * LIKE: the mirrored sub-map of a surface like a measured one; one series.
+ * ASPERITIES: theories by the counted summits of the surface, on the finest level and the next. */
 #define COMPANION_NAMES(NAME)                                                                      \
-    NAME(LONGER) NAME(SHORTER) NAME(EQUAL) NAME(PROBE) NAME(LAW) NAME(LIKE)
+    NAME(LONGER) NAME(SHORTER) NAME(EQUAL) NAME(PROBE) NAME(LAW) NAME(LIKE) NAME(ASPERITIES)
 #define COMPANION_ENTRY(name) COMPANION_##name,
 enum companion_name { COMPANION_NAMES(COMPANION_ENTRY) COMPANION_COUNT };
 #undef COMPANION_ENTRY

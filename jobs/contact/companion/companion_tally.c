@@ -46,7 +46,7 @@ void companion_tally_begin(struct companion_tally *tally) {
 static void fill_fits(const struct contact_case *one_case, double *series) {
     const size_t n = one_case->load_count;
     contact_measure_fits(n, one_case->loads, series + MEASURE_EDGES * n, series + MEASURE_KAPPA * n,
-                         series + MEASURE_POWER_LAW_A * n, series + MEASURE_POWER_LAW_B * n);
+                         n);
 }
 
 static void add_pair(struct companion_tally *tally, const struct contact_case *one_case,

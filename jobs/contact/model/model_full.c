@@ -63,10 +63,11 @@ static const char *const SCALARS[SCALAR_COUNT] = {
     [SCALAR_QUALITY] = "full_mesh_quality",
 };
 
-static struct full_options full_model_options(const struct contact_case *one_case) {
+static struct full_options full_model_options(const struct contact_case *one_case,
+                                              const struct grid *grid) {
     struct full_options options = FULL_DEFAULTS;
     options.kinematics = one_case->kinematics;
-    options.transition = one_case->transition_depth;
+    options.transition = contact_case_transition(one_case, grid);
     options.tolerance = one_case->tolerance;
     return options;
 }
@@ -121,13 +122,13 @@ static double mesh_floor(int dimension, enum measure_field field, double transit
 
 static double bytes(const struct contact_case *one_case, size_t model, const struct grid *grid) {
     const struct block *block = &one_case->blocks[model];
-    struct full_options options = full_model_options(one_case);
+    struct full_options options = full_model_options(one_case, grid);
     struct full_size size = cost_full_size(grid, block, &options, one_case->rms_slope);
     return cost_full_bytes(grid, block, &options, &size);
 }
 
 static double seconds(const struct contact_case *one_case, size_t model, const struct grid *grid) {
-    struct full_options options = full_model_options(one_case);
+    struct full_options options = full_model_options(one_case, grid);
     struct full_size size =
         cost_full_size(grid, &one_case->blocks[model], &options, one_case->rms_slope);
     return cost_full_contact(grid, &size, one_case->load_count);
@@ -149,8 +150,8 @@ static void destroy(struct contact_solver **solver) {
 
 static int create(struct contact_solver **out, const struct contact_case *one_case, size_t model,
                   const struct compliance *compliance, struct error *err) {
-    struct full_options options = full_model_options(one_case);
     const struct grid *grid = &compliance->grid;
+    struct full_options options = full_model_options(one_case, grid);
     struct contact_solver *solver = array_create(1, sizeof *solver);
     if (solver == NULL)
         return error_memory(err, sizeof *solver, "a contact solver");
@@ -228,7 +229,7 @@ static void meshed_clear(struct meshed *meshed) {
 static int meshed_open(struct meshed *out, const struct contact_case *one_case, size_t model,
                        const double *z, struct error *err) {
     const struct contact_level *finest = contact_case_finest(one_case);
-    struct full_options options = full_model_options(one_case);
+    struct full_options options = full_model_options(one_case, &finest->grid);
     size_t points = grid_points(&finest->grid);
     *out = (struct meshed){.z = array_create(points, sizeof *out->z)};
     if (out->z == NULL)

@@ -489,14 +489,20 @@ static int put_scalars(const struct contact_answer *answer, const struct contact
 /* Adds a fit at the heaviest load whose area, by edges, is within its range. */
 static int put_fit(const struct contact_answer *answer, const struct contact_sum *area,
                    const struct contact_fit *fit, struct error *err) {
-    struct contact_sum sum;
+    struct contact_sum sum, power;
     size_t n = 0;
     while (n < answer->loads && area->value[n] <= fit->area_most)
         n++;
-    int status = contact_scalars_put_range(fit, answer->one_case, n, answer->result, err);
-    if (status != 0 || n == 0)
-        return status;
-    status = contact_sum_create(answer, fit->measure, &sum, err);
+    if (n == 0)
+        return contact_scalars_put_range(fit, NULL, answer->one_case, 0, NULL, NAN, NAN,
+                                         answer->result, err);
+    int status = contact_sum_create(answer, fit->measure, &sum, err);
+    if (status == 0)
+        status = contact_sum_create(answer, MEASURE_POWER_LAW_B, &power, err);
+    if (status == 0)
+        status =
+            contact_scalars_put_range(fit, NULL, answer->one_case, n, area->value, sum.value[n - 1],
+                                      power.value[n - 1], answer->result, err);
     if (status != 0)
         return status;
     struct scalar scalar =

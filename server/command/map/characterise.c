@@ -1,11 +1,14 @@
 /* rugo characterise FILE: what a height map in a file is like. */
 #include "core/memory_file.h"
+#include "jobs/maps/map_planes.h"
 #include "server/command/command.h"
 #include "server/command/map/like_study.h"
 #include "server/command/map/map_file.h"
+#include "server/command/map/map_output.h"
 #include "server/command/output_file.h"
 #include "server/show/map/map_figure.h"
 #include "server/show/map/map_report.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,7 +16,8 @@ struct characterise_options {
     struct map_options map;
     const char *trust_from, *trust_to; /* NULL: by the map */
     int format;
-    const char *picture, *report; /* NULL: none */
+    const char *picture, *report; /* NULL: none, as the next */
+    const char *acf, *psd;
 };
 #define AT(member) offsetof(struct characterise_options, member)
 static const struct option_row OPTIONS[] = {
@@ -30,6 +34,12 @@ static const struct option_row OPTIONS[] = {
     {"report", 0, OPTION_TEXT, 0, 0, AT(report), "FILE.svg|FILE.png", NULL,
      "draw a page for print: map, heights, spectrum, scales, main parameters, where they come "
      "from"},
+    {"acf", 0, OPTION_TEXT, 0, 0, AT(acf), "FILE", NULL,
+     "write the autocorrelation R(tx, ty), in heights squared, with the lag 0 in the middle, as "
+     "npy, csv, xyz, png or svg"},
+    {"psd", 0, OPTION_TEXT, 0, 0, AT(psd), "FILE", NULL,
+     "the spectral density C(kx, ky), likewise, with the wave vector 0 in the middle; its integral "
+     "is the mean square height"},
     {0}};
 
 enum { FORMAT_TEXT, FORMAT_JSON, FORMAT_SVG, FORMAT_STUDY };
@@ -73,16 +83,12 @@ static int draw(const char *path, const char *name, const struct height_map *map
     return output_file_picture(path, &picture, err);
 }
 
-/* A page under a name of another kind, such as .pdf, would not be what it seems. */
+/* A page under a name of another kind would not be what it seems. */
 static int check_report(const char *path, struct error *err) {
-    size_t length = path != NULL ? strlen(path) : 0;
-    if (path == NULL || output_file_is_png(path) ||
-        (length > 4 && strcmp(path + length - 4, ".svg") == 0))
-        return 0;
-    return error_set(err, ERROR_INPUT,
-                     "--report %.200s: allowed are files that end in .svg or .png; --format svg "
-                     "prints the page",
-                     path);
+    int status = path != NULL ? output_file_check_drawn(path, err) : 0;
+    if (status != 0)
+        error_context(err, "--report; --format svg prints the page");
+    return status;
 }
 
 static int report(const char *path, const struct map_figure *figure, struct error *err) {
@@ -97,6 +103,79 @@ static int report(const char *path, const struct map_figure *figure, struct erro
     if (status == 0)
         status = output_file_drawn(path, text, size, err);
     free(text);
+    return status;
+}
+
+/* --- the autocorrelation and the spectrum over the plane --- */
+
+/* A file of a plane. */
+struct plane_file {
+    const char *path; /* NULL: none */
+    int (*make)(struct map_plane *out, const struct measured_map *map, struct error *err);
+    struct map_picture labels;
+    bool logarithmic; /* in pictures */
+};
+enum { PLANE_FILES = 2 };
+
+static void plane_files(const struct characterise_options *options,
+                        struct plane_file out[PLANE_FILES]) {
+    out[0] = (struct plane_file){options->acf,
+                                 map_acf_plane,
+                                 {.name = "autocorrelation",
+                                  .subject = "",
+                                  .x_label = "tx from the left side",
+                                  .y_label = "ty from the lower side",
+                                  .z_label = "R"},
+                                 false};
+    out[1] = (struct plane_file){options->psd,
+                                 map_psd_plane,
+                                 {.name = "spectral density",
+                                  .subject = "",
+                                  .x_label = "kx from the left side",
+                                  .y_label = "ky from the lower side",
+                                  .z_label = "log10 C"},
+                                 true};
+}
+
+static int check_planes(const struct characterise_options *options, struct error *err) {
+    struct plane_file files[PLANE_FILES];
+    int status = 0;
+    plane_files(options, files);
+    for (size_t f = 0; f < PLANE_FILES && status == 0; f++)
+        if (files[f].path != NULL)
+            status = map_output_check(files[f].path, err);
+    return status;
+}
+
+/* Values many decades below the highest are of no interest in a picture. */
+static void take_logarithms(struct map_plane *plane) {
+    static const double SEEN = 1e-8;
+    size_t n = grid_points(&plane->grid);
+    double most = 0;
+    for (size_t a = 0; a < n; a++)
+        most = fmax(most, plane->values[a]);
+    for (size_t a = 0; a < n && most > 0; a++)
+        plane->values[a] = log10(fmax(plane->values[a], SEEN * most));
+}
+
+static int write_planes(const struct characterise_options *options, const struct height_map *map,
+                        enum boundary boundary, struct error *err) {
+    const struct measured_map measured = {&map->grid, map->z, boundary};
+    struct plane_file files[PLANE_FILES];
+    int status = 0;
+    plane_files(options, files);
+    for (size_t f = 0; f < PLANE_FILES && status == 0; f++) {
+        struct map_plane plane = {0};
+        if (files[f].path == NULL)
+            continue;
+        status = files[f].make(&plane, &measured, err);
+        if (status == 0 && files[f].logarithmic && map_output_is_picture(files[f].path))
+            take_logarithms(&plane);
+        if (status == 0)
+            status =
+                map_output_write(files[f].path, &files[f].labels, &plane.grid, plane.values, err);
+        map_plane_clear(&plane);
+    }
     return status;
 }
 
@@ -139,6 +218,8 @@ static int run(const void *values, const char *const *arguments) {
     struct preparation_record record = {0};
     int status = check_report(options->report, &err);
     if (status == 0)
+        status = check_planes(options, &err);
+    if (status == 0)
         status = map_options_read(&map, &record, arguments[0], &options->map, &err);
     if (status == 0) {
         status = characterise(&measured, &found, &map, &record, options, &err);
@@ -147,6 +228,8 @@ static int run(const void *values, const char *const *arguments) {
     }
     if (status == 0 && options->picture != NULL)
         status = draw(options->picture, arguments[0], &map, record.boundary, &err);
+    if (status == 0)
+        status = write_planes(options, &map, record.boundary, &err);
     const struct map_figure figure = {&measured, &found, &map, &record};
     if (status == 0 && options->report != NULL)
         status = report(options->report, &figure, &err);

@@ -1,5 +1,4 @@
 /* rugo press FILE: the contact of a height map in a file with a rigid flat. */
-#include "core/map/height_map_file.h"
 #include "jobs/maps/map_press_curves.h"
 #include "jobs/maps/map_press_error.h"
 #include "schema/result/csv.h"
@@ -7,6 +6,7 @@
 #include "schema/study/parameter.h"
 #include "server/command/command.h"
 #include "server/command/map/map_file.h"
+#include "server/command/map/map_output.h"
 #include "server/command/map/press_loads.h"
 #include "server/command/output_file.h"
 #include "server/show/map/map_vtu.h"
@@ -44,25 +44,6 @@ static void fill(struct fields *fields) {
         }
 }
 
-static bool ends_with(const char *path, const char *ending) {
-    size_t length = strlen(path), tail = strlen(ending);
-    return length > tail && strcmp(path + length - tail, ending) == 0;
-}
-
-static bool is_picture(const char *path) {
-    return ends_with(path, ".png") || ends_with(path, ".svg");
-}
-
-static int check_map(const char *path, struct error *err) {
-    const char *slash = strrchr(path, '/'), *name = slash != NULL ? slash + 1 : path;
-    if (strchr(name, '.') != NULL && !is_picture(path) &&
-        height_map_format_of(path) == HEIGHT_MAP_FORMATS)
-        return error_set(err, ERROR_INPUT,
-                         "file %.200s: its name ends in none of .npy, .csv, .xyz, .png, .svg",
-                         path);
-    return output_file_check(path, err);
-}
-
 /* Before anything is computed: ERROR_INPUT for another ending, ERROR_SYSTEM where nothing can be
  * written. */
 static int press_files_check(const struct press_paths *paths, struct error *err) {
@@ -70,32 +51,15 @@ static int press_files_check(const struct press_paths *paths, struct error *err)
     int status = paths->mesh != NULL ? output_file_check(paths->mesh, err) : 0;
     for (size_t f = 0; f < sizeof maps / sizeof *maps && status == 0; f++)
         if (maps[f] != NULL)
-            status = check_map(maps[f], err);
+            status = map_output_check(maps[f], err);
     return status;
 }
 
 static int write_map(const char *path, const char *name, const struct grid *grid,
                      const double *values, struct error *err) {
-    enum height_map_format format = height_map_format_of(path);
-    FILE *file;
-    if (is_picture(path)) {
-        const struct map_picture picture = {.name = name,
-                                            .subject = "",
-                                            .x_label = "x",
-                                            .y_label = "y",
-                                            .z_label = name,
-                                            .grid = grid,
-                                            .z = values,
-                                            .boundary = BOUNDARY_OPEN,
-                                            .unmarked = true};
-        return output_file_picture(path, &picture, err);
-    }
-    int status = output_file_open(&file, path, err);
-    if (status != 0)
-        return status;
-    status = height_map_write(file, format == HEIGHT_MAP_FORMATS ? HEIGHT_MAP_NPY : format, grid,
-                              values, err);
-    return output_file_close(file, path, status, err);
+    const struct map_picture labels = {
+        .name = name, .subject = "", .x_label = "x", .y_label = "y", .z_label = name};
+    return map_output_write(path, &labels, grid, values, err);
 }
 
 static int write_mesh(const char *path, const struct fields *fields, const char *unit_name,

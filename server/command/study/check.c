@@ -48,6 +48,38 @@ static void print_law(struct text_table *table, const struct study_cost *cost) {
     table_cell(table, "-");
 }
 
+/* Columns of what only some studies have. */
+static const struct own_column {
+    const char *heading;
+    size_t at; /* of its number in study_cost, 0 where a case has none */
+    const char *legend;
+} OWN_COLUMNS[] = {
+    {"fine zone", offsetof(struct study_cost, fine_height),
+     "fine zone: depth in lambda_s in which columns of elements are as wide as those of the "
+     "surface"},
+    {"wavelength_ratio", offsetof(struct study_cost, wavelength_ratio), NULL},
+    {"hurst", offsetof(struct study_cost, hurst), NULL},
+    {"skewness", offsetof(struct study_cost, skewness), NULL},
+    {"kurtosis", offsetof(struct study_cost, kurtosis), NULL},
+};
+enum { OWN_COUNT = sizeof OWN_COLUMNS / sizeof *OWN_COLUMNS };
+
+static double own_number(const struct study_case *one, const struct own_column *column) {
+    return *(const double *)((const char *)&one->cost + column->at);
+}
+
+/* Finds the columns that some case has; returns their number. */
+static size_t own_columns(const struct study *study, bool shown[OWN_COUNT]) {
+    size_t count = 0;
+    for (size_t a = 0; a < OWN_COUNT; a++) {
+        shown[a] = false;
+        for (size_t c = 0; c < study->case_count; c++)
+            shown[a] = shown[a] || own_number(&study->cases[c], &OWN_COLUMNS[a]) != 0;
+        count += shown[a];
+    }
+    return count;
+}
+
 static void print_cases(const struct study *study) {
     size_t swept = 0;
     while (study->swept[swept] != NULL)
@@ -55,13 +87,17 @@ static void print_cases(const struct study *study) {
     static const char *const HEADINGS[] = {"grid",    "memory MiB", "jobs",    "CPU time",
                                            "error %", "outside %",  "misfit %"};
     bool law = has_law(study);
+    bool own[OWN_COUNT];
     size_t columns = law ? 7 : 5;
-    struct text_table table = {.columns = swept + 1 + columns};
+    struct text_table table = {.columns = swept + 1 + columns + own_columns(study, own)};
     table_cell(&table, "case");
     for (size_t p = 0; p < swept; p++)
         table_cell(&table, "%s", strrchr(study->swept[p], '/') + 1);
     for (size_t h = 0; h < columns; h++)
         table_cell(&table, "%s", HEADINGS[h]);
+    for (size_t a = 0; a < OWN_COUNT; a++)
+        if (own[a])
+            table_cell(&table, "%s", OWN_COLUMNS[a].heading);
     for (size_t c = 0; c < study->case_count; c++) {
         const struct study_case *one = &study->cases[c];
         char time[48];
@@ -76,12 +112,18 @@ static void print_cases(const struct study *study) {
         table_cell(&table, "%.2g", 100 * plan_case_error(&study->cases[c]));
         if (law)
             print_law(&table, &one->cost);
+        for (size_t a = 0; a < OWN_COUNT; a++)
+            if (own[a])
+                table_number(&table, own_number(one, &OWN_COLUMNS[a]));
     }
     table_print(&table, stdout);
     table_clear(&table);
     if (law)
         printf("outside: share of m0 at waves outside the band of the spectrum; misfit: share of "
                "the variance in the band at other waves than asked for\n");
+    for (size_t a = 0; a < OWN_COUNT; a++)
+        if (own[a] && OWN_COLUMNS[a].legend != NULL)
+            printf("%s\n", OWN_COLUMNS[a].legend);
 }
 
 enum { NUMBERS_SHOWN = 8 };

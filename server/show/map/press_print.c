@@ -82,25 +82,6 @@ static const char *si_unit(enum kind kind, bool profile) {
     return profile ? PROFILE_UNITS[kind] : UNITS[kind];
 }
 
-/* Writes the unit in which the largest value of a column is best read; returns what it stands for.
- */
-static double readable_unit(enum kind kind, bool profile, double most, char *unit, size_t size) {
-    double scale = 1;
-    most = most > 0 ? most : 1; /* nothing to read */
-    if (kind == KIND_AREA && !profile) {
-        const char *length = length_unit_readable(sqrt(most), &scale);
-        snprintf(unit, size, "%s^2", length);
-        return scale * scale;
-    }
-    if (kind == KIND_LENGTH || kind == KIND_AREA) {
-        snprintf(unit, size, "%s", length_unit_readable(most, &scale));
-        return scale;
-    }
-    const char *prefix = quantity_prefix(most, &scale);
-    snprintf(unit, size, "%s%s", prefix, si_unit(kind, profile));
-    return scale;
-}
-
 static double largest(const struct part *part, const struct press_column *column) {
     double most = 0;
     for (size_t l = 0; l < part->report->loads; l++)
@@ -124,7 +105,7 @@ static void print_physical(FILE *file, const struct part *part) {
         if (!(columns[c].scale > 0))
             continue;
         scales[c] = columns[c].scale /
-                    readable_unit(columns[c].kind, profile,
+                    unit_readable(si_unit(columns[c].kind, profile),
                                   columns[c].scale * largest(part, column_of(columns[c].value)),
                                   unit, sizeof unit);
         table_cell(&table, "%s, %s", columns[c].name, unit);

@@ -2,6 +2,7 @@
 #include "schema/result/swept.h"
 #include "server/show/plot/plot_layout.h"
 #include "server/show/plot/plot_style.h"
+#include "server/show/quantity.h"
 #include "server/show/view.h"
 #include <math.h>
 #include <stdio.h>
@@ -124,6 +125,7 @@ struct plot {
     struct plot_pen pen;
     struct legend legend;
     struct plot_layout layout;
+    struct physical_unit x_unit, y_unit; /* of all lines */
     size_t tick_count;
     double ticks[TICKS_MOST];
 };
@@ -363,6 +365,57 @@ static void draw_panel(struct plot *plot, size_t panel) {
     fputs("</g>\n", plot->pen.file);
 }
 
+/* --- physical units --- */
+
+/* Returns the unit that the axes of all lines have, with the same scale. */
+static struct physical_unit common_unit(const struct plot_lines *lines, bool horizontal) {
+    static const double ROUNDING = 1e-6; /* which nobody sees */
+    struct physical_unit common = {0};
+    for (size_t n = 0; n < lines->count; n++) {
+        const struct curve *curve = lines->list[n].curve;
+        const struct physical_unit *unit = horizontal ? &curve->x_unit : &curve->y_unit;
+        if (n == 0)
+            common = *unit;
+        if (!same_text(common.unit, unit->unit) ||
+            !(fabs(unit->scale - common.scale) <= ROUNDING * common.scale))
+            return (struct physical_unit){0};
+    }
+    return common;
+}
+
+static double largest_of(const struct plot_axis *axis) {
+    return fmax(fabs(axis->low), fabs(axis->high));
+}
+
+/* Draws the axes in physical units of a picture of one panel. */
+static void draw_second(const struct plot *plot) {
+    const struct frame *frame = &plot->pen.frame;
+    const struct physical_unit *units[] = {&plot->x_unit, &plot->y_unit};
+    const double most[] = {largest_of(&frame->x), largest_of(&frame->y)};
+    double factors[2] = {0, 0};
+    char labels[2][PLOT_LABEL_SIZE] = {"", ""}, unit[32];
+    for (size_t a = 0; a < 2; a++)
+        if (units[a]->unit != NULL) {
+            factors[a] = units[a]->scale / unit_readable(units[a]->unit, units[a]->scale * most[a],
+                                                         unit, sizeof unit);
+            snprintf(labels[a], sizeof labels[a], "%s%s%s", units[a]->symbol,
+                     *unit != '\0' ? ", " : "", unit);
+        }
+    if (factors[0] > 0 || factors[1] > 0)
+        frame_draw_second(plot->pen.file, frame, factors, labels[0], labels[1]);
+}
+
+/* Names the units of a picture of several panels in its legend. */
+static void note_unit(struct plot *plot, const struct physical_unit *unit, const char *label) {
+    char text[PLOT_LABEL_SIZE], name[32];
+    if (unit->unit == NULL || plot->panels < 2)
+        return;
+    double scale = unit_readable(unit->unit, unit->scale, name, sizeof name);
+    snprintf(text, sizeof text, "%s of 1: %s = %.4g %s", label, unit->symbol, unit->scale / scale,
+             name);
+    (void)legend_add(&plot->legend, text, "");
+}
+
 /* One label an axis, in the middle of all panels. */
 static void draw_labels(const struct plot *plot) {
     struct frame whole = {0}, last = {0};
@@ -395,6 +448,12 @@ static void lay_out(struct plot *plot) {
     plot_legend_lines(&plot->legend, plot->lines, plot->marks, plot->words);
     plot_theories_name(plot->lines, &plot->legend);
     plot_legend_notes(&plot->legend, plot->lines, plot->marks, plot->words->note);
+    plot->x_unit = common_unit(plot->lines, true);
+    plot->y_unit = common_unit(plot->lines, false);
+    note_unit(plot, &plot->x_unit, plot->words->x);
+    note_unit(plot, &plot->y_unit, plot->words->y);
+    plot->layout.second_x = plot->x_unit.unit != NULL;
+    plot->layout.second_y = plot->y_unit.unit != NULL;
     plot_lay_out(&plot->layout, plot->panels, columns_of(panels), &plot->legend,
                  plot->request->millimetres);
 }
@@ -416,6 +475,8 @@ int plot_lines_draw(const struct plot_lines *lines, const struct study_result *s
     if (fit(plot, study)) {
         for (size_t panel = 0; panel < plot->panels; panel++)
             draw_panel(plot, panel);
+        if (plot->panels == 1)
+            draw_second(plot);
         draw_labels(plot);
         legend_draw(&plot->legend, file, plot->layout.scale, plot->layout.legend_left,
                     plot->layout.legend_top, plot->layout.legend_width);

@@ -1,5 +1,6 @@
 #include "server/show/plot/plot_density.h"
 #include "server/show/plot/plot_heat.h"
+#include "server/show/quantity.h"
 #include "server/show/table/shown_cases.h"
 #include <math.h>
 #include <stdlib.h>
@@ -186,6 +187,17 @@ static void note_case(struct plot_pen *pen, const struct study_result *study,
     shown_clear(&shown);
 }
 
+/* Notes what one of an axis is in its physical unit. */
+static void note_unit(struct plot_pen *pen, const char *label, const struct physical_unit *unit) {
+    char text[PLOT_LABEL_SIZE], name[32];
+    if (unit->unit == NULL)
+        return;
+    double scale = unit_readable(unit->unit, unit->scale, name, sizeof name);
+    snprintf(text, sizeof text, "%.60s of 1: %s = %.4g %s", label, unit->symbol,
+             unit->scale / scale, name);
+    pen_note(pen, text);
+}
+
 static void draw(struct density *density, const struct study_result *study,
                  const struct case_result *one) {
     struct plot_pen *pen = &density->pen;
@@ -205,6 +217,8 @@ static void draw(struct density *density, const struct study_result *study,
     heat_legend(pen, &scale, curve->y_label);
     draw_theories(density, &scale);
     note_case(pen, study, one);
+    note_unit(pen, curve->x_label, &curve->x_unit);
+    note_unit(pen, curve->x2_label, &curve->x2_unit);
     fputs("</svg>\n", pen->file);
 }
 

@@ -130,8 +130,30 @@ static void print_number(FILE *file, double value, bool power) {
 
 enum tick_label { TICK_BARE, TICK_NUMBER, TICK_POWER };
 
+/* Draws a tick outside of the frame. */
+static void draw_opposite_tick(FILE *file, const struct frame *frame, bool horizontal, double value,
+                               enum tick_label label) {
+    static const double LENGTH = 4;
+    double x = horizontal ? frame_x(frame, value) : frame->right;
+    double y = horizontal ? frame->top : frame_y(frame, value);
+    double length = LENGTH * frame->scale;
+    fprintf(file, "<path d=\"M%.1f %.1f%c%.1f\" class=\"frame\"/>", x, y, horizontal ? 'v' : 'h',
+            horizontal ? -length : length);
+    if (label != TICK_BARE) {
+        fprintf(file, "<text x=\"%.1f\" y=\"%.1f\"%s>", horizontal ? x : x + 7 * frame->scale,
+                y + (horizontal ? -7 : 4) * frame->scale, horizontal ? " class=\"middle\"" : "");
+        print_number(file, value, label == TICK_POWER);
+        fputs("</text>", file);
+    }
+    fputc('\n', file);
+}
+
 static void draw_tick(FILE *file, const struct frame *frame, bool horizontal, double value,
                       enum tick_label label) {
+    if (frame->opposite) {
+        draw_opposite_tick(file, frame, horizontal, value, label);
+        return;
+    }
     double x = horizontal ? frame_x(frame, value) : frame->left;
     double y = horizontal ? frame->bottom : frame_y(frame, value);
     fprintf(file, "<path d=\"M%.1f %.1f%c%d\" class=\"grid\"/>", x, y, horizontal ? 'V' : 'H',
@@ -214,14 +236,39 @@ void frame_draw(FILE *file, const struct frame *frame, const char *x_label, cons
     fputs("</g>\n", file);
 }
 
+/* Returns the axis in other units, with ticks at round numbers of these. */
+static struct plot_axis second_axis(const struct plot_axis *axis, double factor) {
+    return (struct plot_axis){
+        .low = axis->low * factor, .high = axis->high * factor, .logarithmic = axis->logarithmic};
+}
+
+void frame_draw_second(FILE *file, const struct frame *frame, const double factors[2],
+                       const char *x_label, const char *y_label) {
+    struct frame second = *frame;
+    second.opposite = true;
+    fputs("<g>\n", file);
+    if (factors[0] > 0) {
+        second.x = second_axis(&frame->x, factors[0]);
+        draw_ticks(file, &second, true);
+        frame_label(file, &second, true, x_label);
+    }
+    if (factors[1] > 0) {
+        second.y = second_axis(&frame->y, factors[1]);
+        draw_ticks(file, &second, false);
+        frame_label(file, &second, false, y_label);
+    }
+    fputs("</g>\n", file);
+}
+
 void frame_label(FILE *file, const struct frame *frame, bool horizontal, const char *label) {
     double x = (frame->left + frame->right) / 2.0, y = (frame->top + frame->bottom) / 2.0;
+    bool opposite = frame->opposite;
     if (horizontal)
         fprintf(file, "<text x=\"%.0f\" y=\"%.0f\" class=\"middle\">", x,
-                frame->bottom + 44 * frame->scale);
+                opposite ? frame->top - 24 * frame->scale : frame->bottom + 44 * frame->scale);
     else
         fprintf(file, "<text transform=\"translate(%.0f %.0f) rotate(-90)\" class=\"middle\">",
-                frame->left - 60 * frame->scale, y);
+                opposite ? frame->right + 60 * frame->scale : frame->left - 60 * frame->scale, y);
     svg_label(file, label);
     fputs("</text>\n", file);
 }

@@ -20,6 +20,7 @@ struct frame {
     int left, top, right, bottom; /* FRAME_LEFT and so on; right is less in a narrower picture */
     double scale;                 /* of letters and their distances; 1 on screens */
     bool without_x, without_y;    /* no numbers and label at this axis */
+    bool opposite;                /* ticks and labels at the top and at the right */
     bool powers;                  /* logarithmic axes of many decades have numbers as 10^-5 */
 };
 /* Positions along a range shorter than this cannot be distinguished as numbers. */
@@ -46,6 +47,10 @@ bool frame_has_place(const struct frame *frame, double x, double y);
 double round_step(double range, int parts);
 /* Draws the frame with its ticks; labels (plot_words.h) are NULL for none. */
 void frame_draw(FILE *file, const struct frame *frame, const char *x_label, const char *y_label);
+/* Draws ticks, numbers and labels of second axes at the top and at the right of a frame, whose
+ * numbers are those of x and y times these factors; 0: none. */
+void frame_draw_second(FILE *file, const struct frame *frame, const double factors[2],
+                       const char *x_label, const char *y_label);
 /* Draws the label of an axis beside the frame. */
 void frame_label(FILE *file, const struct frame *frame, bool horizontal, const char *label);
 

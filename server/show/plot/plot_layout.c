@@ -10,6 +10,8 @@ enum {
     GAP_Y = 30,
     LEGEND_GAP = 16,
     MARGIN = 16,
+    SECOND_X = 36, /* above and beside panels: axes in physical units */
+    SECOND_Y = 62,
     NARROW = 600,
     PANEL_LEAST = 90
 };
@@ -44,6 +46,7 @@ static int grid_height(const struct plot_layout *out) {
 /* In fewer columns where panels would be too small to read. */
 static void size_for_print(struct plot_layout *out, int legend) {
     double room = out->size.width - out->left - MARGIN * out->scale;
+    room -= out->second_y ? SECOND_Y * out->scale : 0;
     if (out->size.width >= NARROW)
         room -= legend + LEGEND_GAP * out->scale;
     do {
@@ -62,12 +65,16 @@ void plot_lay_out(struct plot_layout *out, size_t panels, size_t columns,
     bool print = millimetres > 0;
     double scale = print ? PRINT_SCALE : 1;
     int legend_room = legend_width(legend, scale);
-    *out = (struct plot_layout){.panels = panels,
+    bool second_x = out->second_x && panels == 1, second_y = out->second_y && panels == 1;
+    *out = (struct plot_layout){.second_x = second_x,
+                                .second_y = second_y,
+                                .panels = panels,
                                 .columns = columns_of(panels, columns),
                                 .scale = scale,
                                 .left = (int)(FRAME_LEFT * scale),
                                 .top = print && panels == 1 ? MARGIN : FRAME_TOP};
     out->top += !print && panels > 1 ? GAP_Y - 10 : 0; /* panels have titles */
+    out->top += second_x ? (int)(SECOND_X * scale) : 0;
     out->size = (struct pen_size){.font = 13 * scale, .millimetres = millimetres};
     out->size.width = (int)lrint(millimetres * UNITS_PER_MM);
     if (print)
@@ -76,6 +83,7 @@ void plot_lay_out(struct plot_layout *out, size_t panels, size_t columns,
         size_for_screen(out);
     bool below = print && out->size.width < NARROW;
     int right = out->left + grid_width(out), bottom = out->top + grid_height(out);
+    right += second_y ? (int)(SECOND_Y * scale) : 0;
     out->legend_left = below ? out->left : right + (int)(LEGEND_GAP * scale);
     out->legend_top = below ? bottom + (int)(BELOW * scale) : out->top - 4;
     out->legend_width = below ? out->size.width - out->left - MARGIN : 0;

@@ -16,10 +16,11 @@ struct plot_layout {
     int left, top; /* of the first panel */
     int panel_width, panel_height;
     int legend_left, legend_top, legend_width; /* width 0: a column at the right */
+    bool second_x, second_y;                   /* there is room for axes at the top and the right */
 };
-/* Lays out so many panels, in rows of `columns` (0: as it suits), and a legend. millimetres: the
- * width on paper, whose letters are those of print and where a narrow picture has its legend below;
- * 0: for screens. */
+/* Lays out so many panels, in rows of `columns` (0: as it suits), and a legend. out has second_x
+ * and second_y; of several panels they are turned off. millimetres: the width on paper, whose
+ * letters are those of print and where a narrow picture has its legend below; 0: for screens. */
 void plot_lay_out(struct plot_layout *out, size_t panels, size_t columns,
                   const struct legend *legend, double millimetres);
 /* Puts a frame, whose axes are set, in the place of a panel; only those at the left and at the

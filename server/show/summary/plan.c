@@ -85,6 +85,23 @@ static bool put_law(cJSON *document, const struct study_cost *cost) {
            field_put(document, "law_misfit", json_number(cost->law_misfit));
 }
 
+/* Adds what only some studies have: the depth of the fine zone, and what is known of surfaces. */
+static bool put_own(cJSON *document, const struct study_cost *cost) {
+    const struct {
+        const char *key;
+        double number;
+    } list[] = {{"fine_height", cost->fine_height},
+                {"wavelength_ratio", cost->wavelength_ratio},
+                {"hurst", cost->hurst},
+                {"skewness", cost->skewness},
+                {"kurtosis", cost->kurtosis}};
+    bool complete = true;
+    for (size_t a = 0; a < sizeof list / sizeof *list && complete; a++)
+        complete =
+            list[a].number == 0 || field_put(document, list[a].key, json_number(list[a].number));
+    return complete;
+}
+
 static cJSON *case_document(const struct study *study, size_t c) {
     const struct study_case *one = &study->cases[c];
     cJSON *document = cJSON_CreateObject();
@@ -97,7 +114,8 @@ static cJSON *case_document(const struct study *study, size_t c) {
         field_put(document, "block", cJSON_CreateNumber((double)block_of(one))) &&
         field_put(document, "seconds", json_number(plan_case_seconds(&study->cases[c]))) &&
         field_put(document, "relative_error", json_number(plan_case_error(&study->cases[c]))) &&
-        put_law(document, &one->cost) && put_components(document, &study->cases[c]);
+        put_law(document, &one->cost) && put_own(document, &one->cost) &&
+        put_components(document, &study->cases[c]);
     return fields_finish(document, complete);
 }
 

@@ -4,6 +4,7 @@
 #include "schema/result/view.h"
 #include "server/show/summary/summary_cells.h"
 #include "server/show/summary/summary_target.h"
+#include "server/show/summary/summary_units.h"
 #include "server/show/view.h"
 #include <math.h>
 #include <stdio.h>
@@ -104,7 +105,10 @@ static void summary_of_like(const struct case_result *one, FILE *file) {
 enum { TABLES_MOST = 3 };
 
 /* Of many cases these are shown. */
-static const char *const HEADLINES[] = {"nayak_alpha",
+static const char *const HEADLINES[] = {"wavelength_ratio",
+                                        "skewness",
+                                        "kurtosis",
+                                        "nayak_alpha",
                                         "nayak_alpha_continuous",
                                         "summit_density",
                                         "summit_height_mean",
@@ -537,6 +541,7 @@ void summary_of_curves(const struct study_result *study, const struct study_repo
         for (size_t c = 0; c < shown.count && c < TARGETS_SHOWN; c++)
             summary_of_target(shown.list[c], file);
     }
+    print_units(&shown, file);
     for (size_t c = 0; c < shown.count && c < LIKE_SHOWN; c++)
         summary_of_like(shown.list[c], file);
     print_missing(&shown, file);

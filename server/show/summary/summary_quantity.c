@@ -1,11 +1,12 @@
 /* One quantity over its x, with its errors by source, beside the theories. */
+#include "server/show/quantity.h"
 #include "server/show/summary/summary.h"
 #include "server/show/summary/summary_cells.h"
 #include "server/show/summary/summary_target.h"
 #include <math.h>
 #include <string.h>
 
-enum { TABLES_MOST = 4, PLACES_SHOWN = 10, MODELS_MOST = 8, NOTES_SHOWN = 3 };
+enum { TABLES_MOST = 4, PLACES_SHOWN = 10, MODELS_MOST = 8, NOTES_SHOWN = 3, PHYSICAL_SIZE = 32 };
 
 /* A case is shown by the finest curve of each model, of the first estimator. */
 struct finest_curves {
@@ -118,6 +119,14 @@ static void print_scalar(const struct case_result *one, const char *name, FILE *
 
 /* --- a table a case --- */
 
+/* Returns what x is to be multiplied by to be in a unit that is easily read, and writes that. */
+static double physical_x(const struct curve *curve, char unit[PHYSICAL_SIZE]) {
+    double most = 0, scale = curve->x_unit.scale;
+    for (size_t k = 0; k < curve->n; k++)
+        most = fmax(most, fabs(curve->x[k]) * scale);
+    return scale / unit_readable(curve->x_unit.unit, most, unit, PHYSICAL_SIZE);
+}
+
 /* The largest of the errors of a curve by a source, within their bounds, over its values; NaN where
  * nothing is known. */
 static double largest_error(const struct curve *curve, enum error_source source) {
@@ -165,6 +174,7 @@ static bool has_law(const struct finest_curves *finest) {
 
 static size_t column_count(const struct finest_curves *finest) {
     size_t columns = 1 + finest->model_count + finest->theory_count;
+    columns += finest->curves[0]->x_unit.unit != NULL;
     columns += has_law(finest) ? finest->model_count : 0;
     for (int source = 0; source < ERROR_SOURCES; source++)
         columns += has_column(finest, (enum error_source)source) ? finest->model_count : 0;
@@ -174,7 +184,12 @@ static size_t column_count(const struct finest_curves *finest) {
 static void put_heading(const struct quantity_table *words, const struct finest_curves *finest,
                         struct text_table *table) {
     char model[64];
+    char unit[PHYSICAL_SIZE];
     table_cell(table, "%s", words->x);
+    if (finest->curves[0]->x_unit.unit != NULL) {
+        (void)physical_x(finest->curves[0], unit);
+        table_cell(table, "%s, %s", finest->curves[0]->x_unit.symbol, unit);
+    }
     for (size_t m = 0; m < finest->model_count; m++) {
         const struct curve *curve = finest->curves[m];
         table_fold(table);
@@ -194,7 +209,10 @@ static void put_heading(const struct quantity_table *words, const struct finest_
 
 static void put_place(const struct case_result *one, const struct finest_curves *finest, size_t k,
                       struct text_table *table) {
+    char unit[PHYSICAL_SIZE];
     table_number(table, finest->curves[0]->x[k]);
+    if (finest->curves[0]->x_unit.unit != NULL)
+        table_number(table, finest->curves[0]->x[k] * physical_x(finest->curves[0], unit));
     for (size_t m = 0; m < finest->model_count; m++) {
         const struct curve *curve = finest->curves[m];
         value_cell(table, one, curve, k);

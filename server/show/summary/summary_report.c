@@ -3,6 +3,7 @@
 #include "server/show/summary/report_series.h"
 #include "server/show/summary/summary.h"
 #include "server/show/summary/summary_cells.h"
+#include "server/show/summary/summary_units.h"
 #include "server/show/view.h"
 #include <math.h>
 #include <string.h>
@@ -167,6 +168,7 @@ void summary_of_report(const struct study_report *report, FILE *file) {
         fputs("(no memory for a table)\n", file);
         return;
     }
+    print_scales(&shown, file);
     const struct error_columns columns = columns_of(report);
     print_cases(report, &shown, &columns, file);
     print_all_series(report, &shown, &columns, file);

@@ -55,7 +55,8 @@ static int table_add(struct case_table *table, struct table_column column,
                                        .theory = NAN,
                                        .grid = NAN,
                                        .law_difference = NAN,
-                                       .law_standard_error = NAN};
+                                       .law_standard_error = NAN,
+                                       .physical = NAN};
     column.values = room;
     table->columns[table->column_count++] = column;
     *values = room;
@@ -90,6 +91,22 @@ static int add_parameters(struct case_table *table, struct error *err) {
         }
     }
     return status;
+}
+
+/* Sets the value in a physical unit; rows whose unit is not that of the column have none. */
+static int set_physical(struct case_table *table, const struct physical_unit *unit,
+                        struct table_value *value, struct error *err) {
+    struct table_column *column = &table->columns[table->column_count - 1];
+    value->physical = NAN;
+    if (unit->unit == NULL)
+        return 0;
+    if (column->physical == NULL)
+        column->physical = result_text(&table->room, unit->unit);
+    if (column->physical == NULL)
+        return error_memory(err, strlen(unit->unit), "a unit");
+    if (strcmp(column->physical, unit->unit) == 0)
+        value->physical = value->value * unit->scale;
+    return 0;
 }
 
 /* --- scalars --- */
@@ -139,8 +156,10 @@ static int add_scalar(struct case_table *table, const char *name, bool optional,
         table, (struct table_column){.type = COLUMN_SCALAR, .name = name, .x = NAN}, &values, err);
     for (size_t r = 0; status == 0 && r < table->row_count; r++) {
         const struct scalar *scalar = result_scalar(table->rows[r], name);
-        if (scalar != NULL)
-            values[r] = value_of(scalar, table->columns[table->column_count - 1].unknown);
+        if (scalar == NULL)
+            continue;
+        values[r] = value_of(scalar, table->columns[table->column_count - 1].unknown);
+        status = set_physical(table, &scalar->unit, &values[r], err);
     }
     return status;
 }
@@ -375,6 +394,7 @@ static int add_model(struct table_maker *maker, const struct table_wish *wish,
         if (theory != NULL && column->theory == NULL)
             column->theory = result_text(&table->room, theory->name);
         values[r] = value_at(curve, k, theory, column->unknown);
+        status = set_physical(table, &curve->y_unit, &values[r], err);
     }
     return status;
 }

@@ -27,12 +27,14 @@ struct table_value {
     double theory;
     double grid; /* theory on the grid, of a scalar alone */
     double law_difference, law_standard_error;
+    double physical; /* the value in the column's physical unit */
 };
 struct table_column {
     enum table_column_type type;
     const char *name;
     const char *pointer;           /* of a parameter */
     const char *unit;              /* NULL: none known */
+    const char *physical;          /* SI unit in which some row has its value too; NULL: none */
     const char *quantity, *series; /* of a curve, as the next three */
     const char *model;             /* NULL: without models */
     double x;

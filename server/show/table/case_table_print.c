@@ -2,11 +2,14 @@
 #include "schema/json/json.h"
 #include "schema/result/provenance.h"
 #include "schema/result/result_json.h"
+#include "server/show/quantity.h"
 #include "server/show/summary/summary_cells.h"
 #include "server/show/table/case_table.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+enum { UNIT_SIZE = 32 };
 
 /* Returns whether a column has a number of this kind in some row; at: its offset in a value. */
 static bool has_any(const struct case_table *table, const struct table_column *column, size_t at) {
@@ -30,19 +33,46 @@ static void text_cell(struct text_table *text, const struct table_column *column
         measured_cell(text, value->value, value->standard_error);
 }
 
+/* Returns what one of the unit is in which the values of a column are best read; writes it. */
+static double physical_unit(const struct case_table *table, const struct table_column *column,
+                            char unit[UNIT_SIZE]) {
+    double most = 0;
+    for (size_t r = 0; r < table->row_count; r++)
+        most = fmax(most, fabs(column->values[r].physical));
+    return unit_readable(column->physical, most, unit, UNIT_SIZE);
+}
+
+/* Adds a cell with the value in its physical unit, where the column has one. */
+static void physical_cell(const struct case_table *table, const struct table_column *column,
+                          size_t r, struct text_table *text) {
+    const struct table_value *value = &column->values[r];
+    char unit[UNIT_SIZE];
+    if (column->physical == NULL)
+        return;
+    double scale = value->physical / value->value / physical_unit(table, column, unit);
+    measured_cell(text, value->value * scale, value->standard_error * scale);
+}
+
 static void text_rows(const struct case_table *table, struct text_table *text) {
+    char unit[UNIT_SIZE];
     table_cell(text, "case");
     table_cell(text, "n");
     for (size_t n = 0; n < table->column_count; n++) {
         if (table->columns[n].type != COLUMN_PARAMETER)
             table_fold(text);
         table_cell(text, "%s", table->columns[n].name);
+        if (table->columns[n].physical == NULL)
+            continue;
+        (void)physical_unit(table, &table->columns[n], unit);
+        table_cell(text, "in %s", unit);
     }
     for (size_t r = 0; r < table->row_count; r++) {
         table_cell(text, "%llu", (unsigned long long)table->rows[r]->case_number);
         table_cell(text, "%llu", (unsigned long long)table->rows[r]->realisations);
-        for (size_t n = 0; n < table->column_count; n++)
+        for (size_t n = 0; n < table->column_count; n++) {
             text_cell(text, &table->columns[n], &table->columns[n].values[r]);
+            physical_cell(table, &table->columns[n], r, text);
+        }
     }
 }
 
@@ -92,6 +122,8 @@ static void text_unknown(const struct case_table *table, FILE *file) {
 
 void case_table_text(const struct case_table *table, FILE *file) {
     struct text_table text = {.columns = 2 + table->column_count};
+    for (size_t n = 0; n < table->column_count; n++)
+        text.columns += table->columns[n].physical != NULL;
     text_print_plain(file, table->study.name);
     fprintf(file, " (%s), study %s\n\n", table->study.state, table->study.id);
     text_rows(table, &text);
@@ -136,6 +168,8 @@ static void csv_heading(const struct case_table *table, FILE *file) {
             fprintf(file, ",%s_theory", column->name);
         if (HAS_ANY(table, column, law_difference))
             fprintf(file, ",%s_law_difference,%s_law_standard_error", column->name, column->name);
+        if (column->physical != NULL)
+            fprintf(file, ",%s in %s", column->name, column->physical);
     }
     fputc('\n', file);
 }
@@ -162,6 +196,8 @@ bool case_table_csv(const struct case_table *table, FILE *file) {
                 csv_number(file, value->law_difference);
                 csv_number(file, value->law_standard_error);
             }
+            if (column->physical != NULL)
+                csv_number(file, value->physical);
         }
         fputc('\n', file);
     }
@@ -195,6 +231,7 @@ static bool print_column(const struct table_column *column, FILE *file) {
         fputs("null", file);
     else
         done = done && json_print_text(file, column->unit);
+    done = done && put_member(file, "physical_unit", column->physical);
     bool first = true;
     for (size_t s = 0; s < ERROR_SOURCES && column->type != COLUMN_PARAMETER; s++)
         if (column->unknown[s]) {
@@ -235,6 +272,13 @@ static bool has_law(const struct case_table *table) {
     return any;
 }
 
+static bool has_physical(const struct case_table *table) {
+    bool any = false;
+    for (size_t n = 0; n < table->column_count; n++)
+        any = any || table->columns[n].physical != NULL;
+    return any;
+}
+
 static bool print_row(const struct case_table *table, size_t r, FILE *file) {
     static const struct {
         const char *key;
@@ -254,6 +298,10 @@ static bool print_row(const struct case_table *table, size_t r, FILE *file) {
     for (size_t m = 0; m < members && done; m++) {
         fprintf(file, ",\"%s\":", MEMBERS[m].key);
         done = print_members(table, r, MEMBERS[m].at, file);
+    }
+    if (done && has_physical(table)) {
+        fputs(",\"physical\":", file);
+        done = print_members(table, r, offsetof(struct table_value, physical), file);
     }
     done = done && result_print_error(file, table->rows[r]);
     fputc('}', file);

@@ -51,6 +51,7 @@ static const struct text_words {
              "surface/rms_slope=#", "surface/amplitudes=random", "seed=@",
              "surface/heights={\"distribution\":\"weibull_min\",\"shape\":#}",
              "surface/heights={\"distribution\":\"lognormal\",\"shape\":0.5}",
+             "surface/heights={\"distribution\":\"beta\",\"skewness\":#,\"kurtosis\":2}",
              "surface/spectrum={\"type\":\"exponential_acf\"}", "surface/hurst=#"),
      LIST_OF("surface/rms_slope=1e99", "surface/rms_slope=1e-99", "surface={}", "surface=@",
              "surface/like=drawn.json", "surface/like=drawn.csv", "surface/hurst=", "=", "a",

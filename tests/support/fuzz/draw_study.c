@@ -265,6 +265,8 @@ static void part_pairs(cJSON *document) {
         {"/target", "/realisations"},
         {"/surface/nayak_alpha", "/surface/wavelength_ratio"},
         {"/surface/rms_height", "/surface/rms_slope"},
+        {"/surface/heights/kurtosis", "/surface/heights/shape"},
+        {"/surface/heights/kurtosis", "/surface/heights/second_shape"},
         {"/surface/heights/shape", "/surface/heights/skewness"},
         {"/contact/pressures/values", "/contact/pressures/steps"},
         {"/contact/pressures/values", "/contact/pressures/to"},

@@ -130,7 +130,26 @@ static void pictures_become_pixels(void **state) {
     if (status == 0)
         assert_true(contains("psd.png", "PNG"));
     else
-        assert_true(contains("png.err", "pixels need rsvg-convert"));
+        assert_true(contains("png.err", "need rsvg-convert"));
+    static const struct {
+        const char *file, *begins;
+    } PRINTED[] = {{"psd.pdf", "%PDF"}, {"psd.eps", "%!PS"}};
+    for (size_t n = 0; n < sizeof PRINTED / sizeof *PRINTED && status == 0; n++) {
+        assert_int_equal(
+            run_rugo("print", (const char *[]){"plot", "--db", "rugo.db", id, "--quantity", "psd",
+                                               "-o", PRINTED[n].file, NULL}),
+            0);
+        char *text = slurp(PRINTED[n].file);
+        assert_memory_equal(text, PRINTED[n].begins, 4);
+        free(text);
+    }
+    /* a name that ends otherwise would hold what it does not say */
+    assert_int_equal(
+        run_rugo("ending", (const char *[]){"plot", "--db", "rugo.db", id, "--quantity", "psd",
+                                            "-o", "psd.jpg", NULL}),
+        2);
+    assert_true(contains("ending.err", "none of .svg, .png, .pdf, .eps"));
+    assert_int_equal(access("psd.jpg", F_OK), -1);
     assert_int_equal(run_rugo("file", (const char *[]){"plot", "--db", "rugo.db", id, "--quantity",
                                                        "psd", "-o", "psd.svg", NULL}),
                      0);

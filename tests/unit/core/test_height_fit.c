@@ -43,6 +43,8 @@ static void shapes_found_again(void **state) {
         {.type = HEIGHTS_WEIBULL_MAX, .shape = 1.5},
         {.type = HEIGHTS_WEIBULL_MAX, .shape = 12},
         {.type = HEIGHTS_LOGNORMAL, .shape = 0.5},
+        {.type = HEIGHTS_GAMMA, .shape = 3},
+        {.type = HEIGHTS_BETA, .shape = 2},
     };
     static double z[POINTS];
     for (size_t n = 0; n < sizeof known / sizeof *known; n++)

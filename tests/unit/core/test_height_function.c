@@ -15,8 +15,10 @@ static struct height_function *function_of(enum heights_type type, double shape)
 static const struct {
     enum heights_type type;
     double shape;
-} HEIGHTS[] = {{HEIGHTS_GAUSSIAN, 0},    {HEIGHTS_WEIBULL_MIN, 1},     {HEIGHTS_WEIBULL_MAX, 1},
-               {HEIGHTS_WEIBULL_MIN, 2}, {HEIGHTS_WEIBULL_MAX, 3.602}, {HEIGHTS_LOGNORMAL, 0.7}};
+} HEIGHTS[] = {{HEIGHTS_GAUSSIAN, 0},        {HEIGHTS_WEIBULL_MIN, 1},
+               {HEIGHTS_WEIBULL_MAX, 1},     {HEIGHTS_WEIBULL_MIN, 2},
+               {HEIGHTS_WEIBULL_MAX, 3.602}, {HEIGHTS_LOGNORMAL, 0.7},
+               {HEIGHTS_GAMMA, 4},           {HEIGHTS_BETA, 3}};
 enum { HEIGHTS_COUNT = sizeof HEIGHTS / sizeof *HEIGHTS };
 
 /* Against quantiles, which lose their digits near probabilities of 1: hence |g| < 4. */

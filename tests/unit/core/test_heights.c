@@ -15,6 +15,7 @@ static struct height_moments moments_of(enum heights_type type, double shape) {
 
 /* The densities of the raw variables (F4.1), which the program itself does not need. */
 static double raw_density(enum heights_type type, double shape, double raw) {
+    double a = shape;
     switch (type) {
     case HEIGHTS_GAUSSIAN:
         return exp(-raw * raw / 2) / sqrt(2 * M_PI);
@@ -24,6 +25,12 @@ static double raw_density(enum heights_type type, double shape, double raw) {
         return raw_density(HEIGHTS_WEIBULL_MIN, shape, -raw);
     case HEIGHTS_LOGNORMAL:
         return raw > 0 ? raw_density(HEIGHTS_GAUSSIAN, 0, log(raw) / shape) / (shape * raw) : 0;
+    case HEIGHTS_GAMMA:
+        return raw > 0 ? exp((a - 1) * log(raw) - raw - lgamma(a)) : 0;
+    case HEIGHTS_BETA: /* of equal shapes */
+        return raw > 0 && raw < 1
+                   ? exp((a - 1) * log(raw * (1 - raw)) - 2 * lgamma(a) + lgamma(2 * a))
+                   : 0;
     default:
         fail_msg("no density of distribution %d", (int)type);
         return NAN;
@@ -91,7 +98,9 @@ static void quantiles_invert_the_distribution(void **state) {
                 double p = PROBABILITIES[k];
                 double z = heights_quantile(&heights, &moments, p);
                 /* z has lost digits near a bound: an error of 4e-16 there moves p by the density */
-                double lost = 4e-16 * density(&heights, &moments, z) * fmax(1, fabs(z)) * 40;
+                double inside =
+                    fmin(fmax(z, moments.lowest * (1 - 4e-16)), moments.highest * (1 - 4e-16));
+                double lost = 4e-16 * density(&heights, &moments, inside) * fmax(1, fabs(z)) * 40;
                 check_close(heights_cdf(&heights, &moments, z), p, 1e-11 * p + fmin(lost, 1e-6));
             }
 }
@@ -302,28 +311,125 @@ static void nonsense_is_refused(void **state) {
 static void shapes_of_a_skewness(void **state) {
     (void)state;
     static const enum heights_type TYPES[] = {HEIGHTS_WEIBULL_MIN, HEIGHTS_WEIBULL_MAX,
-                                              HEIGHTS_LOGNORMAL};
+                                              HEIGHTS_LOGNORMAL, HEIGHTS_GAMMA};
     struct error err = {0};
     double shape = 0;
     for (size_t t = 0; t < sizeof TYPES / sizeof *TYPES; t++) {
         const struct distribution *row = heights_distribution(TYPES[t]);
+        const struct heights of = {.type = TYPES[t]};
         for (int n = 0; n <= 20; n++) {
             double asked = row->shape_low + (row->shape_high - row->shape_low) * n / 20;
             double skewness = moments_of(TYPES[t], asked).skewness;
-            assert_int_equal(heights_shape_of_skewness(TYPES[t], skewness, &shape, NULL), 0);
+            assert_int_equal(heights_shape_of_skewness(&of, skewness, &shape, NULL), 0);
             check_relative(shape, asked, 1e-9);
         }
     }
-    assert_int_equal(heights_shape_of_skewness(HEIGHTS_WEIBULL_MIN, -1, &shape, &err), ERROR_INPUT);
+    assert_int_equal(
+        heights_shape_of_skewness(&(struct heights){.type = HEIGHTS_WEIBULL_MIN}, -1, &shape, &err),
+        ERROR_INPUT);
     assert_non_null(strstr(err.text, "no shape has the skewness -1; allowed: -0.8"));
-    assert_int_equal(heights_shape_of_skewness(HEIGHTS_LOGNORMAL, -0.1, &shape, &err), ERROR_INPUT);
-    assert_int_equal(heights_shape_of_skewness(HEIGHTS_GAUSSIAN, 0, &shape, &err), ERROR_INPUT);
+    assert_int_equal(
+        heights_shape_of_skewness(&(struct heights){.type = HEIGHTS_LOGNORMAL}, -0.1, &shape, &err),
+        ERROR_INPUT);
+    assert_int_equal(
+        heights_shape_of_skewness(&(struct heights){.type = HEIGHTS_GAUSSIAN}, 0, &shape, &err),
+        ERROR_INPUT);
+}
+
+/* Closed forms (Johnson, Kotz & Balakrishnan 1994, 1995), and the moments of the quantile function
+ * by quadrature, whose tails end at its last node. */
+static double by_row(double probability, const void *context) {
+    const struct heights *heights = context;
+    return heights_distribution(heights->type)->quantile(heights, probability);
+}
+
+static void gamma_and_beta_have_their_moments(void **state) {
+    (void)state;
+    static const struct heights OWN[] = {{.type = HEIGHTS_GAMMA, .shape = 0.25},
+                                         {.type = HEIGHTS_GAMMA, .shape = 4},
+                                         {.type = HEIGHTS_GAMMA, .shape = 1000},
+                                         {.type = HEIGHTS_BETA, .shape = 0.5},
+                                         {.type = HEIGHTS_BETA, .shape = 2, .second = 5},
+                                         {.type = HEIGHTS_BETA, .shape = 100, .second = 0.5}};
+    for (size_t n = 0; n < sizeof OWN / sizeof *OWN; n++) {
+        struct heights measured = {
+            .type = HEIGHTS_QUANTILE, .quantile = by_row, .context = &OWN[n]};
+        struct height_moments exact, found;
+        assert_int_equal(heights_moments(&OWN[n], &exact, NULL), 0);
+        assert_int_equal(heights_moments(&measured, &found, NULL), 0);
+        check_relative(found.mean, exact.mean, 1e-9);
+        check_relative(found.deviation, exact.deviation, 1e-8);
+        check_close(found.skewness, exact.skewness, 1e-5);
+        check_relative(found.kurtosis, exact.kurtosis, 1e-4);
+        check_relative(exact.lowest * exact.deviation, -exact.mean, 1e-13);
+        if (OWN[n].type == HEIGHTS_BETA)
+            check_relative(exact.highest * exact.deviation, 1 - exact.mean, 1e-13);
+    }
+    check_relative(moments_of(HEIGHTS_GAMMA, 4).skewness, 1, 1e-15); /* 2/sqrt(4) */
+    check_relative(moments_of(HEIGHTS_GAMMA, 4).kurtosis, 4.5, 1e-15);
+    check_relative(moments_of(HEIGHTS_BETA, 1).kurtosis, 1.8, 1e-14); /* even heights */
+}
+
+/* A skewness and a kurtosis give both shapes of beta; what lies beyond its reach is refused. */
+static void beta_has_a_skewness_and_a_kurtosis(void **state) {
+    (void)state;
+    static const double SHAPES[][2] = {{0.5, 0.5}, {2, 5}, {5, 2}, {90, 3}, {1, 1}};
+    struct error err = {0};
+    struct heights found = {.type = HEIGHTS_BETA};
+    for (size_t n = 0; n < sizeof SHAPES / sizeof *SHAPES; n++) {
+        struct heights asked = {
+            .type = HEIGHTS_BETA, .shape = SHAPES[n][0] * 1.001, .second = SHAPES[n][1] * 1.001};
+        struct height_moments moments;
+        double shape;
+        assert_int_equal(heights_moments(&asked, &moments, NULL), 0);
+        assert_int_equal(
+            heights_shapes_of_moments(moments.skewness, moments.kurtosis, &found, &err), 0);
+        check_relative(found.shape, asked.shape, 1e-9);
+        check_relative(found.second, asked.second, 1e-9);
+        assert_int_equal(heights_shape_of_skewness(&asked, moments.skewness, &shape, &err), 0);
+        check_relative(shape, asked.shape, 1e-9); /* with the second shape as it is */
+    }
+    assert_int_equal(heights_shapes_of_moments(1, 4.5, &found, &err), ERROR_INPUT); /* gamma's */
+    assert_non_null(strstr(err.text, "allowed: (2, 4.5)"));
+    assert_int_equal(heights_shapes_of_moments(0, 2.99, &found, &err), ERROR_INPUT);
+    assert_non_null(strstr(err.text, "shapes"));
+    double shape;
+    assert_int_equal(
+        heights_shape_of_skewness(&(struct heights){.type = HEIGHTS_BETA}, 0.5, &shape, &err),
+        ERROR_INPUT);
+    assert_non_null(strstr(err.text, "second shape"));
+    struct height_moments moments;
+    const struct heights wide = {.type = HEIGHTS_BETA, .shape = 1, .second = 101};
+    assert_int_equal(heights_moments(&wide, &moments, &err), ERROR_INPUT);
+    assert_non_null(strstr(err.text, "second shape of a beta distribution: 101"));
+}
+
+/* Values at Gaussian scores keep their digits in both tails, where probabilities have none left. */
+static void scores_reach_far(void **state) {
+    (void)state;
+    static const double SHAPES[] = {0.25, 1, 30, 1000};
+    for (size_t n = 0; n < 4; n++) {
+        struct heights heights = {.type = HEIGHTS_GAMMA, .shape = SHAPES[n]};
+        struct height_moments moments = moments_of(HEIGHTS_GAMMA, SHAPES[n]);
+        double last = heights_at_score(&heights, &moments, -38);
+        for (double score = -30; score <= 30; score += 2) {
+            double z = heights_at_score(&heights, &moments, score);
+            assert_true(isfinite(z) && z >= last);
+            last = z;
+        }
+        if (SHAPES[n] == 1) /* exponential: the logarithm of the share above */
+            check_relative(last * moments.deviation + moments.mean, -log(erfc(30 / sqrt(2)) / 2),
+                           1e-12);
+    }
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(moments_are_those_of_the_table),
         cmocka_unit_test(shapes_of_a_skewness),
+        cmocka_unit_test(gamma_and_beta_have_their_moments),
+        cmocka_unit_test(beta_has_a_skewness_and_a_kurtosis),
+        cmocka_unit_test(scores_reach_far),
         cmocka_unit_test(extreme_shapes_keep_their_digits),
         cmocka_unit_test(quantiles_invert_the_distribution),
         cmocka_unit_test(densities_are_slopes),

@@ -504,6 +504,36 @@ static void runs_stop_when_told(void **state) {
         }
 }
 
+/* Errors with tolerances of their own end the run where each is within its own; the same three as
+ * one do nothing. */
+static void errors_have_their_own_tolerances(void **state) {
+    (void)state;
+    const struct grid grid = {128, 128, 1, 1};
+    const struct spectrum spectrum = self_affine(0.25, 1. / 16);
+    struct surface_options options = weibull(HEIGHTS_WEIBULL_MIN, 1);
+    struct height_sample wide, narrow, same;
+    struct error err = {0};
+    options.tolerance = 0.03;
+    assert_int_equal(sample_create(&narrow, grid, &spectrum, &options, &err), 0);
+    options.tolerance_h = options.tolerance_s = options.tolerance_s0 = 0.03;
+    assert_int_equal(sample_create(&same, grid, &spectrum, &options, &err), 0);
+    assert_int_equal(same.report.iterations, narrow.report.iterations);
+    assert_memory_equal(same.z, narrow.z, grid_points(&grid) * sizeof *same.z);
+    options.tolerance_h = 0.3;
+    options.tolerance_s = options.tolerance_s0 = 0; /* as tolerance */
+    assert_int_equal(sample_create(&wide, grid, &spectrum, &options, &err), 0);
+    assert_true(wide.report.end == END_CONVERGED && narrow.report.end == END_CONVERGED);
+    assert_true(wide.report.iterations < narrow.report.iterations);
+    assert_true(wide.report.eps_h <= 0.3 && wide.report.eps_h > 0.03);
+    assert_true(wide.report.eps_s <= 0.03 && wide.report.eps_s0 <= 0.03);
+    sample_destroy(&wide);
+    sample_destroy(&narrow);
+    sample_destroy(&same);
+    options.tolerance = 0;
+    assert_int_equal(sample_create(&same, grid, &spectrum, &options, &err), ERROR_INPUT);
+    assert_non_null(strstr(err.text, "beside a tolerance above 0"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(kept_spectrum_is_exact),
@@ -515,6 +545,7 @@ int main(void) {
         cmocka_unit_test(hard_cases_end),
         cmocka_unit_test(runs_end_as_they_should),
         cmocka_unit_test(tolerances_are_reached),
+        cmocka_unit_test(errors_have_their_own_tolerances),
         cmocka_unit_test(easy_heights_converge),
         cmocka_unit_test(runs_repeat),
         cmocka_unit_test(runs_stop_when_told),

@@ -77,6 +77,15 @@ static void heights_are_those_named(void **state) {
     generate(&options, z, &report);
     assert_true(report.iterations > 0);
     check_close(skewness_of(z), 0.95, 0.15);
+    options.heights = RUGO_GAMMA; /* 2/sqrt(4) */
+    options.shape = 4;
+    generate(&options, z, NULL);
+    check_close(skewness_of(z), 1, 0.15);
+    options.heights = RUGO_BETA; /* 2 (b - a) sqrt(a + b + 1)/((a + b + 2) sqrt(a b)) */
+    options.shape = 2;
+    options.second_shape = 5;
+    generate(&options, z, NULL);
+    check_close(skewness_of(z), 0.596, 0.1);
     options.heights = RUGO_QUANTILE;
     options.quantile = exponential_quantile;
     options.quantile_context = &scale;
@@ -303,6 +312,8 @@ static void values_of_choices_stay(void **state) {
     assert_int_equal(RUGO_WEIBULL_MAX, 2);
     assert_int_equal(RUGO_QUANTILE, 3);
     assert_int_equal(RUGO_LOGNORMAL, 4);
+    assert_int_equal(RUGO_GAMMA, 5);
+    assert_int_equal(RUGO_BETA, 6);
     assert_int_equal(RUGO_NINE_POINT, 0);
     assert_int_equal(RUGO_FIVE_POINT, 1);
     assert_int_equal(RUGO_REFINED, 2);
@@ -325,10 +336,10 @@ static void unknown_choices_are_named(void **state) {
     struct rugo_summits summits = {0};
     struct rugo_error err = {0};
     static double z[POINTS];
-    options.heights = (enum rugo_heights_type)5;
+    options.heights = (enum rugo_heights_type)7;
     assert_int_equal(rugo_generator_create(&generator, &spectrum, &SQUARE, &options, &err),
                      RUGO_ERROR_INPUT);
-    assert_non_null(strstr(err.text, "no distribution of heights of type 5"));
+    assert_non_null(strstr(err.text, "no distribution of heights of type 7"));
     spectrum.type = (enum rugo_spectrum_type)3;
     assert_int_equal(rugo_generator_create(&generator, &spectrum, &SQUARE, NULL, &err),
                      RUGO_ERROR_INPUT);

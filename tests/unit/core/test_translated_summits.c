@@ -52,6 +52,8 @@ static const struct heights GAUSSIAN = {.type = HEIGHTS_GAUSSIAN};
 static const struct heights EXPONENTIAL = {.type = HEIGHTS_WEIBULL_MAX, .shape = 1};
 static const struct heights RAYLEIGH = {.type = HEIGHTS_WEIBULL_MIN, .shape = 2};
 static const struct heights LOGNORMAL = {.type = HEIGHTS_LOGNORMAL, .shape = 0.5};
+static const struct heights GAMMA = {.type = HEIGHTS_GAMMA, .shape = 3};
+static const struct heights BETA = {.type = HEIGHTS_BETA, .shape = 2, .second = 3};
 
 enum { HEIGHTS = 200, T1 = 150 };
 struct histograms {
@@ -132,8 +134,9 @@ static void check_whole(const struct translated_surface *surface) {
 
 static void densities_are_normalised(void **state) {
     (void)state;
-    static const struct heights *const HEIGHTS_OF[] = {&EXPONENTIAL, &RAYLEIGH, &LOGNORMAL};
-    for (size_t a = 0; a < 3; a++)
+    static const struct heights *const HEIGHTS_OF[] = {&EXPONENTIAL, &RAYLEIGH, &LOGNORMAL, &GAMMA,
+                                                       &BETA};
+    for (size_t a = 0; a < sizeof HEIGHTS_OF / sizeof *HEIGHTS_OF; a++)
         for (int dimension = 1; dimension <= 2; dimension++)
             for (int mirrored = 0; mirrored < 2; mirrored++) {
                 struct sample sample = sample_make(dimension, HEIGHTS_OF[a], 4, mirrored == 1);

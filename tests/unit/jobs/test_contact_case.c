@@ -48,6 +48,10 @@ static void defaults(void **state) {
     contact_case_clear(&one_case);
 }
 
+static void check_number(double value, double expected) {
+    assert_true(fabs(value - expected) < 1e-12);
+}
+
 static void blocks(void **state) {
     (void)state;
     struct contact_case one_case =
@@ -74,6 +78,52 @@ static void blocks(void **state) {
                                "\"block_height\": {\"rms_heights\": 100}, \"model\": \"layered\""));
     assert_true(fabs(one_case.blocks[0].height - 100 * 0.1 / 6.283185307179586) < 1e-12);
     contact_case_clear(&one_case);
+}
+
+/* A fine zone is as deep on every mesh: in widths of the wide columns more on finer ones. */
+static void fine_zones(void **state) {
+    (void)state;
+    struct study_cost cost;
+    struct contact_case one_case = read_case(
+        STUDY(PROFILE ", \"rms_height\": 0.05",
+              "\"model\": \"full\", \"levels\": [4, 8], \"block_height\": {\"lengths\": 1},"
+              "\"block_fine_height\": {\"rms_heights\": 40}"));
+    check_number(one_case.fine_height, 2);
+    check_number(contact_case_transition(&one_case, &one_case.levels[0].grid), 4);
+    check_number(contact_case_transition(&one_case, &one_case.levels[1].grid), 8);
+    contact_case_estimate(&one_case, &cost);
+    check_number(cost.fine_height, 2);
+    contact_case_clear(&one_case);
+    one_case = read_case(STUDY(PROFILE ", \"rms_height\": 0.05",
+                               "\"model\": \"full\", \"block_height\": {\"lengths\": 1},"
+                               "\"block_fine_height\": \"whole\""));
+    contact_case_estimate(&one_case, &cost);
+    check_number(cost.fine_height, 8); /* the block */
+    contact_case_clear(&one_case);
+    one_case = read_case(STUDY(PROFILE ", \"rms_height\": 0.05", "\"model\": \"full\""));
+    check_number(contact_case_transition(&one_case, &one_case.levels[0].grid), 8);
+    contact_case_estimate(&one_case, &cost);
+    check_number(cost.fine_height, 0);
+    contact_case_clear(&one_case);
+}
+
+/* Loads in Pa are over E* h': of 91 GPa, nu = 0.3 and h' = 0.1 that is 10 GPa. */
+static void loads_in_pascal(void **state) {
+    (void)state;
+    static const char *const STUDIES[] = {
+        STUDY(PROFILE ", \"rms_slope\": 0.1",
+              "\"young\": 91e9, \"pressure_pdf\": {\"at\": [2e9]},"
+              "\"pressures\": {\"values\": [1e9, 2e9], \"unit\": \"Pa\"}"),
+        STUDY(PROFILE ", \"rms_slope\": 0.1",
+              "\"young\": 91e9, \"pressures\": {\"to\": 2e9, \"steps\": 2, \"unit\": \"Pa\"}")};
+    for (size_t n = 0; n < sizeof STUDIES / sizeof *STUDIES; n++) {
+        struct contact_case one_case = read_case(STUDIES[n]);
+        assert_int_equal(one_case.load_count, 2);
+        assert_true(fabs(one_case.loads[0] - 0.1) < 1e-15);
+        assert_true(fabs(one_case.loads[1] - 0.2) < 1e-15);
+        assert_int_equal(one_case.pdf_loads[0], 1);
+        contact_case_clear(&one_case);
+    }
 }
 
 /* The name that a study gives is the one that curves have. */
@@ -225,6 +275,14 @@ static void faults(void **state) {
         {STUDY(PROFILE, "\"model\": \"layered\", \"layer_growth\": 1,"
                         "\"block_height\": {\"lengths\": 1000}"),
          "/contact/block_height", "4096 layers"},
+        {STUDY(PROFILE, "\"block_fine_height\": {\"rms_heights\": 40}, \"model\": \"layered\""),
+         "/contact/block_fine_height", "model full"},
+        {STUDY(PROFILE ", \"rms_height\": 0.05",
+               "\"block_fine_height\": {\"wavelengths\": 0.2}, \"model\": \"full\""),
+         "/contact/block_fine_height", "two columns"},
+        {STUDY(PROFILE ", \"rms_height\": 0.05",
+               "\"block_fine_height\": \"whole\", \"transition_depth\": 9, \"model\": \"full\""),
+         "/contact/block_fine_height", "not both"},
         {STUDY(PROFILE, "\"layer_growth\": 0.9"), "/contact/layer_growth", "[1, 2]"},
         {STUDY(PROFILE, "\"gap_weighting\": \"dual\""), "/contact/gap_weighting",
          "finite elements"},
@@ -236,6 +294,16 @@ static void faults(void **state) {
          "(0,"},
         {STUDY(PROFILE, "\"pressures\": {\"values\": [0.3], \"to\": 0.4}"),
          "/contact/pressures/values", "not both"},
+        {STUDY(PROFILE, "\"pressures\": {\"values\": [1, 1e7]}"), "/contact/pressures/values",
+         "load of 1e+07 E* h'"},
+        {STUDY(PROFILE ", \"rms_slope\": 0.1",
+               "\"pressures\": {\"values\": [1e8], \"unit\": \"Pa\"}"),
+         "/contact/pressures/values", "E* h'"}, /* E is 1 Pa */
+        {STUDY(PROFILE ", \"rms_slope\": 0.1", "\"young\": 1e9, \"pressures\": {\"unit\": \"Pa\"}"),
+         "/contact/pressures/values", "no default"},
+        {STUDY(PROFILE, "\"pressures\": {\"values\": [1e8], \"unit\": \"Pa\"}"),
+         "/contact/pressures/unit", "scale"},
+        {STUDY(PROFILE ", \"unit\": 1e-6", ""), "/surface/unit", "scale"},
         {STUDY(PROFILE, "\"estimators\": [\"perimeter\"]"), "/contact/estimators", "profile"},
         {STUDY(PROFILE, "\"estimators\": [\"corners\"]"), "/contact/estimators/0", "not one of"},
         {STUDY(PROFILE, "\"levels\": [1, 8]"), "/contact/levels/0", "[2,"},
@@ -420,6 +488,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(defaults),
         cmocka_unit_test(blocks),
+        cmocka_unit_test(fine_zones),
+        cmocka_unit_test(loads_in_pascal),
         cmocka_unit_test(models_bear_their_names),
         cmocka_unit_test(models_beside_full),
         cmocka_unit_test(loads_and_pressures),

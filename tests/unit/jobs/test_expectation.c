@@ -73,6 +73,48 @@ static void alpha_is_that_of_the_table(void **state) {
     result_clear(&surface);
 }
 
+/* The plateau's density times the shape of the spectrum adds up to m0; G and g are those whose
+ * power law goes on from it; and the exponential autocorrelation falls to 1/e at its length. */
+static void quantities_of_the_reference(void **state) {
+    (void)state;
+    for (int dimension = 1; dimension <= 2; dimension++) {
+        char text[400];
+        snprintf(text, sizeof text,
+                 "{\"surface\": {\"dimension\": %d, \"hurst\": 0.7, \"wavelength_ratio\": 8, "
+                 "\"rolloff_ratio\": 2, \"length_ratio\": 4, \"rms_height\": 3}}",
+                 dimension);
+        struct case_result result = expect(text, false);
+        double rolloff = 2 * M_PI / 4, unit = 2 * M_PI / 32, sum = 0;
+        double exponent = dimension == 1 ? 2.4 : 3.4;
+        for (long mx = -32; mx <= 32; mx++)
+            for (long my = dimension == 1 ? 0 : -32; my <= (dimension == 1 ? 0 : 32); my++) {
+                double square = (double)(mx * mx + my * my);
+                if (square >= 16 && square <= 1024)
+                    sum += pow(fmax(1, unit * sqrt(square) / rolloff), -exponent);
+            }
+        double area = dimension == 1 ? unit : unit * unit;
+        double plateau = scalar_of(&result, "psd_plateau")->value;
+        double scale = scalar_of(&result, "fractal_scale")->value;
+        check_relative(plateau * area * sum, 9, 1e-9);
+        check_relative(pow(scale, 0.6) * pow(rolloff, -exponent),
+                       plateau * pow(2 * M_PI, dimension), 1e-9);
+        check_close(scalar_of(&result, "fractal_dimension")->value, dimension + 0.3, 1e-12);
+        assert_true(scalar_of(&result, "correlation_length_e")->value <
+                    scalar_of(&result, "correlation_length")->value);
+        result_clear(&result);
+    }
+    struct case_result exponential =
+        expect("{\"surface\": {\"dimension\": 1, \"wavelength_ratio\": 16, \"length_ratio\": 16, "
+               "\"spectrum\": {\"type\": \"exponential_acf\", \"length\": [2]}}}",
+               false);
+    double mean = 2 * 2 / 256.0; /* of R over the cell, which a surface lacks (F2.2) */
+    check_close(scalar_of(&exponential, "correlation_length_e")->value,
+                -2 * log((1 - mean) * exp(-1) + mean), 0.01);
+    check_close(scalar_of(&exponential, "correlation_length")->value,
+                -2 * log((1 - mean) * 0.2 + mean), 0.01);
+    result_clear(&exponential);
+}
+
 static void check_same(size_t n, const double *a, const double *b) {
     for (size_t k = 0; k < n; k++)
         assert_true(a[k] == b[k] || (isnan(a[k]) && isnan(b[k])));
@@ -341,6 +383,7 @@ static void faults_are_told(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(quantities_of_the_reference),
         cmocka_unit_test(alpha_is_that_of_the_table),
         cmocka_unit_test(results_have_the_same_theories),
         cmocka_unit_test(only_what_theory_tells),

@@ -249,11 +249,69 @@ static void heights_of_ones_own(void **state) {
     assert_null(by_samples.height_table);
 }
 
+/* What is known before a surface is made: nothing where it is as given, and Gaussian. */
+static void surfaces_are_described(void **state) {
+    (void)state;
+    static const struct {
+        const char *surface;
+        double ratio, hurst, skewness, kurtosis;
+    } CASES[] = {{"{\"hurst\": 0.8, \"wavelength_ratio\": 8}", 0, 0, 0, 0},
+                 {"{\"hurst\": 0.8, \"nayak_alpha\": 5.3368}", 8, 0, 0, 0},
+                 {"{\"nayak_alpha\": 5.3368, \"wavelength_ratio\": 8}", 0, 0.8, 0, 0},
+                 {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"distribution\": "
+                  "\"weibull_max\","
+                  " \"shape\": 1}}",
+                  0, 0, -2, 9}};
+    for (size_t n = 0; n < sizeof CASES / sizeof *CASES; n++) {
+        struct surface_case surface = read(CASES[n].surface);
+        struct study_cost cost = {0};
+        surface_case_estimate(&surface, &cost);
+        check_close(cost.wavelength_ratio, CASES[n].ratio, 0.05);
+        check_close(cost.hurst, CASES[n].hurst, 1e-3);
+        check_close(cost.skewness, CASES[n].skewness, 1e-9);
+        check_close(cost.kurtosis, CASES[n].kurtosis, 1e-9);
+        surface_case_clear(&surface);
+    }
+}
+
 static void shape_of_a_skewness(void **state) {
     (void)state;
     struct surface_case surface = read("{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\":"
                                        " {\"distribution\": \"weibull_max\", \"skewness\": -2}}");
     check_close(surface.options.heights.shape, 1, 1e-12);
+    surface_case_clear(&surface);
+}
+
+static void shapes_of_beta(void **state) {
+    (void)state;
+#define BETA(heights)                                                                              \
+    "{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"distribution\": \"beta\", " heights \
+    "}}"
+    static const struct {
+        const char *surface;
+        double shape, second;
+    } CASES[] = {{BETA("\"shape\": 3"), 3, 0},
+                 {BETA("\"shape\": 3, \"second_shape\": 2"), 3, 2},
+                 {BETA("\"skewness\": 0, \"second_shape\": 2"), 2, 2},
+                 {BETA("\"skewness\": 0, \"kurtosis\": 1.8"), 1, 1}};
+    for (size_t n = 0; n < sizeof CASES / sizeof *CASES; n++) {
+        struct surface_case surface = read(CASES[n].surface);
+        check_close(surface.options.heights.shape, CASES[n].shape, 1e-12);
+        check_close(surface.options.heights.second, CASES[n].second, 1e-12);
+        surface_case_clear(&surface);
+    }
+}
+
+/* A table of lags becomes one of wave numbers, up to the shortest waves that the lags resolve. */
+static void spectrum_of_lags(void **state) {
+    (void)state;
+#define ACF(members) "{\"wavelength_ratio\": 8, \"spectrum\": {\"type\": \"acf_table\"" members "}}"
+    struct surface_case surface = read(
+        ACF(", \"lag\": [0, 0.5, 1, 2, 4, 8], \"correlation\": [1, 0.78, 0.61, 0.37, 0.14, 0]"));
+    const struct spectrum *spectrum = &surface.spectrum;
+    assert_true(spectrum->type == SPECTRUM_TABLE && spectrum->table_count > 10);
+    check_close(spectrum->table_wave_number[spectrum->table_count - 1], 2 * M_PI, 1e-9);
+    assert_true(spectrum->table_wave_number[0] < 2 * M_PI / 64);
     surface_case_clear(&surface);
 }
 
@@ -267,6 +325,24 @@ static const struct broken_case BROKEN[] = {
     {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"distribution\": \"weibull_max\","
      " \"skewness\": 2}}",
      "/surface/heights/skewness", "no shape has the skewness 2; allowed: -6.6"},
+    {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"tolerance\": 0, \"tolerances\":"
+     " {\"eps_s\": 0.1}}}",
+     "/surface/heights/tolerances/eps_s", "no end"},
+    {ACF(""), "/surface/spectrum/correlation", "as many of each"},
+    {ACF(", \"lag\": [0, 2, 1], \"correlation\": [1, 0.5, 0]"), "/surface/spectrum/lag",
+     "must rise"},
+    {ACF(", \"lag\": [0, 1, 2], \"correlation\": [1, 1, 1]"), "/surface/spectrum/correlation",
+     "no isotropic surface has this"},
+    {ACF(", \"lag\": [0, 100, 200], \"correlation\": [1, 0.5, 0]"), "/surface/spectrum/lag",
+     "no wave of the cell"},
+    {BETA("\"skewness\": 1"), "/surface/heights/skewness", "give the second shape"},
+    {BETA("\"skewness\": 1, \"kurtosis\": 5"), "/surface/heights/kurtosis", "allowed: (2, 4.5)"},
+    {BETA("\"shape\": 1, \"kurtosis\": 2"), "/surface/heights/kurtosis", "belongs to skewness"},
+    {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"distribution\": \"gamma\","
+     " \"shape\": 2, \"second_shape\": 2}}",
+     "/surface/heights/second_shape", "two shapes, beta"},
+    {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"kurtosis\": 4}}",
+     "/surface/heights/kurtosis", "two shapes, beta"},
     {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"skewness\": 1}}",
      "/surface/heights/skewness", "these heights have no shape"},
     {"{\"nayak_alpha\": 1.6, \"wavelength_ratio\": 2, \"rolloff_ratio\": 3}",
@@ -388,7 +464,10 @@ static void all_faults_at_once(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(defaults),
+        cmocka_unit_test(surfaces_are_described),
         cmocka_unit_test(shape_of_a_skewness),
+        cmocka_unit_test(shapes_of_beta),
+        cmocka_unit_test(spectrum_of_lags),
         cmocka_unit_test(everything_given),
         cmocka_unit_test(what_is_exact),
         cmocka_unit_test(grids),

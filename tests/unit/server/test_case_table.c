@@ -37,6 +37,8 @@ static void add_area(struct case_result *one, const char *series, const char *mo
     built_curve(one, &curve);
 }
 
+static bool in_units; /* kappa has a unit, by another scale in each case */
+
 /* Two Hurst exponents of two shapes; the last case has not begun. */
 static struct study_result study_made(void) {
     struct study_result study = built_study("contact", "four", CASES);
@@ -52,6 +54,8 @@ static struct study_result study_made(void) {
             continue;
         }
         built_scalar(one, "kappa", 2 + (double)c, 0.125, c == 0 ? 1.5 : (double)NAN);
+        if (in_units)
+            one->scalars[0].unit = (struct physical_unit){"m", "kappa", 1e-6 * (double)(c + 1)};
         add_area(one, "edges", "halfspace", 16);
         add_area(one, "edges", "halfspace", 8);
         add_area(one, "nodes", "halfspace", 16);
@@ -216,6 +220,21 @@ static void each_format_has_every_number(void **state) {
     case_table_clear(&table);
 }
 
+static void units_stand_beside_values(void **state) {
+    (void)state;
+    in_units = true;
+    struct case_table table = made("kappa", "shape=a");
+    check_format(&table, TABLE_TEXT,
+                 "case  n  hurst  shape         kappa          in \xc2\xb5m\n"
+                 "   0  4    0.2  a      2.00 +- 0.12   2.00 +- 0.12\n"
+                 "   2  4    0.8  a      4.00 +- 0.12  12.00 +- 0.38\n");
+    check_format(&table, TABLE_CSV, "kappa_theory,kappa in m\n0,4,0.2,\"a\",2,0.125,,1.5,2e-06\n");
+    check_format(&table, TABLE_JSON, "\"unit\":null,\"physical_unit\":\"m\"}");
+    check_format(&table, TABLE_JSON, "\"physical\":[null,null,2e-06]");
+    case_table_clear(&table);
+    in_units = false;
+}
+
 /* Of a kind whose view shows another quantity: what it names and is there, or has a theory. */
 static void without_names_the_view_chooses(void **state) {
     (void)state;
@@ -233,6 +252,7 @@ int main(void) {
         cmocka_unit_test(conditions_choose_rows),
         cmocka_unit_test(what_there_is_not_is_told),
         cmocka_unit_test(each_format_has_every_number),
+        cmocka_unit_test(units_stand_beside_values),
         cmocka_unit_test(without_names_the_view_chooses),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -282,6 +282,33 @@ static void missing_realisations_are_seen(void **state) {
     study_result_clear(&study);
 }
 
+/* Axes in physical units stand opposite to the others where all lines share them; of several panels
+ * the legend has them. */
+static void second_axes_have_units(void **state) {
+    (void)state;
+    struct study_result study = contact_of(1, 1);
+    struct case_result *one = &study.cases[0];
+    char *text = picture_of(&study, &AREA);
+    assert_int_equal(count_of(text, "p, GPa"), 0);
+    free(text);
+    for (size_t a = 0; a < one->curve_count; a++)
+        one->curves[a].x_unit = (struct physical_unit){"Pa", "p", 2e10};
+    text = picture_of(&study, &AREA);
+    assert_int_equal(count_of(text, ">p, GPa<"), 1);
+    assert_int_equal(count_of(text, "class=\"middle\">4</text>"), 1); /* the load 0.2 */
+    free(text);
+    text = picture_of(&study, &(struct plot_request){.lines = {.quantity = "contact_area",
+                                                               .names = {"model", NULL, NULL}}});
+    assert_int_equal(count_of(text, "load of 1: p = 20 GPa"), 1);
+    assert_int_equal(count_of(text, ">p, GPa<"), 0);
+    free(text);
+    one->curves[1].x_unit.scale *= 2; /* nothing that they share */
+    text = picture_of(&study, &AREA);
+    assert_int_equal(count_of(text, ">p, GPa<"), 0);
+    free(text);
+    study_result_clear(&study);
+}
+
 /* More than colours can distinguish stand in panels, which share their axes; numbers are in the
  * margins alone. */
 static void many_cases_are_panels(void **state) {
@@ -380,6 +407,7 @@ int main(void) {
         cmocka_unit_test(what_there_is_not_is_refused),
         cmocka_unit_test(kinematics_go_with_their_model),
         cmocka_unit_test(one_unit_a_picture),
+        cmocka_unit_test(second_axes_have_units),
         cmocka_unit_test(many_cases_are_panels),
         cmocka_unit_test(pictures_have_sizes_on_paper),
         cmocka_unit_test(a_picture_names_what_it_draws),

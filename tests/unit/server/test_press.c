@@ -53,6 +53,30 @@ static void values_have_readable_prefixes(void **state) {
     }
 }
 
+static void units_are_readable(void **state) {
+    (void)state;
+    static const struct {
+        const char *unit;
+        double most, scale;
+        const char *text;
+    } SHOWN[] = {{"Pa", 3e9, 1e9, "GPa"},
+                 {"m", 2e-6, 1e-6, "\xc2\xb5m"},
+                 {"m^2", 4e-12, 1e-12, "\xc2\xb5m^2"},
+                 {"1/m", 5e5, 1e3, "1/mm"},
+                 {"1/m", 6.7e6, 1e6, "1/\xc2\xb5m"},
+                 {"1/Pa", 2e-9, 1e-9, "1/GPa"},
+                 {"1/m^2", 1e11, 1e12, "1/\xc2\xb5m^2"},
+                 {"N/m", 2e3, 1e3, "kN/m"},
+                 {"1", 7, 1, ""},
+                 {"m", 0, 1, "m"}};
+    for (size_t n = 0; n < sizeof SHOWN / sizeof *SHOWN; n++) {
+        char text[32];
+        check_relative(unit_readable(SHOWN[n].unit, SHOWN[n].most, text, sizeof text),
+                       SHOWN[n].scale, 1e-12);
+        assert_string_equal(text, SHOWN[n].text);
+    }
+}
+
 static void loads_are_read(void **state) {
     (void)state;
     struct press_loads loads;
@@ -101,9 +125,8 @@ static void loads_are_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(quantities_are_read),
-        cmocka_unit_test(values_have_readable_prefixes),
-        cmocka_unit_test(loads_are_read),
+        cmocka_unit_test(quantities_are_read), cmocka_unit_test(values_have_readable_prefixes),
+        cmocka_unit_test(units_are_readable),  cmocka_unit_test(loads_are_read),
         cmocka_unit_test(loads_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -114,7 +114,8 @@ static void check_study(const char *path, const struct study_status *about, int 
     check_same_rows(path, about->id, &fresh, from,
                     "name, printf('%.4g', value), printf('%.4g', standard_error), theory) FROM "
                     "case_scalars",
-                    " AND name NOT LIKE '%kappa%' AND name NOT LIKE 'power_law%' AND name NOT "
+                    " AND name NOT LIKE '%kappa%' AND name NOT LIKE 'power_law%' AND name NOT LIKE "
+                    "'erf_%' AND name NOT "
                     "LIKE '%_last' AND name NOT IN ('iterations', 'violation') ORDER BY 1");
     check_same_rows(path, about->id, &fresh, 0, "state, realisations_done) FROM case_progress",
                     " ORDER BY 1");

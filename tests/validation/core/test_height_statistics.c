@@ -236,14 +236,27 @@ static void gaussian_patches(void **state) {
 static void shapes_found_again(void **state) {
     (void)state;
     uint64_t seed = seed_or(12);
-    static const struct kind KINDS[] = {
-        {.hurst = 0.8, .detrend = DETREND_PLANE, .heights = {HEIGHTS_WEIBULL_MIN, 1, 0, 0, 0}},
-        {.hurst = 0.8, .detrend = DETREND_MEAN, .heights = {HEIGHTS_WEIBULL_MIN, 1, 0, 0, 0}},
-        {.hurst = 0.8, .detrend = DETREND_PLANE, .heights = {HEIGHTS_WEIBULL_MIN, 1.5, 0, 0, 0}},
-        {.hurst = 0.5, .detrend = DETREND_PLANE, .heights = {HEIGHTS_WEIBULL_MAX, 2, 0, 0, 0}},
-        {.hurst = 0.8, .detrend = DETREND_PLANE, .heights = {HEIGHTS_WEIBULL_MIN, 3, 0, 0, 0}},
-        {.hurst = 0.8, .detrend = DETREND_PLANE, .heights = {HEIGHTS_WEIBULL_MAX, 4, 0, 0, 0}},
-        {.hurst = 0.8, .detrend = DETREND_PLANE, .heights = {HEIGHTS_LOGNORMAL, 0.4, 0, 0, 0}}};
+    static const struct kind KINDS[] = {{.hurst = 0.8,
+                                         .detrend = DETREND_PLANE,
+                                         .heights = {.type = HEIGHTS_WEIBULL_MIN, .shape = 1}},
+                                        {.hurst = 0.8,
+                                         .detrend = DETREND_MEAN,
+                                         .heights = {.type = HEIGHTS_WEIBULL_MIN, .shape = 1}},
+                                        {.hurst = 0.8,
+                                         .detrend = DETREND_PLANE,
+                                         .heights = {.type = HEIGHTS_WEIBULL_MIN, .shape = 1.5}},
+                                        {.hurst = 0.5,
+                                         .detrend = DETREND_PLANE,
+                                         .heights = {.type = HEIGHTS_WEIBULL_MAX, .shape = 2}},
+                                        {.hurst = 0.8,
+                                         .detrend = DETREND_PLANE,
+                                         .heights = {.type = HEIGHTS_WEIBULL_MIN, .shape = 3}},
+                                        {.hurst = 0.8,
+                                         .detrend = DETREND_PLANE,
+                                         .heights = {.type = HEIGHTS_WEIBULL_MAX, .shape = 4}},
+                                        {.hurst = 0.8,
+                                         .detrend = DETREND_PLANE,
+                                         .heights = {.type = HEIGHTS_LOGNORMAL, .shape = 0.4}}};
     for (size_t k = 0; k < sizeof KINDS / sizeof *KINDS; k++) {
         const struct heights *truth = &KINDS[k].heights;
         double inside = 0, right = 0, mean = 0, spread = 0, missed = 0;

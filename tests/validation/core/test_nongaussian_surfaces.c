@@ -113,6 +113,14 @@ static void lognormal_heights_meet_their_targets(void **state) {
         surface_meets_its_targets(HEIGHTS_LOGNORMAL, DEVIATIONS[s]);
 }
 
+static void gamma_and_beta_heights_meet_their_targets(void **state) {
+    (void)state;
+    surface_meets_its_targets(HEIGHTS_GAMMA, 2);
+    surface_meets_its_targets(HEIGHTS_GAMMA, 20);
+    surface_meets_its_targets(HEIGHTS_BETA, 2);
+    surface_meets_its_targets(HEIGHTS_BETA, 20);
+}
+
 static void profiles_with_few_modes_say_so(void **state) {
     (void)state;
     struct surface_options options = SURFACE_DEFAULTS;
@@ -205,6 +213,7 @@ int main(void) {
         cmocka_unit_test(minima_meet_their_targets),
         cmocka_unit_test(maxima_meet_their_targets),
         cmocka_unit_test(lognormal_heights_meet_their_targets),
+        cmocka_unit_test(gamma_and_beta_heights_meet_their_targets),
         cmocka_unit_test(profiles_with_few_modes_say_so),
         cmocka_unit_test(default_iteration_is_near_the_limit),
     };

@@ -178,6 +178,8 @@ static void surfaces_follow_their_law(void **state) {
     check_law(2, 4, 4, HEIGHTS_WEIBULL_MAX, 1, 60, seed);
     check_law(2, 4, 4, HEIGHTS_WEIBULL_MAX, 2, 60, seed + 1);
     check_law(2, 4, 4, HEIGHTS_LOGNORMAL, 0.7, 60, seed + 2);
+    check_law(2, 4, 4, HEIGHTS_GAMMA, 3, 60, seed + 3);
+    check_law(2, 4, 4, HEIGHTS_BETA, 2, 60, seed + 4);
 }
 
 static void profiles_follow_their_law(void **state) {
@@ -185,6 +187,8 @@ static void profiles_follow_their_law(void **state) {
     uint64_t seed = seed_or(2027);
     check_law(1, 8, 16, HEIGHTS_WEIBULL_MIN, 1, 2000, seed);
     check_law(1, 8, 16, HEIGHTS_WEIBULL_MAX, 1.5, 2000, seed + 1);
+    check_law(1, 8, 16, HEIGHTS_GAMMA, 3, 2000, seed + 2);
+    check_law(1, 8, 16, HEIGHTS_BETA, 2, 2000, seed + 3);
 }
 
 int main(void) {

@@ -1,0 +1,169 @@
+#include "jobs/units.h"
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+enum { POWERS_MOST = 2 };
+
+/* An axis or a scalar in a physical unit: `factor` times powers of E* in Pa, of lambda_s in metres
+ * and of scalars of the result. */
+struct unit_row {
+    const char *of;     /* the label of the axis, or the name of the scalar */
+    int dimension;      /* of surfaces of this dimension alone; 0: of all */
+    const char *symbol; /* NULL: the name */
+    const char *unit;
+    int modulus, length;
+    struct scalar_power {
+        const char *scalar;
+        double power;
+    } powers[POWERS_MOST];
+    double factor; /* 0: 1 */
+};
+
+/* clang-format off */
+#define SQUARE_ROOT_OF_A_THIRD 0.57735026918962576
+#define HEIGHT {{"rms_height", 1}}
+#define HEIGHT_SQUARED {{"rms_height", 2}}
+#define CURVATURE {{"m4", 0.5}}
+static const struct unit_row AXES[] = {
+    {"p/(E* h'_rms)", 0, "p", "Pa", 1, 0, {{"rms_slope", 1}}, 0},
+    {"peak p/(E* h'_rms)", 0, "peak p", "Pa", 1, 0, {{"rms_slope", 1}}, 0},
+    {"mean gap/sqrt(m0)", 0, "mean gap", "m", 0, 1, HEIGHT, 0},
+    {"K sqrt(m0)/(E* h'_rms)", 0, "K", "Pa/m", 1, -1, {{"rms_slope", 1}, {"rms_height", -1}}, 0},
+    {"patches per lambda_l^2", 0, "patches", "1/m^2", 0, -2, {{"wavelength_ratio", -2}}, 0},
+    {"patches per lambda_l", 0, "patches", "1/m", 0, -1, {{"wavelength_ratio", -1}}, 0},
+    {"mean patch/lambda_l^2", 0, "mean patch", "m^2", 0, 2, {{"wavelength_ratio", 2}}, 0},
+    {"mean patch/lambda_l", 0, "mean patch", "m", 0, 1, {{"wavelength_ratio", 1}}, 0},
+    {"z/sqrt(m0)", 0, "z", "m", 0, 1, HEIGHT, 0},
+    {"-sqrt(3/m4) kappa_m", 2, "-kappa_m", "1/m", 0, -1, CURVATURE, SQUARE_ROOT_OF_A_THIRD},
+    {"kappa_m/sqrt(m4)", 2, "kappa_m", "1/m", 0, -1, CURVATURE, 0},
+    {"z''/sqrt(m4)", 1, "z''", "1/m", 0, -1, CURVATURE, 0},
+    {"-z''/sqrt(m4)", 1, "-z''", "1/m", 0, -1, CURVATURE, 0},
+    {"k lambda_s", 0, "k", "1/m", 0, -1, {{0}}, 0},
+    {"power spectral density", 1, "C", "m^3", 0, 3, {{0}}, 0},
+    {"power spectral density", 2, "C", "m^4", 0, 4, {{0}}, 0},
+    {"lag/lambda_s", 0, "lag", "m", 0, 1, {{0}}, 0},
+};
+static const struct unit_row SCALARS[] = {
+    {"rms_height", 0, NULL, "m", 0, 1, {{0}}, 0},
+    {"correlation_length", 0, NULL, "m", 0, 1, {{0}}, 0},
+    {"correlation_length_e", 0, NULL, "m", 0, 1, {{0}}, 0},
+    {"psd_plateau", 1, NULL, "m^3", 0, 3, {{0}}, 0},
+    {"psd_plateau", 2, NULL, "m^4", 0, 4, {{0}}, 0},
+    {"rms_curvature", 0, NULL, "1/m", 0, -1, {{0}}, 0},
+    {"lowest", 0, NULL, "m", 0, 1, HEIGHT, 0},
+    {"highest", 0, NULL, "m", 0, 1, HEIGHT, 0},
+    {"m0", 0, NULL, "m^2", 0, 2, {{0}}, 0},
+    {"m4", 0, NULL, "1/m^2", 0, -2, {{0}}, 0},
+    {"m4_finite_difference", 0, NULL, "1/m^2", 0, -2, {{0}}, 0},
+    {"summit_density", 1, NULL, "1/m", 0, -1, {{0}}, 0},
+    {"summit_density", 2, NULL, "1/m^2", 0, -2, {{0}}, 0},
+    {"summit_height_mean", 0, NULL, "m", 0, 1, HEIGHT, 0},
+    {"summit_height_variance", 0, NULL, "m^2", 0, 2, HEIGHT_SQUARED, 0},
+    {"summit_curvature_mean", 0, NULL, "1/m", 0, -1, CURVATURE, 0},
+    {"pit_density", 1, NULL, "1/m", 0, -1, {{0}}, 0},
+    {"pit_density", 2, NULL, "1/m^2", 0, -2, {{0}}, 0},
+    {"pit_height_mean", 0, NULL, "m", 0, 1, HEIGHT, 0},
+    {"pit_height_variance", 0, NULL, "m^2", 0, 2, HEIGHT_SQUARED, 0},
+    {"pit_curvature_mean", 0, NULL, "1/m", 0, -1, CURVATURE, 0},
+    {"mean_gap_last", 0, NULL, "m", 0, 1, HEIGHT, 0},
+    {"kappa_highest_load", 0, NULL, "Pa", 1, 0, {{"rms_slope", 1}}, 0},
+    {"power_law_highest_load", 0, NULL, "Pa", 1, 0, {{"rms_slope", 1}}, 0},
+};
+/* clang-format on */
+
+/* What units are made of; NaN: not known. */
+struct scales {
+    const struct case_result *result;
+    int dimension;
+    double length;  /* lambda_s in metres */
+    double modulus; /* E* in Pa */
+};
+
+static double number_of(const struct case_result *result, const char *pointer) {
+    const struct result_parameter *parameter = result_parameter(result, pointer);
+    return parameter != NULL && parameter->text == NULL ? parameter->number : (double)NAN;
+}
+
+static bool has_loads_in_pascal(const struct case_result *result) {
+    const struct result_parameter *unit = result_parameter(result, "/contact/pressures/unit");
+    return unit != NULL && same_text(unit->text, "Pa");
+}
+
+/* Young's modulus is 1 unless given, in a unit that nobody knows. */
+static double modulus_of(const struct case_result *result, double length) {
+    double young = number_of(result, "/contact/young"), nu = number_of(result, "/contact/poisson");
+    bool known = young != 1 && (!isnan(length) || has_loads_in_pascal(result));
+    return known ? young / (1 - nu * nu) : (double)NAN;
+}
+
+void units_scales(const struct case_result *result, double *metres, double *modulus) {
+    *metres = number_of(result, "/surface/unit");
+    *modulus = modulus_of(result, *metres);
+}
+
+/* Returns the scalar that curves are scaled by: of the prescribed spectrum where it is known. */
+static double scalar_of(const struct case_result *result, const char *name) {
+    const struct scalar *scalar = result_scalar(result, name);
+    if (scalar == NULL || scalar->difference)
+        return NAN;
+    return isnan(scalar->theory) ? scalar->value : scalar->theory;
+}
+
+static double scale_of(const struct scales *scales, const struct unit_row *row) {
+    double scale = row->factor > 0 ? row->factor : 1;
+    if (row->modulus != 0)
+        scale *= pow(scales->modulus, row->modulus);
+    if (row->length != 0)
+        scale *= pow(scales->length, row->length);
+    for (size_t p = 0; p < POWERS_MOST && row->powers[p].scalar != NULL; p++)
+        scale *= pow(scalar_of(scales->result, row->powers[p].scalar), row->powers[p].power);
+    return scale;
+}
+
+static struct physical_unit unit_in(const struct scales *scales, size_t count,
+                                    const struct unit_row *rows, const char *of) {
+    for (size_t r = 0; r < count && of != NULL; r++) {
+        const struct unit_row *row = &rows[r];
+        bool fits = row->dimension == 0 || row->dimension == scales->dimension;
+        double scale = fits && strcmp(row->of, of) == 0 ? scale_of(scales, row) : (double)NAN;
+        if (scale > 0 && isfinite(scale))
+            return (struct physical_unit){row->unit, row->symbol != NULL ? row->symbol : row->of,
+                                          scale};
+    }
+    return (struct physical_unit){0};
+}
+#define UNIT_IN(scales, rows, of) unit_in(scales, sizeof(rows) / sizeof *(rows), rows, of)
+
+/* Densities are over the unit of the axis. */
+static struct physical_unit unit_of_density(const struct physical_unit *axis) {
+    static const char *const INVERSE[][2] = {{"Pa", "1/Pa"}, {"m", "1/m"}, {"1/m", "m"}};
+    for (size_t n = 0; n < sizeof INVERSE / sizeof *INVERSE && axis->unit != NULL; n++)
+        if (strcmp(INVERSE[n][0], axis->unit) == 0)
+            return (struct physical_unit){INVERSE[n][1], "probability density", 1 / axis->scale};
+    return (struct physical_unit){0};
+}
+
+static void set_curve(const struct scales *scales, struct curve *curve) {
+    curve->x_unit = UNIT_IN(scales, AXES, curve->x_label);
+    curve->x2_unit = UNIT_IN(scales, AXES, curve->columns > 0 ? curve->x2_label : NULL);
+    curve->y_unit = UNIT_IN(scales, AXES, curve->y_label);
+    if (curve->columns == 0 && strcmp(curve->y_label, "probability density") == 0)
+        curve->y_unit = unit_of_density(&curve->x_unit);
+    /* of heights in m and curvatures in 1/m */
+    if (curve->columns > 0 && curve->x_unit.unit != NULL && curve->x2_unit.unit != NULL)
+        curve->y_unit = (struct physical_unit){"1", "probability density",
+                                               1 / (curve->x_unit.scale * curve->x2_unit.scale)};
+}
+
+void units_set(struct case_result *result) {
+    struct scales scales = {.result = result,
+                            .dimension = number_of(result, "/surface/dimension") == 1 ? 1 : 2};
+    units_scales(result, &scales.length, &scales.modulus);
+    if (isnan(scales.length) && isnan(scales.modulus))
+        return;
+    for (size_t a = 0; a < result->curve_count; a++)
+        set_curve(&scales, &result->curves[a]);
+    for (size_t s = 0; s < result->scalar_count; s++)
+        result->scalars[s].unit = UNIT_IN(&scales, SCALARS, result->scalars[s].name);
+}

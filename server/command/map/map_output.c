@@ -1,0 +1,42 @@
+#include "server/command/map/map_output.h"
+#include "core/map/height_map_file.h"
+#include <string.h>
+
+static bool ends_with(const char *path, const char *ending) {
+    size_t length = strlen(path), tail = strlen(ending);
+    return length > tail && strcmp(path + length - tail, ending) == 0;
+}
+
+bool map_output_is_picture(const char *path) {
+    return ends_with(path, ".png") || ends_with(path, ".svg");
+}
+
+int map_output_check(const char *path, struct error *err) {
+    const char *slash = strrchr(path, '/'), *name = slash != NULL ? slash + 1 : path;
+    if (strchr(name, '.') != NULL && !map_output_is_picture(path) &&
+        height_map_format_of(path) == HEIGHT_MAP_FORMATS)
+        return error_set(err, ERROR_INPUT,
+                         "file %.200s: its name ends in none of .npy, .csv, .xyz, .png, .svg",
+                         path);
+    return output_file_check(path, err);
+}
+
+int map_output_write(const char *path, const struct map_picture *labels, const struct grid *grid,
+                     const double *values, struct error *err) {
+    enum height_map_format format = height_map_format_of(path);
+    FILE *file;
+    if (map_output_is_picture(path)) {
+        struct map_picture picture = *labels;
+        picture.grid = grid;
+        picture.z = values;
+        picture.boundary = BOUNDARY_OPEN;
+        picture.unmarked = true;
+        return output_file_picture(path, &picture, err);
+    }
+    int status = output_file_open(&file, path, err);
+    if (status != 0)
+        return status;
+    status = height_map_write(file, format == HEIGHT_MAP_FORMATS ? HEIGHT_MAP_NPY : format, grid,
+                              values, err);
+    return output_file_close(file, path, status, err);
+}
