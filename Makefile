@@ -31,7 +31,8 @@ APT      = build-essential pkg-config libfftw3-dev libgsl-dev librandom123-dev l
 HEADERS  = Random123/philox.h suitesparse/cholmod.h
 
 MODE     = $(SAN)$(COV)$(DEBUG)
-CFLAGS  ?= -g $(if $(SAN),-O2,$(if $(MODE),-O0,-O3)) -fstack-protector-strong \
+LEVEL    = -O3
+CFLAGS  ?= -g $(if $(SAN),-O2,$(if $(MODE),-O0,$(LEVEL))) -fstack-protector-strong \
            $(if $(MODE),,-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3)
 LDFLAGS ?= -Wl,-z,relro,-z,now
 
@@ -177,7 +178,12 @@ $(BUILD)/rugo.1: $(BUILD)/rugo
 $(BUILD)/rugo.bash: $(BUILD)/rugo
 	@$< help bash >$@
 
-# Tests: tests/<ladder>/<layer>/<name>.c is a program; tests/*.c are shared by all of them.
+# Tests: tests/<ladder>/<layer>/<name>.c is a program; tests/*.c are shared by all of them. Those that compute little
+# themselves are compiled in two thirds of the time, and all are linked by gold in half of it, where there is one. It
+# warns of hundreds of symbols of clang's sanitizers.
+QUICK = support system faults fuzz $(addprefix unit/,schema jobs worker server)
+$(foreach folder,$(QUICK),$(eval $(BUILD)/tests/$(folder)/%.c.o: private LEVEL = -O1))
+GOLD := $(if $(SAN),,$(if $(shell command -v ld.gold),-fuse-ld=gold))
 SUPPORT = $(call objects,$(wildcard tests/support/*.c))
 # What draws whole inputs by choices: an archive, of which each test links what it uses.
 DRAWING = $(BUILD)/libdrawing.a
@@ -187,24 +193,27 @@ define TESTS
 TESTS_$(1)_$(2) = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/$(1)/$(2)/*.c))
 $$(TESTS_$(1)_$(2)): $(BUILD)/%: $(BUILD)/%.c.o $(SUPPORT) $(DRAWING) $(call archive,$(BELOW_$(2)))
 	$(say) LD $$@
-	$(Q)$(LINK) -pie -o $$@ $$^ -lcmocka $(LIBS_$(2)) $(LDLIBS)
+	$(Q)$(LINK) $(GOLD) -pie -o $$@ $$^ -lcmocka $(LIBS_$(2)) $(LDLIBS)
 $(1)-$(2): $$(TESTS_$(1)_$(2))
 	tests/run-tests $$^
 .PHONY: $(1)-$(2)
 endef
 LADDERS = unit faults fuzz validation system bench
 $(foreach ladder,$(LADDERS),$(foreach layer,$(LAYERS),$(eval $(call TESTS,$(ladder),$(layer)))))
-all_tests = $(foreach layer,$(LAYERS),$(TESTS_$(1)_$(layer)))
+# The layers with long programs come first, so that no processor waits for one in the end.
+all_tests = $(foreach layer,jobs worker core schema server,$(TESTS_$(1)_$(layer)))
 
 test: deps
 	@$(MAKE) --no-print-directory -j$$(nproc) run-tests-built
 .PHONY: run-tests-built browser
-# The ladders with long programs come first, so that no processor waits for one in the end.
+# So do the ladders.
 EVERY_TEST = $(foreach ladder,validation faults system unit fuzz,$(call all_tests,$(ladder))) \
              $(BUILD)/tests/system/faults/kills
+# The page is tried beside them, as a browser mostly waits; what it says follows.
 run-tests-built: all $(EVERY_TEST)
-	@RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(EVERY_TEST)
-	@tests/browser/run $(abspath $(BUILD))/rugo
+	@tests/browser/run $(abspath $(BUILD))/rugo >$(BUILD)/browser.log 2>&1 & browser=$$!; \
+	RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(EVERY_TEST); tests=$$?; \
+	wait $$browser; page=$$?; cat $(BUILD)/browser.log; [ $$tests -eq 0 ] && [ $$page -eq 0 ]
 browser: all
 	@tests/browser/run $(abspath $(BUILD))/rugo
 unit validation system: all
@@ -230,7 +239,7 @@ WORLD   = $(call objects,$(wildcard tests/support/faults/*.c))
 TESTS_system_faults := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/system/faults/*.c))
 $(TESTS_system_faults): $(BUILD)/%: $(BUILD)/%.c.o $(WORLD) $(SUPPORT) $(call archive,$(BELOW_server))
 	$(say) LD $@
-	$(Q)$(LINK) -pie -o $@ $^ -lcmocka $(LIBS_server) $(LDLIBS)
+	$(Q)$(LINK) $(GOLD) -pie -o $@ $^ -lcmocka $(LIBS_server) $(LDLIBS)
 SHIM = $(BUILD)/tests/system/faults/failing_writes.so
 $(TESTS_system_faults): | $(SHIM)
 $(SHIM): $(BUILD)/tests/support/failing/failing_writes.c.o
@@ -299,15 +308,15 @@ nightly: all
 	-@tests/install-deps "" calculix-ccx ccx
 	$(MAKE) test
 	$(MAKE) lint
-	RUGO_EFFORT=4 $(MAKE) validation
-	$(MAKE) faults
+	RUGO_EFFORT=4 $(MAKE) unit validation
+	RUGO_EFFORT=4 $(MAKE) faults
 	$(MAKE) check-documents check-install check-units check-openapi check-figures check-results tour
 	-@tests/install-deps "" "slurmctld slurmd slurm-client munge" munged slurmctld slurmd sbatch
 	$(MAKE) slurm-test
 	$(MAKE) check-static
 	$(MAKE) BUILD=$(BUILD)-O2 CFLAGS=-O2 run-unit
 	$(MAKE) BUILD=$(BUILD)-address SAN=address,undefined run-unit
-	$(MAKE) BUILD=$(BUILD)-address SAN=address,undefined run-faults
+	RUGO_EFFORT=4 $(MAKE) BUILD=$(BUILD)-address SAN=address,undefined run-faults
 	$(MAKE) BUILD=$(BUILD)-thread SAN=thread run-threads
 	$(MAKE) fuzz SECONDS=$(SECONDS)
 .PHONY: nightly

@@ -22,6 +22,7 @@ struct scene {
     struct area_workspace *areas;
     struct contact_state state; /* of the last load */
     double *z;                  /* grid_points */
+    double *response;           /* scene_response, made where it is first asked for */
 };
 
 static inline size_t scene_points(const struct scene *scene) {
@@ -54,6 +55,7 @@ static inline void scene_close(struct scene *scene) {
     contact_destroy(&scene->contact);
     compliance_destroy(&scene->compliance);
     free(scene->z);
+    free(scene->response);
     *scene = (struct scene){0};
 }
 
@@ -85,9 +87,11 @@ static inline struct contact_area scene_area(const struct scene *scene) {
 }
 
 /* Displacement of each node for a pressure of 1 at node 0, mean 0: the sum over all waves. */
-static inline double *scene_response(const struct scene *scene) {
+static inline double *scene_response(struct scene *scene) {
     const struct grid *grid = &scene->grid;
-    double *response = zeros(scene_points(scene));
+    if (scene->response != NULL)
+        return scene->response;
+    double *response = scene->response = zeros(scene_points(scene));
     for (size_t j = 0; j < grid->ny; j++)
         for (size_t i = 0; i < grid->nx; i++)
             for (size_t mx = 0; mx <= grid->nx / 2; mx++)
@@ -174,7 +178,7 @@ static inline void check_state(const struct scene *scene, double reach) {
 
 /* The conditions of contact (Karush, Kuhn and Tucker), which only its one solution meets: p >= 0
  * with the mean asked, no gap under pressure, none below 0, to the tolerance of the solver. */
-static inline void check_contact(const struct scene *scene) {
+static inline void check_contact(struct scene *scene) {
     const struct contact_state *state = &scene->state;
     size_t n = scene_points(scene);
     double *response = scene_response(scene), *u = zeros(n), *gap = zeros(n), *weighted = zeros(n);
@@ -195,7 +199,6 @@ static inline void check_contact(const struct scene *scene) {
         check_close(state->gap[i], gap[i], reach);
         check_close(state->opening[i], weighted[i], reach);
     }
-    free(response);
     free(u);
     free(gap);
     free(weighted);

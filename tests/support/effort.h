@@ -1,5 +1,6 @@
 /* How long statistical tests take: RUGO_EFFORT=n makes n times as many realisations, which makes
- * their standard errors, and with them their tolerances, smaller. `make test` takes 1. */
+ * their standard errors, and with them their tolerances, smaller. Tests that draw problems, or let
+ * some of many allocations fail, take n times as many. `make test` takes 1. */
 #ifndef RUGO_TESTS_SUPPORT_EFFORT_H
 #define RUGO_TESTS_SUPPORT_EFFORT_H
 

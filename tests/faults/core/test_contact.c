@@ -27,6 +27,7 @@ static void heights(const struct grid *grid, double amplitude, double *z) {
 }
 
 struct block_fault {
+    const struct grid *grid;
     struct block block;
     bool open;
 };
@@ -43,15 +44,16 @@ static int press_once(struct pressed_fault *p, const struct block_fault *pressed
     struct contact_state state;
     struct contact_area area;
     struct patches patches;
-    heights(&GRID, 0.1, z);
-    int status = pressed->open ? compliance_create_open(&p->compliance, &GRID, &pressed->block, err)
-                               : compliance_create(&p->compliance, &GRID, &pressed->block, err);
+    const struct grid *grid = pressed->grid;
+    heights(grid, 0.1, z);
+    int status = pressed->open ? compliance_create_open(&p->compliance, grid, &pressed->block, err)
+                               : compliance_create(&p->compliance, grid, &pressed->block, err);
     if (status == 0)
         status = contact_create(&p->contact, p->compliance, &CONTACT_DEFAULTS, err);
     if (status == 0)
         status = area_workspace_create(&p->areas, p->compliance, err);
     if (status == 0)
-        status = patch_finder_create(&p->finder, &GRID, err);
+        status = patch_finder_create(&p->finder, grid, err);
     if (status == 0)
         status = contact_begin(p->contact, z, err);
     if (status == 0)
@@ -77,7 +79,8 @@ static int press(void *context, struct error *err) {
 
 static void linear_models(void **state) {
     (void)state;
-    struct block_fault deep = {DEEP, false}, meshed = {MESHED, false}, open = {DEEP, true};
+    struct block_fault deep = {&LINE, DEEP, false}, meshed = {&GRID, MESHED, false};
+    struct block_fault open = {&GRID, DEEP, true};
     each_allocation(&(struct failing_call){.name = "half-space", press, &deep});
     each_allocation(&(struct failing_call){.name = "layered", press, &meshed});
     each_allocation(&(struct failing_call){.name = "free space", press, &open});

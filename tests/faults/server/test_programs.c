@@ -3,6 +3,7 @@
  * command succeeds afterwards on the same store. */
 #include "tests/support/check.h"
 
+#include "tests/support/effort.h"
 #include "tests/support/process.h"
 #include <inttypes.h>
 #include <stdio.h>
@@ -26,9 +27,10 @@ struct program {
     const char *store; /* begins with none of that name; NULL: keeps all files */
 };
 
-/* Allocations of a command that fail, spread over all of them, unless RUGO_FAULTS=all; each alone,
- * and with all behind it, or where workers wait until there is memory again, with some. */
-enum { FAILURES = 30, SOME = 10 };
+/* Allocations of a command that fail, spread over all of them, times RUGO_EFFORT, unless
+ * RUGO_FAULTS=all; each alone, and with all behind it, or where workers wait until there is memory
+ * again, with some. */
+enum { FAILURES = 16, SOME = 10 };
 
 static uint64_t allocations(const char *path) {
     char *text = slurp(path);
@@ -102,7 +104,7 @@ static void each_failure(const struct program *program) {
     assert_true(program->from == NULL || *expected != 0);
     const char *wish = getenv("RUGO_FAULTS");
     bool all = wish != NULL && strcmp(wish, "all") == 0;
-    uint64_t step = all || total < FAILURES ? 1 : total / FAILURES;
+    uint64_t most = FAILURES * effort(), step = all || total < most ? 1 : total / most;
     for (uint64_t n = 0; n < total; n += step, failed += 2) {
         fail_at(program, n, 1, expected);
         fail_at(program, n, program->store != NULL ? SOME : UINT64_MAX, expected);

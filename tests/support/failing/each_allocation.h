@@ -18,8 +18,8 @@ struct failing_call {
 
 /* Fails each allocation of the call alone, and then each with all behind it. After each: an error
  * with a text, no leak, and the same call succeeds. Where this would
- * take more than some seconds, as many as fit, spread over all; with RUGO_FAULTS=all each. Fails
- * the test. */
+ * take more than a second, as many as fit, spread over all: RUGO_EFFORT=n times as many, and each
+ * with RUGO_FAULTS=all. Fails the test. */
 void each_allocation(const struct failing_call *call);
 
 #endif

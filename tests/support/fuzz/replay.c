@@ -2,6 +2,7 @@
  * copies with some bytes changed. What the target asserts must hold for all of them. */
 #include "tests/support/check.h"
 
+#include "tests/support/effort.h"
 #include "tests/support/fuzz/fuzz.h"
 #include "tests/support/seed.h"
 #include <dirent.h>
@@ -10,9 +11,9 @@
 #include <time.h>
 
 enum { FILE_MOST = 1 << 16, CHANGED_COPIES = 40, CUTS = 40 };
-/* Targets whose inputs take long are fed fewer changed copies: none begins after so much CPU time.
- */
-static const double COPIES_SECONDS = 8;
+/* Targets whose inputs take long are fed fewer changed copies: none begins after so much CPU time,
+ * times RUGO_EFFORT. */
+static const double COPIES_SECONDS = 4;
 
 static char corpus[4096]; /* the folder */
 static uint8_t bytes[FILE_MOST], changed[FILE_MOST];
@@ -37,7 +38,7 @@ static void feed(const uint8_t *data, size_t size) {
 }
 
 static bool has_time(void) {
-    return (double)clock() / CLOCKS_PER_SEC < COPIES_SECONDS;
+    return (double)clock() / CLOCKS_PER_SEC < COPIES_SECONDS * (double)effort();
 }
 
 static void feed_changed(size_t size, uint64_t *seed) {

@@ -13,7 +13,8 @@ import rugo
 
 URL, FOLDER = sys.argv[1], sys.argv[2]
 STUDY = {"name": "again", "kind": "statistics", "seed": 1, "realisations": 8,
-         "surface": {"hurst": [0.2, 0.8], "wavelength_ratio": 4, "length_ratio": 4}}
+         "surface": {"hurst": [0.2, 0.8], "wavelength_ratio": 4, "length_ratio": 4},
+         "statistics": {"bins": {"height": [-4, 8, 120], "curvature": [-16, 0, 16]}}}
 
 
 def refused(call, status, *words):
@@ -79,7 +80,7 @@ def faults_are_told(server):
 
 
 def many_cases_are_asked_for_one_by_one(server):
-    many = dict(STUDY, name="many", realisations=1)
+    many = dict(STUDY, name="many", realisations=1, statistics={"bins": {"height": [-4, 8, 12], "curvature": [-16, 0, 8]}})
     many["surface"] = dict(STUDY["surface"], length_ratio=2, points_per_wavelength=2,
                            hurst=[round(0.1 + c / 100, 3) for c in range(65)])
     rows = server.submit(many).wait(timeout=300).curves("summit_height_pdf")

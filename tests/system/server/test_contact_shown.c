@@ -7,21 +7,23 @@
 #include <string.h>
 #include <sys/wait.h>
 
-#define PRESSED(hurst)                                                                             \
+#define PRESSED(hurst, cells)                                                                      \
     "{\"name\":\"pressed\",\"kind\":\"contact\",\"seed\":5,\"realisations\":4,\"surface\":{"       \
     "\"dimension\":1,\"hurst\":" hurst ",\"wavelength_ratio\":4,\"length_ratio\":2},\"contact\":{" \
-    "\"model\":[\"halfspace\",\"layered\"],\"levels\":[4,8],\"pressures\":{\"to\":0.3,"            \
+    "\"cell_error\":\"" cells                                                                      \
+    "\",\"model\":[\"halfspace\",\"layered\"],\"levels\":[4,8],\"pressures\":{\"to\":0.3,"         \
     "\"steps\":30},\"pressure_pdf\":{\"at\":[0.1,0.3]}}}"
 
 static int setup(void **state) {
     (void)state;
-    spit("pressed.json", PRESSED("0.8"));
-    spit("many.json", PRESSED("[0.2,0.3,0.4,0.5,0.6]"));
+    spit("pressed.json", PRESSED("0.8", "probed"));
+    spit("many.json", PRESSED("[0.2,0.3,0.4,0.5,0.6]", "none"));
     spit("steep.json",
          "{\"name\":\"steep\",\"kind\":\"contact\",\"seed\":3,\"realisations\":8,\"surface\":{"
          "\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":2,\"length_ratio\":2,"
          "\"points_per_wavelength\":6,\"rms_slope\":1.2},\"contact\":{\"model\":[\"full\","
-         "\"layered\"],\"block_height\":{\"lengths\":1},\"pressures\":{\"to\":0.5,\"steps\":3}}}");
+         "\"layered\"],\"block_height\":{\"lengths\":1},\"cell_error\":\"none\",\"pressures\":{"
+         "\"to\":0.5,\"steps\":3}}}");
     spit("wave.json",
          "{\"name\":\"wave\",\"kind\":\"contact\",\"realisations\":2,\"surface\":{\"dimension\":1,"
          "\"hurst\":0.8,"

@@ -20,13 +20,15 @@ static const struct {
     const char *name, *first, *then, *study;
 } STUDIES[] = {
     {"statistics", "realisations=7", "realisations=19",
-     "{\"name\":\"s\",\"kind\":\"statistics\",\"seed\":4,\"realisations\":1," SURFACE "}"},
+     "{\"name\":\"s\",\"kind\":\"statistics\",\"seed\":4,\"realisations\":1," SURFACE
+     ",\"statistics\":{\"bins\":{\"height\":[-4,8,24],\"curvature\":[-16,0,16]}}}"},
     {"contact", "realisations=5", "realisations=37",
      "{\"name\":\"c\",\"kind\":\"contact\",\"seed\":4,\"realisations\":1," SURFACE ",\"contact\":{"
      "\"pressures\":{\"values\":[0.02,0.1]},\"model\":[\"halfspace\",\"layered\"]}}"},
     {"own", "realisations=6", "realisations=9",
      "{\"name\":\"o\",\"kind\":\"contact\",\"seed\":4,\"realisations\":1,\"random\":"
-     "\"independent\"," SURFACE ",\"contact\":{\"pressures\":{\"values\":[0.02,0.1]}}}"},
+     "\"independent\"," SURFACE
+     ",\"contact\":{\"cell_error\":\"none\",\"pressures\":{\"values\":[0.02,0.1]}}}"},
 };
 enum { STUDY_COUNT = sizeof STUDIES / sizeof *STUDIES };
 

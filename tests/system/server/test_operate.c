@@ -11,14 +11,16 @@
 
 /* So many jobs that some are left when the snapshot is made. */
 static const char STUDY[] =
-    "{\"name\":\"kept\",\"kind\":\"statistics\",\"seed\":1,\"realisations\":100,\"surface\":{"
-    "\"hurst\":[0.1,0.2,0.3,0.4,0.5,0.6,0.7,0.8,0.9],\"wavelength_ratio\":8,\"length_ratio\":8,"
-    "\"points_per_wavelength\":8}"
+    "{\"name\":\"kept\",\"kind\":\"statistics\",\"seed\":1,\"realisations\":60,\"surface\":{"
+    "\"hurst\":[0.1,0.2,0.3,0.4,0.5,0.6,0.7,0.8,0.9],\"wavelength_ratio\":8,\"length_ratio\":6,"
+    "\"points_per_wavelength\":8},\"statistics\":{\"bins\":{\"height\":[-4,8,24],\"curvature\":[-"
+    "16,0,16]}}"
     "}";
 
 static const char SMALL[] =
     "{\"name\":\"small\",\"kind\":\"statistics\",\"seed\":1,\"realisations\":20,\"surface\":{"
-    "\"hurst\":0.8,\"wavelength_ratio\":4,\"length_ratio\":4,\"points_per_wavelength\":8}}";
+    "\"hurst\":0.8,\"wavelength_ratio\":4,\"length_ratio\":4,\"points_per_wavelength\":8},"
+    "\"statistics\":{\"bins\":{\"height\":[-4,8,24],\"curvature\":[-16,0,16]}}}";
 
 static void page_does_what_it_says(void **state) {
     char command[1200];

@@ -8,7 +8,8 @@
 
 static const char FIRST[] =
     "{\"name\":\"first\",\"kind\":\"statistics\",\"seed\":1,\"realisations\":8,\"surface\":{"
-    "\"hurst\":[0.2,0.8],\"wavelength_ratio\":4,\"length_ratio\":4}}";
+    "\"hurst\":[0.2,0.8],\"wavelength_ratio\":4,\"length_ratio\":4},"
+    "\"statistics\":{\"bins\":{\"height\":[-4,8,120],\"curvature\":[-16,0,16]}}}";
 
 static const char *source(void) {
     const char *folder = getenv("RUGO_SOURCE");

@@ -10,12 +10,14 @@
 #include "tests/support/unstopped.h"
 #include <stdlib.h>
 
-/* Fine bins, so that their centres give the mean pressure. */
+/* No cells of other lengths, which this file does not look at. Fine bins, so that their centres
+ * give the mean pressure. */
 #define PRESSED(dimension, kinematics)                                                             \
     "{\"surface\": {\"dimension\": " dimension ", \"hurst\": 0.8, \"wavelength_ratio\": 2,"        \
     " \"length_ratio\": 2, \"points_per_wavelength\": 4, \"rms_slope\": 0.2}, \"contact\": {"      \
     "\"model\": [\"layered\", \"full\"], \"kinematics\": \"" kinematics "\", \"block_height\":"    \
-    " {\"lengths\": 1}, \"pressures\": {\"values\": [0.1, 0.3]}, \"pressure_pdf\": {\"at\":"       \
+    " {\"lengths\": 1}, \"cell_error\": \"none\", \"pressures\": {\"values\": [0.1, 0.3]}, "       \
+    "\"pressure_pdf\": {\"at\":"                                                                   \
     " [0.1, 0.3], \"bins\": [0, 10, 10000]}}}"
 enum { LAYERED, FULL, MODELS };
 

@@ -59,7 +59,8 @@ enum { REALISATIONS = 9, SEED = 5 };
 #define CONTACT(hurst, loads)                                                                      \
     "{\"surface\": {\"dimension\": 1, \"hurst\": " hurst ", \"wavelength_ratio\": 4,"              \
     " \"length_ratio\": 2, \"rms_slope\": 0.1}, \"contact\": {\"model\": [\"layered\","            \
-    " \"halfspace\"], \"levels\": [4, 8], \"pressures\": {\"values\": " loads "},"                 \
+    " \"halfspace\"], \"levels\": [4, 8], \"cell_error\": \"none\", \"pressures\": "               \
+    "{\"values\": " loads "},"                                                                     \
     " \"pressure_pdf\": {\"at\": [0.1], \"bins\": [0, 1, 4]}}}"
 #define SKEWED(hurst)                                                                              \
     "{\"surface\": {\"hurst\": " hurst ", \"wavelength_ratio\": 4, \"length_ratio\": 2,"           \

@@ -13,11 +13,12 @@
 #include <time.h>
 #include <unistd.h>
 
-/* Two cases (H 0.2 and 0.8) of profiles of 64 points. */
+/* Two cases (H 0.2 and 0.8) of profiles of 64 points, and few bins. */
 static const char SMALL_STUDY[] =
     "{\"name\":\"small\",\"kind\":\"statistics\",\"seed\":7,\"realisations\":24,\"surface\":{"
     "\"dimension\":1,\"hurst\":[0.2,0.8],\"wavelength_ratio\":4,\"length_ratio\":4,"
-    "\"points_per_wavelength\":4}}";
+    "\"points_per_wavelength\":4},\"statistics\":{\"bins\":{\"height\":[-4,8,24],\"curvature\":"
+    "[-16,0,16]}}}";
 
 #define RUNNING_JOBS "FROM job WHERE state = 'running'"
 

@@ -6,13 +6,13 @@
 #include "worker/publish/aggregate.h"
 #include "worker/worker.h"
 
-/* The half-space knows no Poisson's ratio but that in E*, which the pressures are in units of; the
- * layer does. */
+/* Errors of cells are none of this file. The half-space knows no Poisson's ratio but that in E*,
+ * which the pressures are in units of; the layer does. */
 static const char POISSON_SWEEP[] =
     "{\"name\":\"poisson\",\"kind\":\"contact\",\"seed\":7,%s\"realisations\":6,\"surface\":{"
     "\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":4,\"length_ratio\":2},\"contact\":{"
     "\"model\":[\"halfspace\",\"layered\"],\"poisson\":[0.1,0.3,0.49],\"levels\":[4,8],"
-    "\"pressures\":{\"to\":0.4,\"steps\":4}}}";
+    "\"cell_error\":\"none\",\"pressures\":{\"to\":0.4,\"steps\":4}}}";
 
 enum { CASES = 3 };
 

@@ -1,12 +1,14 @@
 /* Protects the contact solver against the cases that break others: a named catalogue of surfaces,
  * each under loads from next to none to far beyond full contact, in profiles and surfaces, in all
  * models; random small problems against a solver that tries every set of nodes in contact; and odd
- * loads. Each must end in a solution, checked by the independent judge of contact_scene.h. */
+ * loads. Each must end in a solution, checked by the independent judge of contact_scene.h. Problems
+ * are drawn anew each time, RUGO_EFFORT times as many. */
 #include "tests/support/check.h"
 
 #include "core/random.h"
 #include "core/surface/surface.h"
 #include "tests/support/contact_scene.h"
+#include "tests/support/effort.h"
 #include "tests/support/seed.h"
 
 /* Numbers of one stream, in order. */
@@ -283,10 +285,11 @@ static double try_set(const struct scene *scene, double response[SIZE][SIZE], co
     return worst;
 }
 
-static void check_by_every_set(const struct scene *scene) {
+static void check_by_every_set(struct scene *scene) {
     size_t nx = scene->grid.nx, n = scene_points(scene);
     double *unit = scene_response(scene), *weighted = zeros(n), *z = zeros(n);
-    double response[SIZE][SIZE], p[NODES_MOST] = {0}, best[NODES_MOST] = {0}, least = INFINITY;
+    double response[SIZE][SIZE] = {{0}}, p[NODES_MOST] = {0}, best[NODES_MOST] = {0},
+           least = INFINITY;
     scene_weigh(scene, unit, weighted);
     scene_weigh(scene, scene->z, z);
     for (size_t b = 0; b < n; b++)
@@ -309,7 +312,6 @@ static void check_by_every_set(const struct scene *scene) {
     for (size_t i = 0; i < n; i++)
         check_close(scene->state.p[i] * unit[0], best[i] * unit[0],
                     1e-9 * (highest + largest(n, best) * unit[0]));
-    free(unit);
     free(weighted);
     free(z);
 }
@@ -333,7 +335,7 @@ static void small_problems_by_every_set(void **state) {
     struct draw draw = {{.seed = seed_of_now()}, 0};
     static const struct grid grids[] = {{2, 1, 1, 1}, {3, 1, 1, 1}, {5, 1, 1, 1}, {9, 1, 1, 1},
                                         {2, 2, 1, 1}, {3, 3, 1, 1}, {2, 4, 1, 1}, {4, 2, 1, 3}};
-    for (size_t a = 0; a < 150; a++) {
+    for (size_t a = 0; a < 64 * effort(); a++) {
         struct scene scene;
         random_scene(&draw, &scene, grids[a % 8]);
         double full = contact_full_pressure(scene.contact);
@@ -351,7 +353,7 @@ static void small_problems_by_every_set(void **state) {
 static void random_problems(void **state) {
     (void)state;
     struct draw draw = {{.seed = seed_of_now(), .sequence = 1}, 0};
-    for (size_t a = 0; a < 60; a++) {
+    for (size_t a = 0; a < 24 * effort(); a++) {
         struct grid grid = {2 + draw_below(&draw, 40), 1 + draw_below(&draw, 40), 1, 1};
         struct scene scene;
         random_scene(&draw, &scene, grid);
@@ -370,7 +372,7 @@ static void random_problems(void **state) {
 static void careful_steps_converge(void **state) {
     (void)state;
     struct draw draw = {{.seed = seed_of_now(), .sequence = 2}, 0};
-    for (size_t a = 0; a < 60; a++) {
+    for (size_t a = 0; a < 24 * effort(); a++) {
         struct grid grid = {2 + draw_below(&draw, 40), 1 + draw_below(&draw, 40), 1, 1};
         struct scene scene;
         random_scene(&draw, &scene, grid);

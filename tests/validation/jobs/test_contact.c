@@ -9,7 +9,8 @@
 
 #define WAVE(contact)                                                                              \
     "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 1,"                    \
-    " \"length_ratio\": 1, \"points_per_wavelength\": 64}, \"contact\": {" contact "}}"
+    " \"length_ratio\": 1, \"points_per_wavelength\": 64}, \"contact\": {\"cell_error\": "         \
+    "\"none\", " contact "}}"
 
 /* Every realisation is the wave at another phase of the grid: each by itself, so that phases do not
  * cancel. 1 % is what edges reach at 64 points a wave. The gap is an integral: 0.002 of sqrt(m0).
@@ -68,7 +69,8 @@ static void full_contact_of_a_wave(void **state) {
 
 #define ROUGH(levels)                                                                              \
     "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 8,"                    \
-    " \"length_ratio\": 4, \"points_per_wavelength\": 64}, \"contact\": {"                         \
+    " \"length_ratio\": 4, \"points_per_wavelength\": 64}, \"contact\": {\"cell_error\": "         \
+    "\"none\", "                                                                                   \
     "\"model\": [\"layered\", \"halfspace\"], \"levels\": " levels ","                             \
     "\"pressures\": {\"values\": [0.05, 0.1, 0.2, 0.3]}}}"
 
@@ -100,10 +102,11 @@ static void levels_see_the_same_surface(void **state) {
 /* In 3D simulations lie between Persson and BGT at light load, and near Persson at high load. */
 static void surfaces_against_theories(void **state) {
     (void)state;
-    cJSON *document = solve("{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4,"
-                            " \"length_ratio\": 4}, \"contact\": {\"pressures\":"
-                            " {\"values\": [0.01, 0.02, 0.05, 0.4, 0.8, 1.2]}}}",
-                            5);
+    cJSON *document =
+        solve("{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4,"
+              " \"length_ratio\": 4}, \"contact\": {\"cell_error\": \"none\", \"pressures\":"
+              " {\"values\": [0.01, 0.02, 0.05, 0.4, 0.8, 1.2]}}}",
+              5);
     const cJSON *area = curve_of(document, "contact_area", "edges", "halfspace");
     for (int k = 0; k < 6; k++) {
         double y = at(area, "/y", k), persson = at(area, "/theory/persson", k);
@@ -138,7 +141,8 @@ static void translated_surfaces_against_their_summits(void **state) {
                  "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 4,"
                  " \"amplitudes\": \"random\", \"heights\": {\"distribution\": \"%s\", \"shape\": "
                  "%g, \"law\":"
-                 " \"translation\"}}, \"contact\": {\"pressures\": {\"values\": [0.01]}}}",
+                 " \"translation\"}}, \"contact\": {\"cell_error\": \"none\", \"pressures\": "
+                 "{\"values\": [0.01]}}}",
                  CASES[c].name, CASES[c].shape);
         cJSON *document = solve(study, 20);
         const cJSON *area = curve_of(document, "contact_area", "edges", "halfspace");
@@ -194,11 +198,11 @@ static void counted_summits_against_their_densities(void **state) {
 static void profiles_against_persson(void **state) {
     (void)state;
     static const double times[] = {2.2, 1.5, 1.2, 1.1};
-    cJSON *document =
-        solve("{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 8,"
-              " \"points_per_wavelength\": 16}, \"contact\": {\"pressures\":"
-              " {\"values\": [0.005, 0.1, 0.3, 0.5]}}}",
-              40);
+    cJSON *document = solve(
+        "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 8,"
+        " \"points_per_wavelength\": 16}, \"contact\": {\"cell_error\": \"none\", \"pressures\":"
+        " {\"values\": [0.005, 0.1, 0.3, 0.5]}}}",
+        40);
     const cJSON *area = curve_of(document, "contact_area", "edges", "halfspace");
     for (int k = 0; k < 4; k++) {
         double expected = times[k] * at(area, "/theory/persson", k);
@@ -218,7 +222,8 @@ static void weibull_curves_cross(void **state) {
         snprintf(
             study, sizeof study,
             "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\":"
-            " {\"distribution\": \"%s\", \"shape\": 1}}, \"contact\": {\"pressures\":"
+            " {\"distribution\": \"%s\", \"shape\": 1}}, \"contact\": {\"cell_error\": \"none\", "
+            "\"pressures\":"
             " {\"values\": [0.05, 0.5]}}}",
             names[d]);
         cJSON *document = solve(study, 20);
@@ -234,10 +239,11 @@ static void weibull_curves_cross(void **state) {
 /* The same dimensionless curves for any slope: rounding alone, times what contact makes of it. */
 static void any_scale(void **state) {
     (void)state;
-    static const char form[] = "{\"surface\": {\"dimension\": 1, \"hurst\": 0.4,"
-                               " \"wavelength_ratio\": 8, \"length_ratio\": 2,"
-                               " \"rms_slope\": %s}, \"contact\": {\"model\": \"layered\","
-                               " \"young\": %s}}";
+    static const char form[] =
+        "{\"surface\": {\"dimension\": 1, \"hurst\": 0.4,"
+        " \"wavelength_ratio\": 8, \"length_ratio\": 2,"
+        " \"rms_slope\": %s}, \"contact\": {\"cell_error\": \"none\", \"model\": \"layered\","
+        " \"young\": %s}}";
     static const char *const scales[][2] = {{"1", "1"}, {"1e-9", "1e15"}, {"1e6", "1e-12"}};
     cJSON *documents[3];
     for (size_t a = 0; a < 3; a++) {

@@ -6,7 +6,8 @@
 
 #define ROUGH(slope, kinematics)                                                                   \
     "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\":"  \
-    " 2, \"points_per_wavelength\": 8, \"rms_slope\": " slope "}, \"contact\": {\"model\":"        \
+    " 2, \"points_per_wavelength\": 8, \"rms_slope\": " slope                                      \
+    "}, \"contact\": {\"cell_error\": \"none\", \"model\":"                                        \
     " [\"layered\", \"full\"], \"kinematics\": \"" kinematics "\","                                \
     " \"pressures\": {\"values\": [0.05, 0.1, 0.2, 0.3]}}}"
 
@@ -44,7 +45,8 @@ static void small_slopes_are_layered(void **state) {
 
 #define BESIDE(slope, poisson)                                                                     \
     "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 8, \"length_ratio\":"  \
-    " 2, \"points_per_wavelength\": 16, \"rms_slope\": " slope "}, \"contact\": {\"model\":"       \
+    " 2, \"points_per_wavelength\": 16, \"rms_slope\": " slope                                     \
+    "}, \"contact\": {\"cell_error\": \"none\", \"model\":"                                        \
     " [\"halfspace\", \"layered\", \"full\"], \"poisson\": " poisson ", \"levels\": [8, 16],"      \
     " \"gap_weighting\": \"dual\", \"pressures\": {\"values\": [0.05, 0.1, 0.3]}}}"
 
@@ -85,7 +87,8 @@ static void one_low_wave_is_westergaards(void **state) {
     cJSON *document =
         solve("{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 1, "
               "\"length_ratio\":"
-              " 1, \"points_per_wavelength\": 64, \"rms_slope\": 0.004}, \"contact\": {\"model\":"
+              " 1, \"points_per_wavelength\": 64, \"rms_slope\": 0.004}, \"contact\": "
+              "{\"cell_error\": \"none\", \"model\":"
               " \"full\", \"pressures\": {\"to\": 0.68, \"steps\": 17}}}",
               2);
     const cJSON *area = curve_of(document, "contact_area", "edges", "full");
@@ -143,7 +146,8 @@ static void steep_realisations_have_no_values(void **state) {
     cJSON *document =
         solve("{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 2, "
               "\"length_ratio\":"
-              " 2, \"points_per_wavelength\": 6, \"rms_slope\": 1.9}, \"contact\": {\"model\":"
+              " 2, \"points_per_wavelength\": 6, \"rms_slope\": 1.9}, \"contact\": "
+              "{\"cell_error\": \"none\", \"model\":"
               " [\"halfspace\", \"full\"], \"pressures\": {\"values\": [0.01, 0.2, 0.5, 1]}}}",
               COUNT);
     const cJSON *full = curve_of(document, "contact_area", "nodes", "full");

@@ -199,14 +199,14 @@ static void lags_end_with_the_shorter_side(void **state) {
 
 /* --- contact --- */
 
-static cJSON *contact(double x, double y, uint64_t count) {
+static cJSON *contact(double x, double y, const char *cell_error, uint64_t count) {
     char text[600];
     snprintf(text, sizeof text,
              "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": %g,"
              " \"length_ratio_y\": %g, \"rms_slope\": 0.1}, \"contact\": {\"pressures\":"
              " {\"values\": [0.03, 0.1, 0.3]}, \"model\": [\"halfspace\", \"layered\"],"
-             " \"levels\": [4, 8]}}",
-             x, y);
+             " \"levels\": [4, 8], \"cell_error\": \"%s\"}}",
+             x, y, cell_error);
     return study_of("contact", text, count);
 }
 
@@ -217,7 +217,8 @@ static void contact_agrees_with_the_square(void **state) {
     static const struct {
         const char *quantity, *series;
     } CURVES[] = {{"contact_area", "edges"}, {"mean_gap", ""}};
-    cJSON *wide = contact(4, 2, 30), *high = contact(2, 4, 30), *square = contact(4, 4, 15);
+    cJSON *wide = contact(4, 2, "probed", 30), *high = contact(2, 4, "none", 30);
+    cJSON *square = contact(4, 4, "none", 15);
     for (size_t c = 0; c < 2; c++)
         for (size_t m = 0; m < 2; m++) {
             const char *model = m == 0 ? "halfspace" : "layered";

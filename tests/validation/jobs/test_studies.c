@@ -77,6 +77,10 @@ static void assert_near(const char *what, double got, double expected, double to
         fail_msg("%s is %.6g, not within %.3g of %.6g", what, got, tolerance, expected);
 }
 
+/* Of histograms that a test does not look at: with the usual ones theories of 38 400 bins take most
+ * of the time. */
+#define FEW_BINS "'bins': {'height': [-4, 8, 24], 'curvature': [-16, 0, 16]}"
+
 /* Table 3.1 and the two cases of H = 0.2 in its figures; half of the last printed digit. Alpha is a
  * sum over waves, which 2.5 points a shortest wave hold as well as 8 at a tenth of the cost. */
 static void table_3_1(void **state) {
@@ -88,7 +92,7 @@ static void table_3_1(void **state) {
     for (size_t a = 0; a < sizeof table / sizeof *table; a++) {
         cJSON *curves = study(2,
                               "{'surface': {'hurst': %g, 'wavelength_ratio': %g,"
-                              " 'points_per_wavelength': %g}}",
+                              " 'points_per_wavelength': %g}, 'statistics': {" FEW_BINS "}}",
                               table[a].hurst, table[a].ratio, table[a].ratio > 8 ? 2.5 : 8);
         assert_near("alpha", scalar(curves, "nayak_alpha", "value"), table[a].alpha, 0.00501);
         assert_true(scalar(curves, "nayak_alpha", "standard_error") == 0);
@@ -109,7 +113,7 @@ static void table_3_3(void **state) {
                 study(2,
                       "{'surface': {'hurst': 0.8, 'wavelength_ratio': 8, 'heights': {"
                       "'distribution': '%s', 'shape': %g, 'keep': 'heights', 'draw': 'quantiles', "
-                      "'tolerance': 0.5}}}",
+                      "'tolerance': 0.5}}, 'statistics': {" FEW_BINS "}}",
                       side ? "weibull_max" : "weibull_min", table[a][0]);
             double skewness = side ? -table[a][1] : table[a][1];
             assert_near("theory", scalar(curves, "skewness", "theory"), skewness, 0.00501);
@@ -135,17 +139,18 @@ static void table_3_5(void **state) {
     static const double low[] = {5.075, 10.165, 15.245}, high[] = {5.115, 10.255, 15.405};
     for (int h = 0; h < 3; h++) {
         for (int a = 0; a < 3; a++) {
-            cJSON *curves = study(1,
-                                  "{'surface': {'hurst': %g, 'nayak_alpha': %g, 'alpha_formula': "
-                                  "'continuous', 'points_per_wavelength': 2.5}}",
-                                  hurst[h], alpha[a]);
+            cJSON *curves =
+                study(1,
+                      "{'surface': {'hurst': %g, 'nayak_alpha': %g, 'alpha_formula': "
+                      "'continuous', 'points_per_wavelength': 2.5}, 'statistics': {" FEW_BINS "}}",
+                      hurst[h], alpha[a]);
             double reached = scalar(curves, "nayak_alpha", "value");
             assert_near("ratio", scalar(curves, "wavelength_ratio", "value"), table[h][a], 0.00051);
             assert_true(reached > low[a] && reached < high[a]);
             cJSON_Delete(curves);
             curves = study(1,
                            "{'surface': {'hurst': %g, 'nayak_alpha': %g, "
-                           "'points_per_wavelength': 2.5}}",
+                           "'points_per_wavelength': 2.5}, 'statistics': {" FEW_BINS "}}",
                            hurst[h], alpha[a]);
             assert_near("alpha", scalar(curves, "nayak_alpha", "value"), alpha[a], 0.03);
             cJSON_Delete(curves);
@@ -166,10 +171,11 @@ static void density_of_summits(void **state) {
                  {"refined", 4, 0, 0.02},           {"refined", 8, 0, 0.01},
                  {"refined", 16, 0, 0.005}};
     for (size_t a = 0; a < sizeof cases / sizeof *cases; a++) {
-        cJSON *curves = study(20 * effort(),
-                              "{'surface': {'hurst': 0.8, 'wavelength_ratio': 8, "
-                              "'points_per_wavelength': %g}, 'statistics': {'summits': '%s'}}",
-                              cases[a].points, cases[a].summits);
+        cJSON *curves =
+            study(20 * effort(),
+                  "{'surface': {'hurst': 0.8, 'wavelength_ratio': 8, "
+                  "'points_per_wavelength': %g}, 'statistics': {'summits': '%s', " FEW_BINS "}}",
+                  cases[a].points, cases[a].summits);
         double nayak = scalar(curves, "summit_density", "theory");
         double expected = nayak;
         if (cases[a].limit > 0)
@@ -239,7 +245,7 @@ static void profiles(void **state) {
     cJSON *curves =
         study(200 * effort(), "{'surface': {'dimension': 1, 'hurst': 0.8, 'wavelength_ratio': 16, "
                               "'length_ratio': 64, 'points_per_wavelength': 16}, "
-                              "'statistics': {'summits': 'refined'}}");
+                              "'statistics': {'summits': 'refined', " FEW_BINS "}}");
     for (int a = 0; a < 6; a++)
         assert_near(names[a], scalar(curves, names[a], "value"), scalar(curves, names[a], "theory"),
                     4 * scalar(curves, names[a], "standard_error") +
