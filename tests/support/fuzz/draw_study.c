@@ -260,6 +260,32 @@ static void take_leaf(cJSON *document, struct choices *choices) {
     }
 }
 
+/* Gives leaves of documents that are to be plausible what they need. */
+static void give_partners(cJSON *document) {
+    static const char *const NEEDS[][3] = {
+        {"/surface/heights/second_shape", "/surface/heights/distribution", "\"beta\""},
+        {"/surface/heights/second_shape", "/surface/heights/shape", "2"},
+        {"/surface/heights/kurtosis", "/surface/heights/distribution", "\"beta\""},
+        {"/surface/heights/kurtosis", "/surface/heights/skewness", "0.1"},
+        {"/surface/heights/kurtosis", "/surface/heights/kurtosis", "2.2"},
+        {"/surface/unit", "/surface/rms_slope", "0.1"},
+        {"/contact/pressures/unit", "/surface/rms_slope", "0.1"},
+        {"/contact/pressures/unit", "/contact/pressures/values", "[0.05, 0.2]"},
+        {"/contact/pressures/unit", "/contact/pressure_pdf", "{}"},
+        {"/contact/block_fine_height", "/surface/rms_slope", "0.1"},
+        {"/contact/block_fine_height", "/contact/model", "\"full\""},
+        {"/contact/block_fine_height", "/contact/block_height", "{\"lengths\": 1}"},
+        {"/contact/block_fine_height", "/contact/transition_depth", "8"},
+        {"/surface/heights/tolerances", "/surface/heights/tolerance", "0.01"},
+        {"/surface/heights/tolerances", "/surface/heights/law", "\"iterated\""},
+        {"/surface/spectrum/correlation", "/surface/spectrum/lag", "[0, 1, 2, 4]"},
+        {"/surface/spectrum/correlation", "/surface/spectrum/correlation", "[1, 0.6, 0.2, 0]"},
+    };
+    for (size_t n = 0; n < sizeof NEEDS / sizeof *NEEDS; n++)
+        if (json_at(document, NEEDS[n][0]) != NULL)
+            put(document, NEEDS[n][1], cJSON_Parse(NEEDS[n][2]), false);
+}
+
 /* A target asks for an error in place of realisations: pairs that exclude each other are taken
  * apart in documents that are to be plausible. */
 static void part_pairs(cJSON *document) {
@@ -297,6 +323,7 @@ char *draw_study(struct choices *choices, const struct study_kind *const *kinds)
     if (plausible) {
         put(document, "/name", cJSON_CreateString("drawn"), false);
         put(document, "/kind", cJSON_CreateString(kind->name), false);
+        give_partners(document);
         part_pairs(document);
     } else if (choose_rarely(choices, 6))
         put_unknown(document, choices);

@@ -12,8 +12,8 @@ static void heights_fill(double *z, const struct grid *grid, bool wave) {
     size_t n = grid_points(grid);
     random_uniform((struct random_key){5, 0, 0}, STREAM_HEIGHTS, 0, n, z);
     for (size_t a = 0; a < n && wave; a++) {
-        double x = (double)(a % grid->nx) / (double)grid->nx;
-        double y = (double)(a / grid->nx) / (double)grid->ny;
+        size_t i = a % grid->nx, j = a / grid->nx;
+        double x = (double)i / (double)grid->nx, y = (double)j / (double)grid->ny;
         z[a] = 2 * cos(2 * M_PI * (2 * x + y));
     }
 }

@@ -64,7 +64,7 @@ static void every_parameter_is_drawn(void **state) {
         free(text);
     }
     print_message("%zu of %d drawn studies were taken\n", taken, DRAWN);
-    assert_true(taken > DRAWN / 4 && taken < DRAWN * 3 / 4);
+    assert_true(taken > DRAWN / 5 && taken < DRAWN * 3 / 4);
     for (size_t k = 0; JOB_KINDS[k] != NULL; k++) {
         const struct parameter *row;
         for (size_t p = 0; (row = parameter_row(JOB_KINDS[k]->tables, p)) != NULL; p++)
