@@ -158,7 +158,7 @@ static void broken_studies_are_told_what_is_wrong(void **state) {
          "the distribution needs its shape (shape C of a Weibull distribution), a number in [0.5, "
          "20]"},
         {SURFACE("\"heights\":{\"distribution\":\"weibull_max\",\"shape\":0}"), 422,
-         "/surface/heights/shape", "0 is not in [0.01, 20]"},
+         "/surface/heights/shape", "0 is not in [0.01, 1000]"},
         {"{\"name\":\"x\",\"kind\":\"contact\",\"surface\":{\"hurst\":0.8,\"wavelength_ratio\":8,"
          "\"spectrum\":{\"type\":\"table\"}}}",
          422, "/surface/spectrum/density",
