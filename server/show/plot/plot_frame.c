@@ -225,10 +225,10 @@ static void draw_one_plus_ticks(FILE *file, const struct frame *frame, bool hori
         draw_tick(file, frame, horizontal, 0, TICK_NUMBER);
         last = axis_place(axis, 0);
     }
-    double decade = pow(10, floor(log10(axis->high)) - 2);
-    for (; decade <= axis->high; decade *= 10)
+    int highest = (int)floor(log10(axis->high));
+    for (int decade = highest - 2; decade <= highest; decade++)
         for (int s = 0; s < 3; s++) {
-            double value = STEPS[s] * decade, place = axis_place(axis, value);
+            double value = STEPS[s] * pow(10, decade), place = axis_place(axis, value);
             if (value < axis->low || value > axis->high || (place - last) * length < ROOM)
                 continue;
             draw_tick(file, frame, horizontal, value, TICK_NUMBER);
