@@ -363,7 +363,8 @@ check-words:
 .PHONY: check-words
 
 # The commands of the pages for users, from top to bottom, and what they print; a minute on two processors.
-DOCUMENTS = README.md server/command/COMMANDS.md jobs/contact/METHODS.md jobs/studies/measured/README.md
+DOCUMENTS = README.md server/command/COMMANDS.md jobs/contact/METHODS.md jobs/studies/measured/README.md \
+	jobs/studies/REFERENCE.md
 check-documents: all
 	@tests/install-deps "" "curl jq sqlite3 librsvg2-bin" curl jq sqlite3 rsvg-convert
 	@tests/run-document --self-test

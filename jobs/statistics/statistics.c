@@ -117,8 +117,13 @@ static const char *const HEADLINES[] = {"nayak_alpha",
                                         NULL};
 static const struct logarithmic_picture LOGARITHMIC[] = {
     {"psd", NULL}, {"nayak_alpha_by_ratio", NULL}, {NULL, NULL}};
-static const struct result_view STATISTICS_VIEW = {.headlines = HEADLINES,
-                                                   .logarithmic = LOGARITHMIC};
+static const char DISTRIBUTION[] = "/surface/heights/distribution";
+static const struct series_name SERIES_NAMES[] = {
+    {"pits", DISTRIBUTION, "weibull_min", "weibull max (as pits)"},
+    {"pits", DISTRIBUTION, "weibull_max", "weibull min (as pits)"},
+    {NULL, NULL, NULL, NULL}};
+static const struct result_view STATISTICS_VIEW = {
+    .headlines = HEADLINES, .logarithmic = LOGARITHMIC, .series_names = SERIES_NAMES};
 
 /* Reads a case. The limit is not needed, as nothing large is computed. */
 static int read_case(void *one_case, const cJSON *parameters, double memory_limit,

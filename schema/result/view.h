@@ -22,11 +22,20 @@ struct quantity_table {
     const char *const *left_out; /* theories that hold for a part of x only; NULL-terminated */
 };
 
+/* What a series shows where a parameter of its case has a value: pits of one distribution are the
+ * summits of another. */
+struct series_name {
+    const char *series;
+    const char *pointer, *value; /* of the parameter */
+    const char *name;
+};
+
 struct result_view {
     const struct quantity_table *table; /* NULL: a row a case with its scalars */
     const char *const *headlines;       /* scalars of such a row, NULL-terminated; NULL, or where no
                                            case has one of them: all that have a theory */
     const struct logarithmic_picture *logarithmic; /* ends with a quantity of NULL; NULL: none */
+    const struct series_name *series_names;        /* ends with a series of NULL; NULL: none */
 };
 
 /* Returns whether a NULL-terminated list, or NULL, has the name. */

@@ -17,3 +17,15 @@ const struct logarithmic_picture *view_logarithmic(const struct result_view *vie
             return picture;
     return NULL;
 }
+
+const char *view_series_name(const struct result_view *view, const struct case_result *one,
+                             const char *series) {
+    const struct series_name *row = view->series_names;
+    for (; row != NULL && row->series != NULL && series != NULL; row++) {
+        const struct result_parameter *value = result_parameter(one, row->pointer);
+        if (strcmp(row->series, series) == 0 && value != NULL && value->text != NULL &&
+            strcmp(value->text, row->value) == 0)
+            return row->name;
+    }
+    return NULL;
+}

@@ -10,5 +10,8 @@ const struct result_view *view_of(const char *kind);
 /* Returns the picture of a quantity with logarithmic axes, or NULL. */
 const struct logarithmic_picture *view_logarithmic(const struct result_view *view,
                                                    const char *quantity);
+/* Returns what the series of a curve of this case shows, or NULL where its name says so. Static. */
+const char *view_series_name(const struct result_view *view, const struct case_result *one,
+                             const char *series);
 
 #endif

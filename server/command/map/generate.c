@@ -23,6 +23,7 @@ struct generate_options {
     const char *format;
     const char *picture; /* NULL: none */
     struct step_words steps;
+    double trace; /* y of the row that the picture has below; 0: none */
 };
 #define AT(member) offsetof(struct generate_options, member)
 static const struct option_row OPTIONS[] = {
@@ -35,6 +36,8 @@ static const struct option_row OPTIONS[] = {
      "write the height map there; into a folder as realisation-R.npy"},
     {"picture", 0, OPTION_TEXT, 0, 0, AT(picture), "FILE.svg|FILE.png", NULL,
      "draw the surface there: its summits marked, or a pixel a point"},
+    {"trace", 0, OPTION_NUMBER, 0, 0, AT(trace), "Y", NULL,
+     "with the row at y/lambda_s drawn below the picture; Ly for that at y = 0"},
     STEP_OPTION_ROWS(struct generate_options, steps),
     {"set", 0, OPTION_LIST, 0, 0, AT(overrides), "PATH=VALUE", NULL, SET_HELP},
     {0}};
@@ -115,6 +118,8 @@ static int read_order(struct generate_order *order, const struct generate_option
     *order = (struct generate_order){.options = options, .study = study, .output = options->output};
     if (order->output != NULL && strcmp(order->output, "-") == 0)
         order->output = NULL;
+    if (options->trace > 0 && (options->picture == NULL || output_file_is_png(options->picture)))
+        return usage_error("generate", "--trace belongs to --picture FILE.svg");
     int status = step_words_check(&options->steps);
     if (status == 0)
         status = read_realisations(order);
@@ -160,7 +165,8 @@ static int write_picture(const struct generate_order *order, const struct study 
                                         .y_label = "y/lambda_s",
                                         .z_label = "z",
                                         .grid = grid,
-                                        .z = z};
+                                        .z = z,
+                                        .trace = order->options->trace};
     return output_file_picture(order->options->picture, &picture, err);
 }
 

@@ -41,7 +41,8 @@ static const struct option_row OPTIONS[] = {
      "of curves: of this series alone, such as nodes"},
     {"level", 0, OPTION_TEXT, 0, 0, AT(level), "N", NULL, "of curves: of this level alone"},
     {"log", 0, OPTION_CHOICE, 0, 0, AT(axes), AXES_WORDS, "auto",
-     "which axes are logarithmic; auto: as suits the quantity and the steps of x"},
+     "which axes are logarithmic; auto: as suits the quantity and the steps of x; one-plus: y as "
+     "log10(1 + y)"},
     {"width", 0, OPTION_TEXT, 0, 0, AT(width), "MM", NULL,
      "for print: so many millimetres wide, or one (85) or two (178) columns; without the title"},
     {"out", 'o', OPTION_TEXT, 0, 0, AT(out), "FILE", NULL,

@@ -289,6 +289,11 @@ static void set_logarithmic(const struct plot *plot, const struct study_result *
     *y = axes == AXES_Y || (both && first->minuend == NULL); /* differences have either sign */
 }
 
+/* Differences may be below -1, and have linear axes. */
+static bool is_one_plus(const struct plot *plot) {
+    return plot->request->axes == AXES_ONE_PLUS && plot->lines->list[0].curve->minuend == NULL;
+}
+
 /* Marks at the ends keep away from the frame. */
 static void widen(struct plot_axis *axis) {
     double low = axis->low, high = axis->high;
@@ -307,6 +312,7 @@ static bool fit(struct plot *plot, const struct study_result *study) {
             add_tick(plot, plot->lines->list[n].curve->x[k]);
     set_logarithmic(plot, study, &x, &y);
     frame_start(frame, x, y);
+    frame->y.one_plus = is_one_plus(plot);
     for (size_t n = 0; n < plot->lines->count; n++)
         if (plot->lines->list[n].at[CHANNEL_PANEL] < plot->panels)
             include(frame, plot, plot->lines->list[n].curve);
@@ -316,7 +322,7 @@ static bool fit(struct plot *plot, const struct study_result *study) {
     if (plot->words->points) {
         frame->x = own;
         widen(&frame->x);
-        if (frame->y.low != 0 && !frame->y.logarithmic)
+        if (frame->y.low != 0 && !frame->y.logarithmic && !frame->y.one_plus)
             frame->y.low -= 0.06 * (frame->y.high - frame->y.low);
     }
     return true;
@@ -425,7 +431,10 @@ static void draw_labels(const struct plot *plot) {
     plot_place(&plot->layout, plot->panels - 1, &last);
     whole.bottom = last.bottom;
     frame_label(plot->pen.file, &whole, true, plot->words->x);
-    frame_label(plot->pen.file, &whole, false, plot->words->y);
+    char label[PLOT_LABEL_SIZE];
+    snprintf(label, sizeof label, "%.120s%s", plot->words->y,
+             is_one_plus(plot) ? ", as log10(1 + y)" : "");
+    frame_label(plot->pen.file, &whole, false, label);
 }
 
 /* Rows of panels end with the last factor, where that fills them. */
@@ -486,12 +495,26 @@ int plot_lines_draw(const struct plot_lines *lines, const struct study_result *s
     return 0;
 }
 
-/* Names the quantity, and the case where it is one of several, or the two of a difference. */
-static void make_subject(const struct study_result *study, const char *quantity,
+/* Returns what a series shows, where all cases agree in it, or its name; NULL for NULL. */
+static const char *series_shown(const struct study_result *study, const char *series) {
+    const struct result_view *view = view_of(study->kind);
+    const char *name = view_series_name(view, &study->cases[0], series);
+    for (size_t c = 1; c < study->case_count; c++)
+        if (view_series_name(view, &study->cases[c], series) != name)
+            return series;
+    return name != NULL ? name : series;
+}
+
+/* Names the quantity, the series that was asked for, and the case where it is one of several, or
+ * the two of a difference. */
+static void make_subject(const struct study_result *study, const struct lines_request *request,
                          char subject[PLOT_LABEL_SIZE]) {
     const struct case_result *one = &study->cases[0];
     unsigned long long number = one->case_number, less = one->less;
-    int used = snprintf(subject, PLOT_LABEL_SIZE, "%.60s", quantity);
+    bool other = request->series != NULL && strcmp(request->series, request->quantity) != 0;
+    const char *series = other ? series_shown(study, request->series) : NULL;
+    int used = snprintf(subject, PLOT_LABEL_SIZE, "%.60s%s%.60s", request->quantity,
+                        series != NULL ? ", " : "", series != NULL ? series : "");
     if (one->difference)
         snprintf(subject + used, PLOT_LABEL_SIZE - (size_t)used, ", case %llu less case %llu",
                  number, less);
@@ -507,7 +530,7 @@ int plot_quantity(const struct study_result *study, const struct plot_request *r
     if (status != 0)
         return status;
     const struct curve *first = lines.list[0].curve;
-    make_subject(study, request->lines.quantity, subject);
+    make_subject(study, &request->lines, subject);
     const struct plot_words words = {.subject = subject, .x = first->x_label, .y = first->y_label};
     status = plot_lines_draw(&lines, study, request, &words, file, err);
     plot_lines_clear(&lines);

@@ -6,9 +6,10 @@
 #include "server/show/plot/plot_lines.h"
 #include <stdio.h>
 
-/* Which axes are logarithmic; automatic: as the kind's view, or the steps of x, suggest. */
-enum plot_axes { AXES_AUTOMATIC, AXES_LINEAR, AXES_X, AXES_Y, AXES_XY };
-#define AXES_WORDS "auto|none|x|y|xy"
+/* Which axes are logarithmic; automatic: as the kind's view, or the steps of x, suggest; one-plus:
+ * y as log10(1 + y), which shows high peaks beside low parts and zero. */
+enum plot_axes { AXES_AUTOMATIC, AXES_LINEAR, AXES_X, AXES_Y, AXES_XY, AXES_ONE_PLUS, AXES_COUNT };
+#define AXES_WORDS "auto|none|x|y|xy|one-plus"
 
 struct plot_request {
     struct lines_request lines;

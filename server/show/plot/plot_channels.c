@@ -1,6 +1,7 @@
 /* Which factor of the lines of a picture is seen by panels, colours and dashes. */
 #include "server/show/plot/plot_lines.h"
 #include "server/show/table/shown_cases.h"
+#include "server/show/view.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -302,6 +303,25 @@ static void append(char *out, size_t size, const char *text) {
         snprintf(out + used, size - used, "%s%s", used > 0 ? ", " : "", text);
 }
 
+/* Returns what a series shows, where all lines of a value of a channel agree in it, or NULL. */
+static const char *shown_series(const struct plot_lines *lines, enum plot_channel_type channel,
+                                size_t v) {
+    const struct result_view *view = view_of(lines->kind);
+    const char *name = NULL;
+    bool met = false;
+    for (size_t n = 0; n < lines->count; n++) {
+        const struct plot_line *line = &lines->list[n];
+        if (line->at[channel] != v)
+            continue;
+        const char *own = view_series_name(view, line->one, line->curve->series);
+        if (met && own != name)
+            return NULL;
+        name = own;
+        met = true;
+    }
+    return name;
+}
+
 void channel_label(const struct plot_lines *lines, enum plot_channel_type channel, size_t v,
                    char *out, size_t size) {
     const struct plot_channel *own = &lines->channels[channel];
@@ -310,7 +330,11 @@ void channel_label(const struct plot_lines *lines, enum plot_channel_type channe
         const struct plot_factor *factor = own->factors[f];
         struct plot_value value = factor_value(factor, &lines->list[own->lines[v]]);
         char text[96];
-        if (value.text != NULL && *value.text != '\0')
+        const char *series =
+            is_attribute(factor, "series") ? shown_series(lines, channel, v) : NULL;
+        if (series != NULL)
+            snprintf(text, sizeof text, "%s", series);
+        else if (value.text != NULL && *value.text != '\0')
             plot_spaced(value.text, text, sizeof text);
         else if (is_attribute(factor, "series") && value.text != NULL)
             plot_spaced(lines->list[own->lines[v]].curve->quantity, text, sizeof text);

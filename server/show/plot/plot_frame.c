@@ -2,8 +2,12 @@
 #include "server/show/plot/plot_words.h"
 #include <math.h>
 
+static bool axis_has(const struct plot_axis *axis, double value) {
+    return isfinite(value) && (!axis->logarithmic || value > 0) && (!axis->one_plus || value > -1);
+}
+
 static void axis_include(struct plot_axis *axis, double value) {
-    if (!isfinite(value) || (axis->logarithmic && value <= 0))
+    if (!axis_has(axis, value))
         return;
     axis->low = fmin(axis->low, value);
     axis->high = fmax(axis->high, value);
@@ -12,6 +16,8 @@ static void axis_include(struct plot_axis *axis, double value) {
 static double axis_place(const struct plot_axis *axis, double value) {
     if (axis->logarithmic)
         return log(value / axis->low) / log(axis->high / axis->low);
+    if (axis->one_plus)
+        return log((1 + value) / (1 + axis->low)) / log((1 + axis->high) / (1 + axis->low));
     return (value - axis->low) / (axis->high - axis->low);
 }
 
@@ -24,8 +30,7 @@ double frame_y(const struct frame *frame, double y) {
 }
 
 bool frame_has_place(const struct frame *frame, double x, double y) {
-    return isfinite(x) && isfinite(y) && (!frame->x.logarithmic || x > 0) &&
-           (!frame->y.logarithmic || y > 0);
+    return axis_has(&frame->x, x) && axis_has(&frame->y, y);
 }
 
 void frame_include(struct frame *frame, size_t n, const double *x, const double *y) {
@@ -92,6 +97,12 @@ static void leave_margin(struct plot_axis *axis) {
     if (axis->logarithmic) {
         axis->high *= 1.5;
         axis->low /= 1.5;
+        return;
+    }
+    if (axis->one_plus) {
+        double factor = pow((1 + axis->high) / (1 + axis->low), 0.06);
+        axis->high = (1 + axis->high) * factor - 1;
+        axis->low = axis->low < 0 ? (1 + axis->low) / factor - 1 : axis->low;
         return;
     }
     axis->high += margin;
@@ -204,6 +215,27 @@ static void draw_logarithmic_ticks(FILE *file, const struct frame *frame, bool h
         }
 }
 
+/* Round numbers from 0 on, those that do not crowd: 0, 0.2, 0.5, 1, 2, 5, 10 ... */
+static void draw_one_plus_ticks(FILE *file, const struct frame *frame, bool horizontal) {
+    static const double ROOM = 30; /* of a number */
+    const struct plot_axis *axis = horizontal ? &frame->x : &frame->y;
+    static const double STEPS[] = {1, 2, 5};
+    double length = length_of(frame, horizontal), last = -1;
+    if (axis->low <= 0) {
+        draw_tick(file, frame, horizontal, 0, TICK_NUMBER);
+        last = axis_place(axis, 0);
+    }
+    int highest = (int)floor(log10(axis->high));
+    for (int decade = highest - 2; decade <= highest; decade++)
+        for (int s = 0; s < 3; s++) {
+            double value = STEPS[s] * pow(10, decade), place = axis_place(axis, value);
+            if (value < axis->low || value > axis->high || (place - last) * length < ROOM)
+                continue;
+            draw_tick(file, frame, horizontal, value, TICK_NUMBER);
+            last = place;
+        }
+}
+
 static void draw_ticks(FILE *file, const struct frame *frame, bool horizontal) {
     enum { PARTS = 5, PART_ROOM = 55 };
     const struct plot_axis *axis = horizontal ? &frame->x : &frame->y;
@@ -213,6 +245,10 @@ static void draw_ticks(FILE *file, const struct frame *frame, bool horizontal) {
         return;
     if (axis->logarithmic) {
         draw_logarithmic_ticks(file, frame, horizontal);
+        return;
+    }
+    if (axis->one_plus) {
+        draw_one_plus_ticks(file, frame, horizontal);
         return;
     }
     double room = floor(length_of(frame, horizontal) / PART_ROOM);

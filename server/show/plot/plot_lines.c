@@ -26,6 +26,12 @@ static bool is_level(const struct curve *curve, const char *level) {
     return end != level && *end == '\0' && fabs(number - curve->level) <= 1e-9 * fabs(number);
 }
 
+/* A series without a name is that of the quantity, as the legend has it. */
+static bool is_series(const struct curve *curve, const char *series) {
+    bool named = curve->series != NULL && *curve->series != '\0';
+    return strcmp(named ? curve->series : curve->quantity, series) == 0;
+}
+
 /* Says whether a curve may be drawn; matrices may not. */
 static bool is_candidate(const struct choosing *choosing, const struct curve *curve) {
     const struct lines_request *request = choosing->request;
@@ -35,7 +41,7 @@ static bool is_candidate(const struct choosing *choosing, const struct curve *cu
     return strcmp(curve->quantity, request->quantity) == 0 && curve->columns == 0 &&
            (y_label == NULL || same_text(curve->y_label, y_label)) &&
            (request->model == NULL || same_text(curve->model, request->model)) &&
-           (request->series == NULL || same_text(curve->series, request->series)) &&
+           (request->series == NULL || is_series(curve, request->series)) &&
            (request->level == NULL || is_level(curve, request->level));
 }
 
@@ -103,9 +109,10 @@ static int refuse(const struct study_result *study, const struct lines_request *
             char word[96];
             if (curve == NULL || !is_candidate(&choosing, curve))
                 continue;
-            snprintf(word, sizeof word, "%.30s %.30s %.4g",
-                     curve->model != NULL ? curve->model : "",
-                     curve->series != NULL ? curve->series : "", curve->level);
+            snprintf(
+                word, sizeof word, "%.30s %.30s %.4g", curve->model != NULL ? curve->model : "",
+                curve->series != NULL && *curve->series != '\0' ? curve->series : curve->quantity,
+                curve->level);
             size_t used = strlen(words);
             if (strstr(words, word) == NULL && used + strlen(word) + 2 < sizeof words)
                 snprintf(words + used, sizeof words - used, "%s%s", used > 0 ? "; " : "", word);

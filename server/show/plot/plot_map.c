@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 enum { MARKS_MOST = 1000, GROUPS_MOST = 1000, CELLS_A_SIDE = 128 };
+enum { BELOW = 70, TRACE_TOP = FRAME_BOTTOM + BELOW, TRACE_BOTTOM = TRACE_TOP + 150 };
 
 struct map_plot {
     const struct map_picture *picture;
@@ -52,12 +53,12 @@ static void draw_summits(struct map_plot *plot) {
     pen_note(&plot->pen, text);
 }
 
-static void range_of(const struct map_picture *picture, double range[2]) {
+static void range_of(size_t count, const double *z, double range[2]) {
     range[0] = INFINITY;
     range[1] = -INFINITY;
-    for (size_t n = 0; n < grid_points(picture->grid); n++) {
-        range[0] = fmin(range[0], picture->z[n]);
-        range[1] = fmax(range[1], picture->z[n]);
+    for (size_t n = 0; n < count; n++) {
+        range[0] = fmin(range[0], z[n]);
+        range[1] = fmax(range[1], z[n]);
     }
     (void)range_widen(range[0], &range[1]);
 }
@@ -86,24 +87,31 @@ size_t map_trace(const struct measured_map *map, size_t groups, double *x, doubl
     return count;
 }
 
-static int draw_profile(struct map_plot *plot, struct error *err) {
+/* Draws the trace of a line of heights in the frame of the pen. */
+static int draw_trace(const struct plot_pen *pen, const struct measured_map *line,
+                      struct error *err) {
     static const char STYLE[] = "class=\"curve\" stroke=\"#0072b2\" stroke-width=\"1.2\"";
-    const struct map_picture *picture = plot->picture;
-    struct plot_pen *pen = &plot->pen;
-    double range[2], *points = array_create(4 * GROUPS_MOST + 2, sizeof *points);
+    double *points = array_create(4 * GROUPS_MOST + 2, sizeof *points);
     if (points == NULL)
         return error_memory(err, (4 * GROUPS_MOST + 2) * sizeof *points, "a trace");
     double *heights = points + 2 * GROUPS_MOST + 1;
+    size_t count = map_trace(line, GROUPS_MOST, points, heights);
+    pen_line(pen, count, points, heights, STYLE);
+    free(points);
+    return 0;
+}
+
+static int draw_profile(struct map_plot *plot, struct error *err) {
+    const struct map_picture *picture = plot->picture;
+    struct plot_pen *pen = &plot->pen;
     const struct measured_map map = {picture->grid, picture->z, picture->boundary};
-    size_t count = map_trace(&map, GROUPS_MOST, points, heights);
-    range_of(picture, range);
+    double range[2];
+    range_of(picture->grid->nx, picture->z, range);
     double margin = 0.06 * (range[1] - range[0]);
     frame_set(&pen->frame, (const double[]){0, picture->grid->lx},
               (const double[]){range[0] - margin, range[1] + margin}, false);
     frame_draw(pen->file, &pen->frame, picture->x_label, picture->z_label);
-    pen_line(pen, count, points, heights, STYLE);
-    free(points);
-    return 0;
+    return draw_trace(pen, &map, err);
 }
 
 /* --- a surface --- */
@@ -118,6 +126,32 @@ void map_join_points(const struct measured_map *map, size_t step, double *out) {
                     average_add(&mean, map->z[j * grid->nx + i]);
             *out++ = average_value(&mean);
         }
+}
+
+static bool has_trace(const struct map_picture *picture) {
+    return picture->trace > 0 && !grid_is_profile(picture->grid);
+}
+
+/* Marks a row across the surface, and draws it below, over the same x. */
+static int draw_row(const struct map_plot *plot, struct error *err) {
+    const struct map_picture *picture = plot->picture;
+    const struct grid *grid = picture->grid;
+    struct plot_pen below = plot->pen;
+    double range[2];
+    size_t row = (size_t)fmod(rint(picture->trace / grid_dy(grid)), (double)grid->ny);
+    double y = frame_y(&plot->pen.frame, (double)row * grid_dy(grid));
+    const struct grid line = {.nx = grid->nx, .ny = 1, .lx = grid->lx, .ly = 1};
+    const struct measured_map map = {&line, picture->z + row * grid->nx, picture->boundary};
+    fprintf(below.file,
+            "<path class=\"cut\" d=\"M%d %.2fH%d\" stroke=\"#d55e00\" stroke-width=\"1.5\"/>\n",
+            below.frame.left, y, below.frame.right);
+    below.frame.top = TRACE_TOP;
+    below.frame.bottom = TRACE_BOTTOM;
+    range_of(grid->nx, map.z, range);
+    double margin = 0.06 * (range[1] - range[0]);
+    below.frame.y = (struct plot_axis){.low = range[0] - margin, .high = range[1] + margin};
+    frame_draw(below.file, &below.frame, picture->x_label, picture->z_label);
+    return draw_trace(&below, &map, err);
 }
 
 static int draw_surface(struct map_plot *plot, struct error *err) {
@@ -139,21 +173,23 @@ static int draw_surface(struct map_plot *plot, struct error *err) {
     cells.x[1] = cells.x[0] + (double)(cells.nx * step) * dx;
     cells.y[0] = -dy / 2;
     cells.y[1] = cells.y[0] + (double)(cells.ny * step) * dy;
-    range_of(picture, range);
+    range_of(grid_points(grid), picture->z, range);
     const struct heat_scale scale = heat_scale_between(range[0], range[1], 10, HEAT_HEIGHT);
     frame_set(&pen->frame, cells.x, cells.y, true);
-    frame_draw(pen->file, &pen->frame, picture->x_label, picture->y_label);
+    frame_draw(pen->file, &pen->frame, has_trace(picture) ? NULL : picture->x_label,
+               picture->y_label);
     heat_draw(pen, &cells, &scale);
     heat_legend(pen, &scale, picture->z_label);
     free(values);
-    return 0;
+    return has_trace(picture) ? draw_row(plot, err) : 0;
 }
 
 int plot_map(const struct map_picture *picture, FILE *file, struct error *err) {
     struct map_plot plot = {.picture = picture, .pen = {.file = file}};
     int status = picture->unmarked ? 0 : find_summits(&plot, err);
     if (status == 0) {
-        pen_head(&plot.pen, PEN_WIDTH);
+        int bottom = has_trace(picture) ? TRACE_BOTTOM : FRAME_BOTTOM;
+        pen_head_sized(&plot.pen, &(struct pen_size){PEN_WIDTH, bottom + BELOW, 13, 0});
         pen_title(&plot.pen, picture->name, picture->subject);
         status =
             grid_is_profile(picture->grid) ? draw_profile(&plot, err) : draw_surface(&plot, err);

@@ -12,12 +12,14 @@ struct map_picture { /* borrows */
     const double *z;        /* grid_points; NaN: a hole, of an open map */
     enum boundary boundary; /* periodic where nothing is said */
     bool unmarked;          /* no summits: the values may be those of anything */
+    double trace;           /* of a surface: the row next to this y is drawn below; 0: none */
 };
 /* Draws a profile as its trace, a surface as colours of its heights, holes of either left blank;
  * both with a mark at each nine-point summit (of profiles: peak), at most 1000, the highest,
  * unless these are not wanted. Points
  * are joined, of traces by their extremes, of surfaces by their means, until the picture can show
- * them. Write errors are left to the file's own flag. */
+ * them. A row that is drawn below is marked by a line across the surface; that at y = 0 is asked
+ * for by the length along y. Write errors are left to the file's own flag. */
 int plot_map(const struct map_picture *picture, FILE *file, struct error *err);
 
 /* Fills x and y, room for 2 groups + 1 each, with the trace of a profile: two points of each group

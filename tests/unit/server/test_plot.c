@@ -5,6 +5,7 @@
 #include "tests/support/check.h"
 #include "tests/support/count_of.h"
 #include "tests/support/result_builder.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -400,6 +401,78 @@ static void the_view_sets_logarithmic_axes(void **state) {
     }
 }
 
+/* Of one-plus the height of a point is log(1 + y); zero is drawn, and the label says what is
+ * drawn. Differences, which may be below -1, stay linear. */
+static void one_plus_shows_peaks_beside_low_parts(void **state) {
+    (void)state;
+    struct study_result study = built_study("statistics", "peaks", 1);
+    struct case_result *one = &study.cases[0];
+    struct curve curve =
+        built_points(one, "summit_height_pdf", 4, (const double[]){0, 1, 2, 3},
+                     (const double[]){0, 1, 3, 9}, (const double[]){NAN, NAN, NAN, NAN});
+    curve.y_label = "density";
+    built_curve(one, &curve);
+    struct plot_request request = {.lines = {.quantity = "summit_height_pdf"},
+                                   .axes = AXES_ONE_PLUS};
+    char *text = picture_of(&study, &request);
+    struct frame frame = {
+        .y = {.high = 9, .one_plus = true}, .top = FRAME_TOP, .bottom = FRAME_BOTTOM};
+    const double height = FRAME_BOTTOM - FRAME_TOP;
+    assert_true(fabs(frame_y(&frame, 0) - FRAME_BOTTOM) < 1e-9);
+    assert_true(fabs(frame_y(&frame, 1) - (FRAME_BOTTOM - height * log10(2))) < 1e-9);
+    assert_true(fabs(frame_y(&frame, 9) - FRAME_TOP) < 1e-9);
+    assert_false(frame_has_place(&frame, 0, -1));
+    assert_true(frame_has_place(&frame, 0, -0.5));
+    assert_int_equal(count_of(text, ">density, as log10(1 + y)<"), 1);
+    assert_int_equal(count_of(text, "class=\"end\">0</text>"), 1);
+    assert_int_equal(count_of(text, "class=\"end\">5</text>"), 1);
+    assert_null(strstr(text, "nan"));
+    free(text);
+    one->difference = true;
+    one->curves[0].minuend = one->curves[0].subtrahend = one->curves[0].y;
+    text = picture_of(&study, &request);
+    assert_int_equal(count_of(text, ">density<"), 1);
+    free(text);
+    study_result_clear(&study);
+}
+
+/* Pits of one distribution are the summits of its mirror image, and are called so where all lines
+ * are of one; the summits themselves can be chosen by what the legend calls them. */
+static void pits_are_named_after_their_distribution(void **state) {
+    (void)state;
+    struct error err = {0};
+    for (int mixed = 0; mixed < 2; mixed++) {
+        struct study_result study = built_study("statistics", "pits", 2);
+        struct plot_lines lines = {0};
+        struct lines_request request = {.quantity = "summit_height_pdf",
+                                        .names = {[CHANNEL_DASH] = "series"}};
+        for (size_t c = 0; c < 2; c++) {
+            built_parameter(&study.cases[c], "/surface/heights/distribution",
+                            mixed && c == 1 ? "weibull_max" : "weibull_min", 0);
+            built_parameter(&study.cases[c], "/surface/hurst", NULL, 0.2 + 0.2 * (double)c);
+            add_curve(&study.cases[c], "summit_height_pdf", "", NULL, NAN, 0);
+            add_curve(&study.cases[c], "summit_height_pdf", "pits", NULL, NAN, 0);
+        }
+        assert_int_equal(plot_lines_choose(&lines, &study, &request, &err), 0);
+        label_of(&lines, CHANNEL_DASH, 0, "summit height pdf");
+        label_of(&lines, CHANNEL_DASH, 1, mixed ? "pits" : "weibull max (as pits)");
+        plot_lines_clear(&lines);
+        request =
+            (struct lines_request){.quantity = "summit_height_pdf", .series = "summit_height_pdf"};
+        assert_int_equal(plot_lines_choose(&lines, &study, &request, &err), 0);
+        assert_int_equal(lines.count, 2);
+        assert_string_equal(lines.list[0].curve->series, "");
+        plot_lines_clear(&lines);
+        request.series = "pits";
+        char *text = picture_of(&study, &(struct plot_request){.lines = request});
+        assert_int_equal(count_of(text, mixed ? "summit_height_pdf, pits"
+                                              : "summit_height_pdf, weibull max (as pits)"),
+                         2);
+        free(text);
+        study_result_clear(&study);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lines_narrow_as_far_as_they_must),
@@ -414,6 +487,8 @@ int main(void) {
         cmocka_unit_test(missing_realisations_are_seen),
         cmocka_unit_test(differences_have_bands),
         cmocka_unit_test(the_view_sets_logarithmic_axes),
+        cmocka_unit_test(one_plus_shows_peaks_beside_low_parts),
+        cmocka_unit_test(pits_are_named_after_their_distribution),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -70,6 +70,43 @@ static void a_trace_has_its_peaks(void **state) {
     free(z);
 }
 
+/* The row that is asked for is marked across the surface and drawn below it, over the same x; one
+ * beyond the last is the first. */
+static void a_row_is_drawn_below(void **state) {
+    (void)state;
+    const struct grid grid = {.nx = 32, .ny = 16, .lx = 8, .ly = 8};
+    double *z = waves_of(&grid, 2);
+    for (int asked = 0; asked < 2; asked++) {
+        struct map_picture picture = {.name = "cut",
+                                      .subject = "case 1",
+                                      .x_label = "along",
+                                      .y_label = "across",
+                                      .z_label = "height",
+                                      .grid = &grid,
+                                      .z = z,
+                                      .trace = asked ? 8 : 3.9};
+        char *text = NULL;
+        size_t size = 0;
+        struct error err = {0};
+        FILE *file = open_memstream(&text, &size);
+        double y, across;
+        assert_non_null(file);
+        assert_int_equal(plot_map(&picture, file, &err), 0);
+        assert_int_equal(fclose(file), 0);
+        const char *cut = strstr(text, "class=\"cut\"");
+        assert_non_null(cut);
+        assert_int_equal(sscanf(cut, "class=\"cut\" d=\"M80 %lf", &y), 1);
+        across = FRAME_BOTTOM - (FRAME_BOTTOM - FRAME_TOP) * ((asked ? 0 : 4) + 0.25) / 8;
+        assert_true(fabs(y - across) < 0.01);
+        assert_int_equal(count_of(text, "class=\"curve\""), 1);
+        assert_int_equal(count_of(text, "class=\"summit\""), 2);
+        assert_int_equal(count_of(text, ">along<"), 1);
+        assert_int_equal(count_of(text, ">height<"), 2); /* of colours and of the trace */
+        free(text);
+    }
+    free(z);
+}
+
 static void a_surface_has_its_summits(void **state) {
     (void)state;
     const struct grid grid = {.nx = 32, .ny = 16, .lx = 8, .ly = 8};
@@ -170,6 +207,7 @@ static void flat_surfaces_are_drawn(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_trace_has_its_peaks),
+        cmocka_unit_test(a_row_is_drawn_below),
         cmocka_unit_test(a_surface_has_its_summits),
         cmocka_unit_test(extremes_of_long_traces_are_seen),
         cmocka_unit_test(open_maps_end_and_have_holes),

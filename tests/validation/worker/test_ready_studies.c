@@ -40,6 +40,7 @@ static void ready_studies(void **state) {
                    {"weibull-translation", 20, 1024, 1000},
                    {"nayak-hurst", 18, 2400, 1000},
                    {"nayak-hurst-continuous", 18, 2430, 1000},
+                   {"nayak-hurst-small", 6, 1500, 200},
                    {"rce-weibull-2d-full", 20, 512, 20},
                    {"rce-slope", 6, 256, 20},
                    {"rce-3d-full", 2, 16, 10},
