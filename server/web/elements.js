@@ -12,6 +12,44 @@ export function make(name, attributes = {}, ...content) {
   return element;
 }
 
+/** Sets the text of an element where it differs, so that a selection in it stays. */
+export function say(element, text) {
+  if (element.textContent !== text) element.textContent = text;
+}
+
+/** Makes an element look like a newer copy of it and stay itself: focus, selection, clicks under way and its listeners survive. */
+export function patch(element, copy) {
+  for (const name of element.getAttributeNames()) if (!copy.hasAttribute(name)) element.removeAttribute(name);
+  for (const name of copy.getAttributeNames()) if (element.getAttribute(name) !== copy.getAttribute(name)) element.setAttribute(name, copy.getAttribute(name));
+  const there = [...element.childNodes], wanted = [...copy.childNodes];
+  wanted.forEach((node, k) => {
+    if (there[k] === undefined) element.append(node);
+    else if (there[k].nodeName !== node.nodeName) there[k].replaceWith(node);
+    else if (node.nodeType === Node.ELEMENT_NODE) patch(there[k], node);
+    else if (there[k].data !== node.data) there[k].data = node.data;
+  });
+  for (const node of there.slice(wanted.length)) node.remove();
+}
+
+const kept = new WeakMap(); // children by key, of the elements that each() has filled
+
+/** Gives an element a child for each item, in their order. One whose key was there before is patched by what makes a new one. */
+export function each(element, items, keyOf, create) {
+  const before = kept.get(element) ?? new Map(), now = new Map(), held = document.activeElement;
+  for (const item of items) {
+    const key = keyOf(item), child = create(item);
+    if (before.has(key)) patch(before.get(key), child);
+    now.set(key, before.get(key) ?? child);
+  }
+  for (const [key, child] of before) if (!now.has(key)) child.remove();
+  let at = element.firstChild;
+  for (const child of now.values())
+    if (child === at) at = at.nextSibling;
+    else element.insertBefore(child, at);
+  kept.set(element, now);
+  if (held !== document.activeElement && element.contains(held)) held.focus({ preventScroll: true }); // it was moved
+}
+
 /** What a control is called, to find it again in a newer copy of its surroundings. */
 function nameOf(control) {
   const label = control.closest("label");

@@ -1,0 +1,62 @@
+// Protects: what a person does by real keys and clicks while the page goes on by itself: nothing that is typed, chosen or pressed is
+// lost, and what a study lacks is said where it is looked for.
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { after, before, test as declare } from "node:test";
+import { press, retype, says, tab as openTab } from "./hands.mjs";
+import { end, launch, serve, WAIT_MS } from "./service.mjs";
+
+const { PICTURES } = process.env;
+let browser, url;
+const LIMIT = { timeout: 5 * WAIT_MS };
+const test = (name, body) => declare(name, LIMIT, body);
+const tab = (t, expected) => openTab(browser, t, expected);
+const picture = async (page, name) => PICTURES && page.screenshot({ path: join(PICTURES, `${name}.png`) });
+
+
+before(async () => {
+  browser = await launch();
+  url = await serve("hand", "--workers", "1");
+}, LIMIT);
+after(async () => {
+  await browser?.close();
+  end();
+});
+
+const focused = (page) => page.evaluate(() => document.activeElement.dataset.pointer ?? document.activeElement.localName);
+const field = (pointer) => `[data-pointer="${pointer}"]`;
+const written = async (page) => JSON.parse(await page.$eval("textarea", (one) => one.value));
+
+test("the form keeps focus, caret and scroll, and takes what is typed in one field after another", async (t) => {
+  const page = await tab(t, [422]);
+  await page.goto(`${url}/#/new`);
+  await says(page, "1 case of 1000 realisations");
+  await retype(page, field("/name"), "typed");
+  await page.keyboard.press("Tab");
+  const next = await focused(page);
+  assert.ok(next.startsWith("/") && next !== "/name", `Tab leads to the next field, not to ${next}`);
+  await retype(page, field("/surface/hurst"), "0.5");
+  await retype(page, field("/surface/wavelength_ratio"), "4, 8");
+  const study = await written(page);
+  assert.deepEqual([study.name, study.surface.hurst, study.surface.wavelength_ratio], ["typed", 0.5, [4, 8]]);
+  await says(page, "2 cases of 1000 realisations");
+  const hurst = await page.$(field("/surface/hurst"));
+  await retype(page, field("/surface/hurst"), "14");
+  await page.keyboard.press("ArrowLeft"); // the caret stays between the digits while the answers come
+  await says(page, "This cannot run yet");
+  await page.waitForFunction(() => document.querySelector('[data-fault="/surface/hurst"]').textContent.length > 0);
+  assert.equal(await focused(page), "/surface/hurst");
+  await page.keyboard.press("Backspace");
+  await page.keyboard.type("0.");
+  await says(page, "2 cases of 1000 realisations");
+  assert.equal((await written(page)).surface.hurst, 0.4);
+  assert.ok(await hurst.evaluate((one) => one.isConnected), "the field is the one that was there");
+  const last = await page.evaluate(() => [...document.querySelectorAll(".fields details[open] [data-pointer]")].pop().dataset.pointer);
+  await press(page, field(last)); // the fields scroll to it
+  const top = () => page.$eval(".fields", (one) => one.scrollTop), place = await top();
+  assert.ok(place > 0, "the fields have scrolled");
+  await page.keyboard.type("1");
+  await page.waitForNetworkIdle({ idleTime: 600 });
+  assert.equal(await top(), place);
+  await picture(page, "form");
+});
