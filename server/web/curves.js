@@ -5,6 +5,7 @@ import { DASHES, chart, colours } from "/web/chart.js";
 
 const CASES_FIRST = 12; // shown before anything is chosen
 const BANDS_MOST = 24; // lines; more bands hide each other
+const LACKS_MOST = 4; // cases whose failures are listed
 const MOST_DASHED = 3; // settings that differ by the dash of their lines alone
 
 /** "H = 0.8, C = 1": what distinguishes a case from the others. */
@@ -97,6 +98,15 @@ export function showCurves(root, signal, study, contents) {
     return lines;
   }
 
+  /** What a case lacks, and why: an error, no values at all, or notes of some realisations. */
+  function lackOf(one) {
+    const called = caseName(cases.get(one.case) ?? { case: one.case, swept: {} });
+    if (one.error) return `${called}: ${one.error}`;
+    if (!one.notes?.count) return null;
+    const without = (one.curves ?? []).every((curve) => curve.y.every((y) => y === null)), [note] = one.notes.kept;
+    return `${called}: ${without ? "no values" : `${one.notes.count} failures in ${one.realisations} realisations`}${note ? `; realisation ${note.realisation}: ${note.text}` : ""}`;
+  }
+
   function drawLegend(lines) {
     const names = new Set();
     legend.replaceChildren(...lines.filter((line) => !names.has(line.label + line.colour) && names.add(line.label + line.colour)).map((line) => {
@@ -144,8 +154,8 @@ export function showCurves(root, signal, study, contents) {
       figure.replaceChildren(shown.element);
       drawLegend(lines);
       drawValues(lines);
-      const missing = results.filter((one) => one.error);
-      message.textContent = missing.length > 0 ? missing.map((one) => `case ${one.case}: ${one.error}`).join("; ")
+      const lacks = results.map(lackOf).filter(Boolean);
+      message.textContent = lacks.length > 0 ? lacks.slice(0, LACKS_MOST).join("; ") + (lacks.length > LACKS_MOST ? `; and ${lacks.length - LACKS_MOST} more` : "")
         : lines.length === 0 ? "Nothing is like what is chosen." : !state.band ? "" : banded ? "Bands are two standard errors wide to each side." : `No bands of more than ${BANDS_MOST} lines.`;
     } catch (error) {
       if (!signal.aborted && mine === turn) message.textContent = error.message;

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { join } from "node:path";
 import { after, before, test as declare } from "node:test";
 import { press, retype, says, tab as openTab } from "./hands.mjs";
-import { end, launch, serve, WAIT_MS } from "./service.mjs";
+import { end, finished, launch, send, serve, WAIT_MS } from "./service.mjs";
 
 const { PICTURES } = process.env;
 let browser, url;
@@ -13,6 +13,12 @@ const test = (name, body) => declare(name, LIMIT, body);
 const tab = (t, expected) => openTab(browser, t, expected);
 const picture = async (page, name) => PICTURES && page.screenshot({ path: join(PICTURES, `${name}.png`) });
 
+// Steep profiles are not brought to the load: their case has no values.
+const STEEP = { name: "steep", kind: "contact", seed: 1, realisations: 2,
+  surface: { dimension: 1, hurst: 0.8, wavelength_ratio: 2, length_ratio: 2, points_per_wavelength: 6, rms_slope: [0.1, 1.9] },
+  contact: { model: "full", levels: [3, 6], block_height: { lengths: 1 }, pressures: { values: [5] } } };
+const LONG = { name: "a long one", kind: "statistics", seed: 1, realisations: 1000000,
+  surface: { hurst: 0.5, wavelength_ratio: 4, length_ratio: 4, points_per_wavelength: 8 } };
 
 before(async () => {
   browser = await launch();
@@ -59,4 +65,39 @@ test("the form keeps focus, caret and scroll, and takes what is typed in one fie
   await page.waitForNetworkIdle({ idleTime: 600 });
   assert.equal(await top(), place);
   await picture(page, "form");
+});
+
+test("a case without values is no plain success: state, curves and report say why", async (t) => {
+  const { id } = await send(url, "POST", "/v1/studies", STEEP);
+  const study = await finished(url, id);
+  assert.equal(study.cases_valueless, 1, "of the steep case the solver does not reach the load");
+  const page = await tab(t, [422]);
+  await page.goto(`${url}/#/study/${id}`);
+  await says(page, "done, 1 case without values");
+  await says(page, study.valueless_note);
+  assert.equal(await page.$("dd .done"), null);
+  await page.waitForFunction(() => document.querySelector("section p[role=status]")?.textContent.includes("no values"));
+  await picture(page, "valueless");
+  await page.goto(`${url}/#/study/${id}/report`);
+  await page.waitForFunction(() => [...document.querySelectorAll("section li")].some((one) => one.textContent.includes("realisation 0: ")));
+  await picture(page, "valueless-report");
+});
+
+test("Cancel is pressed while events come in, and its button stays what it is", async (t) => {
+  const { id } = await send(url, "POST", "/v1/studies", LONG);
+  const page = await tab(t);
+  let asked = 0;
+  page.on("dialog", (dialog) => (++asked < 20 ? dialog.dismiss() : dialog.accept()));
+  await page.goto(`${url}/#/study/${id}`);
+  await page.waitForSelector("dd .running");
+  const button = await page.waitForSelector(".tools button");
+  assert.equal(await button.evaluate((one) => one.textContent), "Cancel");
+  const share = () => page.$eval("main progress", (one) => one.value);
+  const began = await share();
+  for (let k = 1; k <= 20; k++) {
+    await button.click({ delay: 90 });
+    assert.equal(asked, k, "each click asks");
+  }
+  await page.waitForSelector("dd .cancelled");
+  t.diagnostic(`share ${began} before, ${await share()} behind`);
 });
