@@ -68,7 +68,7 @@ export function replace(element, ...content) {
 /** Seconds in words. */
 export function duration(seconds) {
   if (seconds === null || seconds === undefined || !isFinite(seconds)) return "–";
-  if (seconds < 0.1) return `${(1000 * seconds).toPrecision(2)} ms`;
+  if (seconds < 0.1) return `${number(1000 * seconds, 2)} ms`;
   if (seconds < 10) return `${seconds.toFixed(1)} s`;
   if (seconds < 100) return `${seconds.toFixed(0)} s`;
   if (seconds < 6000) return `${(seconds / 60).toFixed(0)} min`;

@@ -1,5 +1,5 @@
 // One study: its state and what can be done with it, and its parts: curves, table, report, realisations, document.
-import { bar, duration, each, make, patch, say, time } from "/web/elements.js";
+import { bar, duration, each, make, number, patch, say, time } from "/web/elements.js";
 import { events, getJson, request, sendJson } from "/web/session.js";
 import { isLive, share, stateClass, stateText } from "/web/studies.js";
 import { showCurves } from "/web/curves.js";
@@ -17,17 +17,30 @@ function notesOf(one) {
   return [...(one.error ? [one.error] : []), ...parts, ...(more > 0 ? [`${more} more`] : [])];
 }
 
+const PARTS_OF_ERROR = [["error_chance", "statistical"], ["error_mesh", "mesh"], ["error_cell", "cell"], ["error_model", "model"], ["error_solver", "solver"]];
+const percent = (error) => `${number(100 * error, 3)} %`;
+
+/** What a case asks for and has reached, and its sources, the largest first; null of a study that asks for no error. */
+function reachedOf({ scalars }) {
+  const value = (name) => scalars?.[name]?.value;
+  if (!value("error_reached") || !value("error_asked")) return null;
+  const parts = PARTS_OF_ERROR.map(([key, name]) => [value(key) ?? 0, name]).filter(([error]) => error > 0).sort((a, b) => b[0] - a[0]);
+  return `asked ${percent(value("error_asked"))}, reached ${percent(value("error_reached"))}: ${parts.map(([error, name]) => `${name} ${percent(error)}`).join(", ")}`;
+}
+
 /** The report's picture, where cost and error are known, and its notes. */
 async function showReport(root, signal, study) {
   const path = `/v1/studies/${encodeURIComponent(study.id)}/report`;
   root.append(make("p", {}, "Cost against error of every model and mesh; circles are where the study stands."));
-  const figure = make("div"), notes = make("div");
-  root.append(figure, notes);
+  const reached = make("ul", { class: "reached" }), figure = make("div"), notes = make("div");
+  root.append(reached, figure, notes);
   const picture = request(path, { signal, headers: { Accept: "image/svg+xml" } }).then((answer) => answer.text()).then((svg) =>
     figure.append(make("div", { class: "scroll", tabindex: "0", role: "figure", "aria-label": "speed and error" },
       make("img", { class: "picture", alt: "relative error over processor time, a line for each model and mesh", src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}` }))),
   (error) => figure.append(make("p", { role: "alert" }, `There is no picture: ${error.message}`)));
-  const report = await getJson(path, { signal }), cases = report.cases.filter((one) => notesOf(one).length > 0);
+  const report = await getJson(path, { signal });
+  reached.append(...report.cases.map((one) => [one.case, reachedOf(one)]).filter(([, text]) => text).slice(0, NOTED_MOST).map(([of, text]) => make("li", {}, `case ${of}: ${text}`)));
+  const cases = report.cases.filter((one) => notesOf(one).length > 0);
   if (cases.length > 0) notes.append(make("h3", {}, "Notes"), make("ul", {}, cases.slice(0, NOTED_MOST).map((one) =>
     make("li", {}, `case ${one.case}`, make("ul", {}, notesOf(one).map((note) => make("li", {}, note)))))));
   if (cases.length > NOTED_MOST) notes.append(make("p", {}, `and ${cases.length - NOTED_MOST} more cases with notes`));
@@ -48,11 +61,12 @@ function line(study) {
 
 function factsOf(study) {
   const { done, total, failed } = study.realisations, live = isLive(study);
-  return [["State", make("span", { class: stateClass(study) }, stateText(study))], ["Why no values", study.valueless_note], ["Position in line", line(study)], ["Kind", study.kind],
+  return [["State", make("span", { class: stateClass(study) }, stateText(study))], ["Position in line", line(study)], ["Kind", study.kind],
     ["Owner", study.owner], ["Priority", study.priority || null], ["Seed", study.seed], ["Cases", study.cases],
     ["Realisations", `${done} / ${total}${failed ? `, ${failed} failed` : ""}`], ["CPU time", duration(study.cpu_seconds)], ["Workers", live ? study.workers : null],
     ["Time left", live ? duration(study.seconds_left) : null], ["Error reached", study.error_reached ? `${(100 * study.error_reached).toPrecision(3)} %` : null],
-    ["Created", time(study.created)], ["Finished", study.finished ? time(study.finished) : null], ["Program", study.program], ["Id", make("code", {}, study.id)]]
+    ["Created", time(study.created)], ["Finished", study.finished ? time(study.finished) : null], ["Program", study.program], ["Id", make("code", {}, study.id)],
+    ["Why there are no values", study.valueless_note]]
     .filter(([, value]) => value !== null && value !== undefined && value !== "");
 }
 

@@ -17,6 +17,8 @@ const picture = async (page, name) => PICTURES && page.screenshot({ path: join(P
 const STEEP = { name: "steep", kind: "contact", seed: 1, realisations: 2,
   surface: { dimension: 1, hurst: 0.8, wavelength_ratio: 2, length_ratio: 2, points_per_wavelength: 6, rms_slope: [0.1, 1.9] },
   contact: { model: "full", levels: [3, 6], block_height: { lengths: 1 }, pressures: { values: [5] } } };
+const TARGET = { name: "target", kind: "contact", seed: 1, target: { error: 0.02 }, surface: { dimension: 1, hurst: 0.8, wavelength_ratio: 2 },
+  contact: { model: "halfspace", pressures: { values: [0.1, 0.2] } } };
 const LONG = { name: "a long one", kind: "statistics", seed: 1, realisations: 1000000,
   surface: { hurst: 0.5, wavelength_ratio: 4, length_ratio: 4, points_per_wavelength: 8 } };
 
@@ -81,6 +83,23 @@ test("a case without values is no plain success: state, curves and report say wh
   await page.goto(`${url}/#/study/${id}/report`);
   await page.waitForFunction(() => [...document.querySelectorAll("section li")].some((one) => one.textContent.includes("realisation 0: ")));
   await picture(page, "valueless-report");
+});
+
+test("a target shows one error: in its state, in its sources by size, and where its picture stands", async (t) => {
+  const { id } = await send(url, "POST", "/v1/studies", TARGET);
+  const { error_reached: reached } = await finished(url, id);
+  const page = await tab(t);
+  await page.goto(`${url}/#/study/${id}/report`);
+  const text = `${(100 * reached).toPrecision(3)} %`;
+  await says(page, `asked 2 %, reached ${Number.parseFloat(text)} %: `);
+  assert.ok((await page.$eval(".facts", (one) => one.textContent)).includes(text));
+  const line = await page.$eval(".reached li", (one) => one.textContent), sizes = [...line.split(": ").pop().matchAll(/ ([0-9.e-]+) %/g)].map((one) => Number(one[1]));
+  assert.ok(line.includes("solver") && line.includes("statistical"));
+  assert.ok(sizes.length >= 3 && sizes.every((size, k) => k === 0 || size <= sizes[k - 1]), line);
+  assert.ok(Math.abs(Math.hypot(...sizes) / (100 * reached) - 1) < 0.01, "the sources make up the error");
+  const svg = decodeURIComponent((await page.$eval("img.picture", (one) => one.src)).split(",").slice(1).join(","));
+  assert.ok(!svg.includes("level nan"), "the legend has no level where there is none");
+  await picture(page, "target");
 });
 
 test("Cancel is pressed while events come in, and its button stays what it is", async (t) => {
