@@ -21,6 +21,7 @@ export function say(element, text) {
 export function patch(element, copy) {
   for (const name of element.getAttributeNames()) if (!copy.hasAttribute(name)) element.removeAttribute(name);
   for (const name of copy.getAttributeNames()) if (element.getAttribute(name) !== copy.getAttribute(name)) element.setAttribute(name, copy.getAttribute(name));
+  if (element.localName === "input") element.checked = copy.checked;
   const there = [...element.childNodes], wanted = [...copy.childNodes];
   wanted.forEach((node, k) => {
     if (there[k] === undefined) element.append(node);
@@ -48,21 +49,6 @@ export function each(element, items, keyOf, create) {
     else element.insertBefore(child, at);
   kept.set(element, now);
   if (held !== document.activeElement && element.contains(held)) held.focus({ preventScroll: true }); // it was moved
-}
-
-/** What a control is called, to find it again in a newer copy of its surroundings. */
-function nameOf(control) {
-  const label = control.closest("label");
-  const text = label ? (label.firstChild.nodeType === Node.TEXT_NODE ? label.firstChild : label).textContent : control.getAttribute("href") ?? control.textContent;
-  return control.localName + (control.localName === "summary" ? "" : text);
-}
-
-/** Puts content in place of what element holds. The control that had the focus has it again. */
-export function replace(element, ...content) {
-  const held = element.contains(document.activeElement) ? nameOf(document.activeElement) : null;
-  element.replaceChildren(...content);
-  if (held === null) return;
-  [...element.querySelectorAll("a, button, input, select, summary")].find((one) => nameOf(one) === held)?.focus();
 }
 
 /** Seconds in words. */
@@ -134,6 +120,20 @@ export function choice(label, options, value, onchange) {
       return make("option", { value: key, selected: String(key) === String(value) }, text);
     }));
   return make("label", { class: "choice" }, `${label} `, list);
+}
+
+/** A list whose options change, as pairs of value and text: {element, set(options, value)}; hidden where there is nothing to choose. */
+export function chooser(label, onchange) {
+  const element = choice(label, [], "", onchange), select = element.querySelector("select");
+  let held = "";
+  const set = (options, value) => {
+    const text = JSON.stringify(options);
+    if (text !== held) select.replaceChildren(...options.map(([key, name]) => make("option", { value: key }, name)));
+    held = text;
+    select.value = value ?? "";
+    element.hidden = options.length < 2;
+  };
+  return { element, set };
 }
 
 export function tick(label, checked, onchange) {

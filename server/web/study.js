@@ -3,10 +3,12 @@ import { bar, duration, each, make, number, patch, say, time } from "/web/elemen
 import { events, getJson, request, sendJson } from "/web/session.js";
 import { isLive, share, stateClass, stateText } from "/web/studies.js";
 import { showCurves } from "/web/curves.js";
+import { showPicture } from "/web/picture.js";
+import { CASES_FIRST } from "/web/sweep.js";
 import { showTable } from "/web/table.js";
 import { showRealisation } from "/web/realisation.js";
 
-const PARTS = [["curves", "Curves"], ["table", "Table"], ["report", "Speed and error"], ["realisation", "Realisations"], ["document", "Document"]];
+const PARTS = [["curves", "Curves"], ["picture", "Pictures"], ["table", "Table"], ["report", "Speed and error"], ["realisation", "Realisations"], ["document", "Document"]];
 
 const NOTED_MOST = 50, FAILURES_MOST = 50; // cases with notes, and failures, that are listed
 
@@ -121,11 +123,12 @@ function headOf(id, refresh) {
   return { element, update };
 }
 
-export async function showStudy(root, signal, id, part = "curves") {
+/** Shows a study, and of it the part that the address names: else its curves, or, where these are too many to tell apart, a picture of the sweep. */
+export async function showStudy(root, signal, id, part) {
   const path = `/v1/studies/${encodeURIComponent(id)}`;
   const head = headOf(id, () => getJson(path, { signal }).then(update)), tabs = make("nav", { class: "tabs", "aria-label": "Parts of the study" }), body = make("section");
   root.append(make("p", { role: "status", class: "waiting" }, "Loading …"));
-  let study, redraw = null, contents = null, following = false;
+  let study, redraw = null, contents = null, following = false, drawing = false, again = false;
 
   function update(next) {
     const before = study?.revision;
@@ -134,7 +137,19 @@ export async function showStudy(root, signal, id, part = "curves") {
     follow();
     if (before === next.revision) return;
     if (contents && contents.curves.length === 0) fill();
-    else if (redraw) redraw();
+    else if (redraw) redrawLast();
+  }
+
+  /** Draws what has come in, one drawing after another: where some come while one is drawn, the last of them is drawn next. */
+  async function redrawLast() {
+    again = true;
+    if (drawing) return;
+    drawing = true;
+    while (again && !signal.aborted) {
+      again = false;
+      await redraw();
+    }
+    drawing = false;
   }
 
   /** Shows the part; again where there were no results the last time. */
@@ -142,7 +157,7 @@ export async function showStudy(root, signal, id, part = "curves") {
     try {
       contents = await getJson(`${path}/contents`, { signal });
       body.replaceChildren();
-      redraw = ({ table: showTable, realisation: showRealisation }[part] ?? showCurves)(body, signal, study, contents);
+      redraw = ({ picture: showPicture, table: showTable, realisation: showRealisation }[part] ?? showCurves)(body, signal, study, contents);
     } catch (error) {
       if (!signal.aborted) body.replaceChildren(make("p", { role: "alert" }, error.message));
     }
@@ -165,6 +180,7 @@ export async function showStudy(root, signal, id, part = "curves") {
 
   try {
     study = await getJson(path, { signal });
+    part ??= study.cases > CASES_FIRST ? "picture" : "curves";
     root.replaceChildren(head.element, tabs, body);
     tabs.append(...PARTS.map(([key, label]) => make("a", { href: `#/study/${encodeURIComponent(id)}/${key}`, "aria-current": key === part ? "page" : null }, label)));
     head.update(study);

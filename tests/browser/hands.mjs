@@ -36,9 +36,10 @@ export async function retype(page, selector, text) {
   await page.keyboard.type(text);
 }
 
-/** Chooses an option of a list by keys: its first letters. */
+/** Chooses the option of a list whose text begins so, by the arrow keys. */
 export async function pick(page, label, text) {
   const list = await page.waitForFunction((name) => [...document.querySelectorAll("label.choice")].find((one) => one.textContent.startsWith(name) && one.offsetParent)?.querySelector("select"), {}, label);
   await list.focus();
-  await page.keyboard.type(text);
+  const far = await list.evaluate((one, wanted) => [...one.options].findIndex((option) => option.textContent.startsWith(wanted)) - one.selectedIndex, text);
+  for (let k = 0; k < Math.abs(far); k++) await page.keyboard.press(far > 0 ? "ArrowDown" : "ArrowUp");
 }

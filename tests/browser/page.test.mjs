@@ -303,7 +303,7 @@ test("sixty cases with thirty loads are there within a second, and move at fifty
   assert.equal((await finished(open, id)).state, "done");
   const page = await tab(t);
   const began = Date.now();
-  await page.goto(`${open}/#/study/${id}`);
+  await page.goto(`${open}/#/study/${id}/curves`);
   await page.waitForSelector(".uplot canvas");
   t.diagnostic(`curves after ${Date.now() - began} ms`); // reported, not asserted: the machine may be busy
   await page.evaluate(() => [...document.querySelectorAll(".cases button")].find((one) => one.textContent === "all").click());
