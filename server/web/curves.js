@@ -1,18 +1,15 @@
 // The curves of a study: which quantity, cases, models and levels are shown, and how.
-import { choice, lastName, make, number, pretty, replace, symbol, tick, words } from "/web/elements.js";
+import { chooser, each, make, number, patch, pretty, say, tick, words } from "/web/elements.js";
 import { download, getJson, request } from "/web/session.js";
 import { DASHES, chart, colours } from "/web/chart.js";
+import { CASES_FIRST, caseName, whereOf } from "/web/sweep.js";
 
-const CASES_FIRST = 12; // shown before anything is chosen
+const CASES_MOST = 256; // drawn together, and listed
+const DIFFERENT_MOST = 40; // cases offered for differences
 const BANDS_MOST = 24; // lines; more bands hide each other
+const LISTED_MOST = 12; // curves, in the table of values
+const LACKS_MOST = 4; // cases whose failures are listed
 const MOST_DASHED = 3; // settings that differ by the dash of their lines alone
-
-/** "H = 0.8, C = 1": what distinguishes a case from the others. */
-export function caseName(one) {
-  const parts = Object.entries(one.swept).map(([pointer, value]) => (typeof value === "string" ? words(value)
-    : `${symbol(lastName(pointer))} = ${Array.isArray(value) ? `(${value.length})` : number(value)}`));
-  return parts.length > 0 ? parts.join(", ") : `case ${one.case}`;
-}
 
 /**
  * How cases are distinguished, in their order: {colour, dash} each. Where they differ in a number, its values have colours in
@@ -48,7 +45,9 @@ export function showCurves(root, signal, study, contents) {
     return null;
   }
   const controls = make("div", { class: "tools" }), figure = make("div"), message = make("p", { role: "status" });
-  const legend = make("ul", { class: "legend" }), values = make("div");
+  const legend = make("ul", { class: "legend" }), listed = make("table");
+  const values = make("details", { hidden: true, ontoggle: () => drawValues(drawn) }, make("summary", {}, "Values as a table"), make("div", { class: "scroll" }, listed));
+  let drawn = []; // lines
   root.append(controls, message, figure, legend, values);
 
   const about = () => contents.curves.find((curve) => curve.quantity === state.quantity);
@@ -97,6 +96,15 @@ export function showCurves(root, signal, study, contents) {
     return lines;
   }
 
+  /** What a case lacks, and why: an error, no values at all, or notes of some realisations. */
+  function lackOf(one) {
+    const called = caseName(cases.get(one.case) ?? { case: one.case, swept: {} });
+    if (one.error) return `${called}: ${one.error}`;
+    if (!one.notes?.count) return null;
+    const without = (one.curves ?? []).every((curve) => curve.y.every((y) => y === null)), [note] = one.notes.kept;
+    return `${called}: ${without ? "no values" : `${one.notes.count} failures in ${one.realisations} realisations`}${note ? `; realisation ${note.realisation}: ${note.text}` : ""}`;
+  }
+
   function drawLegend(lines) {
     const names = new Set();
     legend.replaceChildren(...lines.filter((line) => !names.has(line.label + line.colour) && names.add(line.label + line.colour)).map((line) => {
@@ -111,12 +119,11 @@ export function showCurves(root, signal, study, contents) {
   }
 
   function drawValues(lines) {
-    const table = () => make("div", { class: "scroll" }, make("table", {}, make("thead", {}, make("tr", {}, ["curve", "x", "y", "standard error"].map((name) => make("th", { scope: "col" }, name)))),
-      make("tbody", {}, lines.filter((line) => !line.theory).slice(0, 12).flatMap((line) => line.x.map((x, i) => make("tr", {},
-        make("td", {}, line.label), make("td", { class: "number" }, number(x, 6)), make("td", { class: "number" }, number(line.y[i], 6)), make("td", { class: "number" }, number(line.error?.[i], 2))))))));
-    const details = make("details", {}, make("summary", {}, "Values as a table"));
-    details.addEventListener("toggle", () => { if (details.open && details.childElementCount === 1) details.append(table()); });
-    values.replaceChildren(details);
+    if (!values.open) return;
+    const heads = make("tr", {}, ["curve", "x", "y", "standard error"].map((name) => make("th", { scope: "col" }, name)));
+    const rows = lines.filter((line) => !line.theory).slice(0, LISTED_MOST).flatMap((line) => line.x.map((x, i) => make("tr", {},
+      make("td", {}, line.label), make("td", { class: "number" }, number(x, 6)), make("td", { class: "number" }, number(line.y[i], 6)), make("td", { class: "number" }, number(line.error?.[i], 2)))));
+    patch(listed, make("table", {}, make("thead", {}, heads), make("tbody", {}, rows)));
   }
 
   async function drawMatrix() {
@@ -125,13 +132,14 @@ export function showCurves(root, signal, study, contents) {
     figure.replaceChildren(make("div", { class: "scroll", tabindex: "0", role: "figure", "aria-label": words(state.quantity) },
       make("img", { class: "picture", alt: `${words(state.quantity)} of case ${one}`, src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}` })));
     legend.replaceChildren();
-    values.replaceChildren();
+    values.hidden = true;
     message.textContent = state.cases.size > 1 ? `Of ${caseName(cases.get(one))}: a density is shown of one case.` : "";
   }
 
-  async function draw() {
+  /** Draws what is chosen; quietly, where it was drawn before. */
+  async function draw(quietly = false) {
     const mine = ++turn;
-    message.textContent = "Loading …";
+    if (!quietly) message.textContent = "Loading …";
     try {
       if (about().matrix) return await drawMatrix();
       const results = await fetched();
@@ -141,11 +149,15 @@ export function showCurves(root, signal, study, contents) {
       const curve = results.flatMap((one) => one.curves ?? []).find((one) => one.quantity === state.quantity);
       shown?.destroy();
       shown = chart(lines, { xLabel: pretty(curve?.x_label || "x"), yLabel: pretty(curve?.y_label || words(state.quantity)), xLog: state.xLog, yLog: state.yLog });
+      const held = figure.contains(document.activeElement);
       figure.replaceChildren(shown.element);
+      if (held) shown.element.focus({ preventScroll: true });
       drawLegend(lines);
+      drawn = lines;
+      values.hidden = false;
       drawValues(lines);
-      const missing = results.filter((one) => one.error);
-      message.textContent = missing.length > 0 ? missing.map((one) => `case ${one.case}: ${one.error}`).join("; ")
+      const lacks = results.map(lackOf).filter(Boolean);
+      message.textContent = lacks.length > 0 ? lacks.slice(0, LACKS_MOST).join("; ") + (lacks.length > LACKS_MOST ? `; and ${lacks.length - LACKS_MOST} more` : "")
         : lines.length === 0 ? "Nothing is like what is chosen." : !state.band ? "" : banded ? "Bands are two standard errors wide to each side." : `No bands of more than ${BANDS_MOST} lines.`;
     } catch (error) {
       if (!signal.aborted && mine === turn) message.textContent = error.message;
@@ -154,62 +166,59 @@ export function showCurves(root, signal, study, contents) {
 
   function set(change) {
     Object.assign(state, change);
-    controlsOf();
+    writeControls();
     draw();
   }
 
-  function pickCases() {
-    const names = contents.cases.map((one) => tick(caseName(one), state.cases.has(one.case), (on) => {
-      if (on) state.cases.add(one.case);
-      else state.cases.delete(one.case);
+  const query = () => `quantity=${encodeURIComponent(state.quantity)}`;
+  const oneOfMany = () => (contents.cases.length > 64 ? `&case=${[...state.cases][0] ?? 0}` : "");
+  const save = (text, part, ending, accept) => make("button", { onclick: () => download(`${path}/${part()}`, `${study.name}-${state.quantity}.${ending}`, accept).catch((error) => { message.textContent = error.message; }) }, text);
+  const quantityOf = chooser("Quantity", (quantity) => {
+    const next = contents.curves.find((curve) => curve.quantity === quantity);
+    set({ quantity, series: next.series.includes(state.series) ? state.series : next.series[0], models: new Set(next.models), level: "finest" });
+  });
+  const seriesOf = chooser("by", (series) => set({ series })), meshOf = chooser("Mesh", (level) => set({ level })), modelsOf = make("span", { class: "models" });
+  const differenceOf = [0, 1].map((place) => chooser(place === 0 ? "Difference:" : "less", (value) => {
+    const both = state.difference?.slice() ?? ["", ""];
+    both[place] = value;
+    set({ difference: value === "" ? null : both.map((one, k) => (one === "" ? String(contents.cases.find((other) => String(other.case) !== both[1 - k]).case) : one)) });
+  }));
+  const like = () => contents.cases.filter(where.matches);
+  const chosen = (all) => set({ cases: new Set(all.map((one) => one.case)), difference: null });
+  const where = whereOf(contents.cases, () => chosen(like().slice(0, CASES_FIRST)));
+  const count = make("summary"), grid = make("div", { class: "grid" }), more = make("p");
+  const casesOf = make("details", { class: "cases", hidden: contents.cases.length < 2 }, count,
+    make("div", { class: "tools" }, where.controls, make("button", { onclick: () => chosen(like().slice(0, CASES_MOST)) }, "all"), make("button", { onclick: () => chosen([]) }, "none")), grid, more);
+  controls.append(quantityOf.element, seriesOf.element, meshOf.element, modelsOf,
+    ...[["log x", "xLog"], ["log y", "yLog"], ["error bands", "band"], ["theory", "theory"]].map(([label, key]) => tick(label, state[key], (on) => set({ [key]: on }))),
+    ...differenceOf.map((one) => one.element), casesOf,
+    make("span", { class: "links" }, save("JSON", () => `curves?${query()}`, "json"), " ", save("CSV", () => `curves?${query()}${oneOfMany()}`, "csv", "text/csv"), " ", save("SVG", () => `plot?${query()}${oneOfMany()}`, "svg")));
+
+  /** Shows in the controls what is chosen, and what can be. */
+  function writeControls() {
+    const one = about(), cases = like(), shownCases = cases.slice(0, CASES_MOST);
+    quantityOf.set(contents.curves.map((curve) => [curve.quantity, words(curve.quantity)]), state.quantity);
+    seriesOf.set(one.series.map((series) => [series, words(series)]), state.series);
+    meshOf.set(one.levels.length > 1 ? [["finest", "finest"], ["all", "all"], ...one.levels.map((level) => [level, `${level} points`])] : [], state.level);
+    each(modelsOf, one.models.length > 1 ? one.models : [], (model) => model, (model) => tick(model, state.models.has(model), (on) => {
+      if (on) state.models.add(model);
+      else state.models.delete(model);
+      set({});
+    }));
+    const named = contents.cases.length > 1 ? contents.cases.slice(0, DIFFERENT_MOST).map((other) => [other.case, caseName(other)]) : [];
+    differenceOf[0].set(named.length > 0 ? [["", "no difference"], ...named] : [], state.difference?.[0]);
+    differenceOf[1].set(state.difference ? named : [], state.difference?.[1]);
+    say(count, `Cases: ${state.cases.size} of ${contents.cases.length}`);
+    each(grid, shownCases, (of) => of.case, (of) => tick(caseName(of), state.cases.has(of.case), (on) => {
+      if (on) state.cases.add(of.case);
+      else state.cases.delete(of.case);
       set({ difference: null });
     }));
-    return make("details", { class: "cases", open: pickCases.open, ontoggle: (event) => { pickCases.open = event.target.open; } },
-      make("summary", {}, `Cases: ${state.cases.size} of ${contents.cases.length}`),
-      make("button", { onclick: () => set({ cases: new Set(contents.cases.map((one) => one.case)), difference: null }) }, "all"), " ",
-      make("button", { onclick: () => set({ cases: new Set(), difference: null }) }, "none"),
-      make("div", { class: "grid" }, names));
-  }
-  pickCases.open = false;
-
-  function pickDifference() {
-    const options = [["", "no difference"]];
-    for (const a of contents.cases.slice(0, 40)) options.push([a.case, caseName(a)]);
-    const [a, b] = state.difference ?? ["", ""];
-    const choose = (place) => (value) => {
-      const both = [a, b];
-      both[place] = value;
-      if (value === "") set({ difference: null });
-      else set({ difference: both.map((one, k) => (one === "" ? String(contents.cases.find((other) => String(other.case) !== both[1 - k]).case) : one)) });
-    };
-    return [choice("Difference:", options, a, choose(0)), state.difference ? choice("less", options.slice(1), b, choose(1)) : null];
-  }
-
-  function controlsOf() {
-    const one = about();
-    replace(controls,
-      choice("Quantity", contents.curves.map((curve) => [curve.quantity, words(curve.quantity)]), state.quantity, (quantity) => {
-        const next = contents.curves.find((curve) => curve.quantity === quantity);
-        set({ quantity, series: next.series.includes(state.series) ? state.series : next.series[0], models: new Set(next.models), level: "finest" });
-      }),
-      ...(one.series.length > 1 ? [choice("by", one.series, state.series, (series) => set({ series }))] : []),
-      ...(one.levels.length > 1 ? [choice("Mesh", [["finest", "finest"], ["all", "all"], ...one.levels.map((level) => [level, `${level} points`])], state.level, (level) => set({ level }))] : []),
-      ...(one.models.length > 1 ? one.models.map((model) => tick(model, state.models.has(model), (on) => {
-        if (on) state.models.add(model);
-        else state.models.delete(model);
-        set({});
-      })) : []),
-      tick("log x", state.xLog, (xLog) => set({ xLog })), tick("log y", state.yLog, (yLog) => set({ yLog })),
-      tick("error bands", state.band, (band) => set({ band })), tick("theory", state.theory, (theory) => set({ theory })),
-      ...(contents.cases.length > 1 ? [...pickDifference().filter(Boolean), pickCases()] : []),
-      make("span", { class: "links" },
-        make("button", { onclick: () => download(`${path}/curves?quantity=${encodeURIComponent(state.quantity)}`, `${study.name}-${state.quantity}.json`) }, "JSON"), " ",
-        make("button", { onclick: () => download(`${path}/curves?quantity=${encodeURIComponent(state.quantity)}${contents.cases.length > 64 ? `&case=${[...state.cases][0] ?? 0}` : ""}`, `${study.name}-${state.quantity}.csv`, "text/csv") }, "CSV"), " ",
-        make("button", { onclick: () => download(`${path}/plot?quantity=${encodeURIComponent(state.quantity)}${contents.cases.length > 64 ? `&case=${[...state.cases][0] ?? 0}` : ""}`, `${study.name}-${state.quantity}.svg`) }, "SVG")));
+    say(more, cases.length > shownCases.length ? `The first ${CASES_MOST} of ${cases.length} cases: choose fewer by their parameters.` : "");
   }
 
   signal.addEventListener("abort", () => shown?.destroy());
-  controlsOf();
+  writeControls();
   draw();
-  return draw;
+  return () => draw(true);
 }

@@ -12,25 +12,49 @@ export function make(name, attributes = {}, ...content) {
   return element;
 }
 
-/** What a control is called, to find it again in a newer copy of its surroundings. */
-function nameOf(control) {
-  const label = control.closest("label");
-  const text = label ? (label.firstChild.nodeType === Node.TEXT_NODE ? label.firstChild : label).textContent : control.getAttribute("href") ?? control.textContent;
-  return control.localName + (control.localName === "summary" ? "" : text);
+/** Sets the text of an element where it differs, so that a selection in it stays. */
+export function say(element, text) {
+  if (element.textContent !== text) element.textContent = text;
 }
 
-/** Puts content in place of what element holds. The control that had the focus has it again. */
-export function replace(element, ...content) {
-  const held = element.contains(document.activeElement) ? nameOf(document.activeElement) : null;
-  element.replaceChildren(...content);
-  if (held === null) return;
-  [...element.querySelectorAll("a, button, input, select, summary")].find((one) => nameOf(one) === held)?.focus();
+/** Makes an element look like a newer copy of it and stay itself: focus, selection, clicks under way and its listeners survive. */
+export function patch(element, copy) {
+  for (const name of element.getAttributeNames()) if (!copy.hasAttribute(name)) element.removeAttribute(name);
+  for (const name of copy.getAttributeNames()) if (element.getAttribute(name) !== copy.getAttribute(name)) element.setAttribute(name, copy.getAttribute(name));
+  if (element.localName === "input") element.checked = copy.checked;
+  const there = [...element.childNodes], wanted = [...copy.childNodes];
+  wanted.forEach((node, k) => {
+    if (there[k] === undefined) element.append(node);
+    else if (there[k].nodeName !== node.nodeName) there[k].replaceWith(node);
+    else if (node.nodeType === Node.ELEMENT_NODE) patch(there[k], node);
+    else if (there[k].data !== node.data) there[k].data = node.data;
+  });
+  for (const node of there.slice(wanted.length)) node.remove();
+}
+
+const kept = new WeakMap(); // children by key, of the elements that each() has filled
+
+/** Gives an element a child for each item, in their order. One whose key was there before is patched by what makes a new one. */
+export function each(element, items, keyOf, create) {
+  const before = kept.get(element) ?? new Map(), now = new Map(), held = document.activeElement;
+  for (const item of items) {
+    const key = keyOf(item), child = create(item);
+    if (before.has(key)) patch(before.get(key), child);
+    now.set(key, before.get(key) ?? child);
+  }
+  for (const [key, child] of before) if (!now.has(key)) child.remove();
+  let at = element.firstChild;
+  for (const child of now.values())
+    if (child === at) at = at.nextSibling;
+    else element.insertBefore(child, at);
+  kept.set(element, now);
+  if (held !== document.activeElement && element.contains(held)) held.focus({ preventScroll: true }); // it was moved
 }
 
 /** Seconds in words. */
 export function duration(seconds) {
   if (seconds === null || seconds === undefined || !isFinite(seconds)) return "–";
-  if (seconds < 0.1) return `${(1000 * seconds).toPrecision(2)} ms`;
+  if (seconds < 0.1) return `${number(1000 * seconds, 2)} ms`;
   if (seconds < 10) return `${seconds.toFixed(1)} s`;
   if (seconds < 100) return `${seconds.toFixed(0)} s`;
   if (seconds < 6000) return `${(seconds / 60).toFixed(0)} min`;
@@ -96,6 +120,20 @@ export function choice(label, options, value, onchange) {
       return make("option", { value: key, selected: String(key) === String(value) }, text);
     }));
   return make("label", { class: "choice" }, `${label} `, list);
+}
+
+/** A list whose options change, as pairs of value and text: {element, set(options, value)}; hidden where there is nothing to choose. */
+export function chooser(label, onchange) {
+  const element = choice(label, [], "", onchange), select = element.querySelector("select");
+  let held = "";
+  const set = (options, value) => {
+    const text = JSON.stringify(options);
+    if (text !== held) select.replaceChildren(...options.map(([key, name]) => make("option", { value: key }, name)));
+    held = text;
+    select.value = value ?? "";
+    element.hidden = options.length < 2;
+  };
+  return { element, set };
 }
 
 export function tick(label, checked, onchange) {

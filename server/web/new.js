@@ -1,8 +1,9 @@
 // A new study: a form of what the schema knows beside its JSON, checked as it is written, with the ready studies to begin from.
-import { choice, duration, lastName, make, number, words } from "/web/elements.js";
+import { choice, duration, each, lastName, make, number, say, words } from "/web/elements.js";
 import { getJson, makeKey, sendJson } from "/web/session.js";
 
 const WAIT = 400; // milliseconds of silence before a check
+const KINDS = ["statistics", "contact"];
 
 function at(document, pointer) {
   return pointer.split("/").slice(1).reduce((node, name) => (node !== null && typeof node === "object" ? node[name] : undefined), document);
@@ -43,14 +44,21 @@ function membersOf(schema, kind) {
   return found.filter((one) => one.pointer !== "/kind");
 }
 
-/** What people type: JSON, or else text; nothing takes the member out. */
-function typed(text) {
+/** What people type: JSON, a list with or without brackets, or else text; nothing takes the member out. */
+function typed(text, { member, choices }) {
   if (text.trim() === "") return undefined;
-  try {
-    return JSON.parse(text);
-  } catch {
-    return text.trim();
+  if (member.type === "string") return text.trim();
+  for (const json of [text, `[${text}]`]) {
+    try {
+      return JSON.parse(json);
+    } catch { /* it may be the next, or text */ }
   }
+  const names = text.split(",").map((one) => one.trim());
+  return names.length > 1 && names.every((one) => choices.includes(one)) ? names : text.trim();
+}
+
+function shown(value) {
+  return value === undefined ? "" : typeof value === "string" ? value : JSON.stringify(value);
 }
 
 let offered = null; // a study that another view made, to begin from
@@ -67,6 +75,9 @@ export async function showNew(root, signal, from) {
   const editor = make("textarea", { rows: 24, spellcheck: "false", "aria-label": "The study as JSON" });
   const cost = make("p", { role: "status" }), submit = make("button", { disabled: true }, "Submit");
   root.append(make("h1", {}, "New study"), message);
+  const forms = new Map(); // by kind
+  const kindField = choice("Kind", KINDS, "", (kind) => { study.kind = kind; write(); }), kindOf = kindField.querySelector("select");
+  fields.append(kindField);
   let schema, templates, study = { name: "my study", kind: "statistics", surface: { hurst: 0.8, wavelength_ratio: 8 } }, timer = 0, turn = 0;
   try {
     [schema, templates] = await Promise.all([getJson("/v1/study.schema.json", { signal }), getJson("/v1/templates", { signal })]);
@@ -79,41 +90,55 @@ export async function showNew(root, signal, from) {
   }
   message.textContent = "";
 
-  function input({ pointer, member, choices }) {
-    const value = at(study, pointer);
-    const text = value === undefined ? "" : typeof value === "string" ? value : JSON.stringify(value);
-    const id = `field${pointer.replaceAll("/", "-")}`;
+  function input(kind, { pointer, member, choices }) {
+    const id = `field-${kind}${pointer.replaceAll("/", "-")}`;
     const usual = member.default !== undefined ? `default ${JSON.stringify(member.default)}` : member.examples ? `e.g. ${JSON.stringify(member.examples[0])}` : "";
-    const control = make("input", { id, value: text, placeholder: usual, list: choices.length > 0 ? `${id}-list` : null, "aria-describedby": `${id}-help`, "data-pointer": pointer,
-      onchange: (event) => { put(study, pointer, typed(event.target.value)); write(); } });
+    const control = make("input", { id, placeholder: usual, list: choices.length > 0 ? `${id}-list` : null, "aria-describedby": `${id}-help`, "data-pointer": pointer,
+      oninput: (event) => { put(study, pointer, typed(event.target.value, { member, choices })); writeEditor(); later(); } });
     return make("div", { class: "field" }, make("label", { for: id }, words(lastName(pointer))), control,
       choices.length > 0 ? make("datalist", { id: `${id}-list` }, choices.map((one) => make("option", { value: one }))) : null,
       make("small", { id: `${id}-help` }, member.description, choices.some((one) => !member.description.includes(one)) ? ` (${choices.join(", ")})` : ""), make("small", { class: "fault", "data-fault": pointer }));
   }
 
-  function form() {
+  /** The fields of a kind, made once: what is typed in them is never taken away. */
+  function formOf(kind) {
     const groups = new Map();
-    for (const one of membersOf(schema, study.kind)) {
+    for (const one of membersOf(schema, kind)) {
       const group = one.pointer.split("/").slice(1, -1).join(" · ") || "study";
       groups.set(group, [...(groups.get(group) ?? []), one]);
     }
-    const opened = new Set([...fields.querySelectorAll("details[open]")].map((one) => one.dataset.group));
-    const simple = groups.size > 0 && opened.size === 0;
-    fields.replaceChildren(choice("Kind", ["statistics", "contact"], study.kind, (kind) => { study.kind = kind; write(); }),
-      ...[...groups].map(([group, members]) => make("details", { "data-group": group, open: simple ? ["study", "surface"].includes(group) : opened.has(group) },
-        make("summary", {}, group), members.map(input))));
-    showFaults([]);
+    return make("div", {}, [...groups].map(([group, members]) => make("details", { open: ["study", "surface"].includes(group) }, make("summary", {}, group), members.map((one) => input(kind, one)))));
+  }
+
+  /** Shows the study in the fields of its kind; the one that is typed in holds what was typed. */
+  function writeFields() {
+    const kind = KINDS.includes(study.kind) ? study.kind : KINDS[0];
+    if (!forms.has(kind)) {
+      forms.set(kind, formOf(kind));
+      fields.append(forms.get(kind));
+    }
+    for (const [of, form] of forms) form.hidden = of !== kind;
+    kindOf.value = kind;
+    for (const control of forms.get(kind).querySelectorAll("[data-pointer]")) {
+      const text = shown(at(study, control.dataset.pointer));
+      if (control !== document.activeElement && control.value !== text) control.value = text;
+    }
+  }
+
+  function writeEditor() {
+    const top = editor.scrollTop, text = JSON.stringify(study, null, 2);
+    if (editor.value !== text) editor.value = text;
+    editor.scrollTop = top;
   }
 
   function showFaults(list) {
-    for (const place of fields.querySelectorAll("[data-fault]")) place.textContent = list.filter((fault) => fault.pointer === place.dataset.fault).map((fault) => fault.detail).join("; ");
+    for (const place of fields.querySelectorAll("[data-fault]")) say(place, list.filter((fault) => fault.pointer === place.dataset.fault).map((fault) => fault.detail).join("; "));
     for (const control of fields.querySelectorAll("[data-pointer]")) control.setAttribute("aria-invalid", String(list.some((fault) => fault.pointer === control.dataset.pointer)));
-    faults.replaceChildren(...list.map((fault) => make("li", {}, make("code", {}, fault.pointer || "/"), ` ${fault.detail}`)));
+    each(faults, list, (fault) => `${fault.pointer} ${fault.detail}`, (fault) => make("li", {}, make("code", {}, fault.pointer || "/"), ` ${fault.detail}`));
   }
 
   async function check() {
     const mine = ++turn;
-    submit.disabled = true;
     try {
       const plan = await sendJson("POST", "/v1/check", study);
       if (mine !== turn) return;
@@ -123,6 +148,7 @@ export async function showNew(root, signal, from) {
       submit.disabled = false;
     } catch (error) {
       if (mine !== turn || signal.aborted) return;
+      submit.disabled = true;
       cost.textContent = error.faults?.length ? "This cannot run yet:" : error.message;
       showFaults(error.faults ?? []);
     }
@@ -133,14 +159,16 @@ export async function showNew(root, signal, from) {
     timer = setTimeout(check, WAIT);
   }
   function write() {
-    editor.value = JSON.stringify(study, null, 2);
-    form();
+    writeEditor();
+    writeFields();
     later();
   }
   editor.addEventListener("input", () => {
     try {
-      study = JSON.parse(editor.value);
-      form();
+      const read = JSON.parse(editor.value);
+      if (read === null || typeof read !== "object") throw new Error("a study is an object");
+      study = read;
+      writeFields();
       later();
     } catch (error) {
       submit.disabled = true;

@@ -1,7 +1,7 @@
 // One realisation: its heights, and the gap and pressures at a load, computed when asked for and coloured here.
 import { choice, make, number } from "/web/elements.js";
 import { request } from "/web/session.js";
-import { caseName } from "/web/curves.js";
+import { caseName } from "/web/sweep.js";
 import { chart } from "/web/chart.js";
 
 // Stops of the colour map inferno, dark to light, as in server/show/map/map_png.c.

@@ -1,5 +1,5 @@
 // The list of studies: search, filter, order, progress as it happens.
-import { bar, choice, duration, make, replace, time } from "/web/elements.js";
+import { bar, choice, duration, each, make, say, time } from "/web/elements.js";
 import { getJson } from "/web/session.js";
 
 const COLUMNS = [
@@ -25,6 +25,17 @@ export function isLive(study) {
   return study.state === "queued" || study.state === "running";
 }
 
+/** "done, 3 cases without values": the state, and what it does not say. */
+export function stateText(study) {
+  const cases = (count) => (count === study.cases ? (count === 1 ? "its case" : "all cases") : `${count} ${count === 1 ? "case" : "cases"}`);
+  return [study.state, study.place ? `place ${study.place}` : "", study.cases_valueless > 0 ? `${cases(study.cases_valueless)} without values` : "",
+    study.cases_failed > 0 ? `${cases(study.cases_failed)} not merged` : ""].filter(Boolean).join(", ");
+}
+
+export function stateClass(study) {
+  return study.state === "done" && (study.cases_valueless > 0 || study.cases_failed > 0) ? "lacking" : study.state;
+}
+
 async function all(signal) {
   let studies = [], next = "";
   do {
@@ -41,7 +52,7 @@ function row(study) {
     make("th", { scope: "row" }, make("a", { href: `#/study/${encodeURIComponent(study.id)}`, title: study.id }, study.name)),
     make("td", {}, study.kind),
     make("td", {}, study.owner ?? ""),
-    make("td", { class: study.state }, study.place ? `${study.state}, place ${study.place}` : study.state),
+    make("td", { class: stateClass(study), title: study.valueless_note }, stateText(study)),
     make("td", {}, bar(share(study), `progress of ${study.name}`)),
     make("td", { class: "number" }, `${done} / ${total}`),
     make("td", { class: "number" }, isLive(study) ? duration(study.seconds_left) : "–"),
@@ -65,11 +76,11 @@ export function showStudies(root, signal) {
     found.sort((a, b) => (of(a) < of(b) ? -1 : of(a) > of(b) ? 1 : 0) * (ORDER.down ? -1 : 1));
     for (const head of heads)
       head.setAttribute("aria-sort", head.dataset.key !== ORDER.by ? "none" : ORDER.down ? "descending" : "ascending");
-    replace(body, ...found.map(row));
+    each(body, found, (study) => study.id, row);
     table.hidden = found.length === 0;
     table.classList.toggle("ownerless", !studies.some((study) => study.owner));
-    message.textContent = studies.length === 0 ? "No study yet. Begin with “New study”, or rugo submit."
-      : found.length === 0 ? "No study is like that." : `${found.length} of ${studies.length} studies`;
+    say(message, studies.length === 0 ? "No study yet. Begin with “New study”, or rugo submit."
+      : found.length === 0 ? "No study is like that." : `${found.length} of ${studies.length} studies`);
   }
 
   async function refresh() {

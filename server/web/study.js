@@ -1,22 +1,52 @@
 // One study: its state and what can be done with it, and its parts: curves, table, report, realisations, document.
-import { bar, duration, make, replace, time } from "/web/elements.js";
+import { bar, duration, each, make, number, patch, say, time } from "/web/elements.js";
 import { events, getJson, request, sendJson } from "/web/session.js";
-import { isLive, share } from "/web/studies.js";
+import { isLive, share, stateClass, stateText } from "/web/studies.js";
 import { showCurves } from "/web/curves.js";
+import { showPicture } from "/web/picture.js";
+import { CASES_FIRST } from "/web/sweep.js";
 import { showTable } from "/web/table.js";
 import { showRealisation } from "/web/realisation.js";
 
-const PARTS = [["curves", "Curves"], ["table", "Table"], ["report", "Speed and error"], ["realisation", "Realisations"], ["document", "Document"]];
+const PARTS = [["curves", "Curves"], ["picture", "Pictures"], ["table", "Table"], ["report", "Speed and error"], ["realisation", "Realisations"], ["document", "Document"]];
 
-/** The report's picture and its notes. */
+const NOTED_MOST = 50, FAILURES_MOST = 50; // cases with notes, and failures, that are listed
+
+/** What went wrong or is remarkable in a case, by realisation. */
+function notesOf(one) {
+  const kept = one.notes?.kept ?? [], more = (one.notes?.count ?? 0) - kept.length;
+  const parts = kept.map((note) => `realisation ${note.realisation}: ${note.text}`);
+  return [...(one.error ? [one.error] : []), ...parts, ...(more > 0 ? [`${more} more`] : [])];
+}
+
+const PARTS_OF_ERROR = [["error_chance", "statistical"], ["error_mesh", "mesh"], ["error_cell", "cell"], ["error_model", "model"], ["error_solver", "solver"]];
+const percent = (error) => `${number(100 * error, 3)} %`;
+
+/** What a case asks for and has reached, and its sources, the largest first; null of a study that asks for no error. */
+function reachedOf({ scalars }) {
+  const value = (name) => scalars?.[name]?.value;
+  if (!value("error_reached") || !value("error_asked")) return null;
+  const parts = PARTS_OF_ERROR.map(([key, name]) => [value(key) ?? 0, name]).filter(([error]) => error > 0).sort((a, b) => b[0] - a[0]);
+  return `asked ${percent(value("error_asked"))}, reached ${percent(value("error_reached"))}: ${parts.map(([error, name]) => `${name} ${percent(error)}`).join(", ")}`;
+}
+
+/** The report's picture, where cost and error are known, and its notes. */
 async function showReport(root, signal, study) {
   const path = `/v1/studies/${encodeURIComponent(study.id)}/report`;
   root.append(make("p", {}, "Cost against error of every model and mesh; circles are where the study stands."));
-  const [answer, report] = await Promise.all([request(path, { signal, headers: { Accept: "image/svg+xml" } }), getJson(path, { signal })]);
-  root.append(make("div", { class: "scroll", tabindex: "0", role: "figure", "aria-label": "speed and error" },
-    make("img", { class: "picture", alt: "relative error over processor time, a line for each model and mesh", src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(await answer.text())}` })));
-  const notes = report.cases.flatMap((one) => (one.notes ?? []).map((note) => `case ${one.case}: ${typeof note === "string" ? note : note.text ?? JSON.stringify(note)}`));
-  if (notes.length > 0) root.append(make("h3", {}, "Notes"), make("ul", {}, notes.slice(0, 50).map((note) => make("li", {}, note))));
+  const reached = make("ul", { class: "reached" }), figure = make("div"), notes = make("div");
+  root.append(reached, figure, notes);
+  const picture = request(path, { signal, headers: { Accept: "image/svg+xml" } }).then((answer) => answer.text()).then((svg) =>
+    figure.append(make("div", { class: "scroll", tabindex: "0", role: "figure", "aria-label": "speed and error" },
+      make("img", { class: "picture", alt: "relative error over processor time, a line for each model and mesh", src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}` }))),
+  (error) => figure.append(make("p", { role: "alert" }, `There is no picture: ${error.message}`)));
+  const report = await getJson(path, { signal });
+  reached.append(...report.cases.map((one) => [one.case, reachedOf(one)]).filter(([, text]) => text).slice(0, NOTED_MOST).map(([of, text]) => make("li", {}, `case ${of}: ${text}`)));
+  const cases = report.cases.filter((one) => notesOf(one).length > 0);
+  if (cases.length > 0) notes.append(make("h3", {}, "Notes"), make("ul", {}, cases.slice(0, NOTED_MOST).map((one) =>
+    make("li", {}, `case ${one.case}`, make("ul", {}, notesOf(one).map((note) => make("li", {}, note)))))));
+  if (cases.length > NOTED_MOST) notes.append(make("p", {}, `and ${cases.length - NOTED_MOST} more cases with notes`));
+  await picture;
 }
 
 async function showDocument(root, signal, study) {
@@ -25,77 +55,101 @@ async function showDocument(root, signal, study) {
     make("pre", { tabindex: "0" }, JSON.stringify(document, null, 2)));
 }
 
-function asks(root, text, action, refresh) {
-  return async () => {
-    if (text && !confirm(text)) return;
-    const message = root.querySelector(".actions-message");
-    message.textContent = "";
-    try {
-      const next = await action();
-      if (next !== "gone") refresh();
-    } catch (error) {
-      message.textContent = error.message;
-    }
-  };
-}
-
 // Of a study that waits: its place, and when it starts where a worker is at work.
 function line(study) {
   if (!study.place) return null;
   return study.starts_in === null ? `${study.place}` : `${study.place}, starts in ${duration(study.starts_in)}`;
 }
 
-function failures(study) {
-  if (!study.failures?.length) return null;
-  return make("details", { open: true }, make("summary", {}, `${study.failures.length} failures`),
-    make("ul", {}, study.failures.slice(0, 50).map((one) => make("li", {}, `case ${one.case}, job ${one.job}: ${one.reason}`, one.worker ? ` (${one.worker})` : ""))));
+function factsOf(study) {
+  const { done, total, failed } = study.realisations, live = isLive(study);
+  return [["State", make("span", { class: stateClass(study) }, stateText(study))], ["Position in line", line(study)], ["Kind", study.kind],
+    ["Owner", study.owner], ["Priority", study.priority || null], ["Seed", study.seed], ["Cases", study.cases],
+    ["Realisations", `${done} / ${total}${failed ? `, ${failed} failed` : ""}`], ["CPU time", duration(study.cpu_seconds)], ["Workers", live ? study.workers : null],
+    ["Time left", live ? duration(study.seconds_left) : null], ["Error reached", study.error_reached ? `${(100 * study.error_reached).toPrecision(3)} %` : null],
+    ["Created", time(study.created)], ["Finished", study.finished ? time(study.finished) : null], ["Program", study.program], ["Id", make("code", {}, study.id)],
+    ["Why there are no values", study.valueless_note]]
+    .filter(([, value]) => value !== null && value !== undefined && value !== "");
 }
 
-export async function showStudy(root, signal, id, part = "curves") {
+/** The state of a study and what can be done with it: {element, update}. Its elements stay what they are while the study goes on. */
+function headOf(id, refresh) {
   const path = `/v1/studies/${encodeURIComponent(id)}`;
-  const head = make("div"), tabs = make("nav", { class: "tabs", "aria-label": "Parts of the study" }), body = make("section");
-  root.append(make("p", { role: "status", class: "waiting" }, "Loading …"));
-  let study, redraw = null, contents = null, following = false;
+  const title = make("h1"), progress = bar(0, ""), facts = make("dl", { class: "facts" }), message = make("span", { class: "actions-message", role: "alert" });
+  const count = make("summary"), list = make("ul"), failures = make("details", { open: true, hidden: true }, count, list);
+  let study;
 
-  function drawHead() {
-    document.title = `${study.name} – Rugo`;
-    const { done, total, failed } = study.realisations;
-    const live = isLive(study), called = `study “${study.name}”`;
-    const refresh = () => getJson(path, { signal }).then(update);
-    const extend = async () => {
-      const more = prompt(`How many realisations a case shall ${called} have?`, String(2 * Math.round(total / Math.max(1, study.cases))));
-      if (more === null) return "gone";
-      return sendJson("POST", `${path}/extend`, { realisations: Number(more) });
-    };
-    const remove = async () => {
-      await sendJson("DELETE", `${path}?results=true`);
-      location.hash = "#/";
-      return "gone";
-    };
-    const actions = make("div", { class: "tools" },
-      live ? make("button", { onclick: asks(root, `Cancel ${called}?`, () => sendJson("DELETE", path), refresh) }, "Cancel") : null,
-      study.jobs.failed + study.jobs.cancelled > 0 || study.cases_failed > 0 ? make("button", { onclick: asks(root, null, () => sendJson("POST", `${path}/retry`), refresh) }, "Retry") : null,
-      study.state === "done" ? make("button", { onclick: asks(root, null, extend, refresh) }, "Extend …") : null,
-      live ? null : make("button", { class: "danger", onclick: asks(root, `Delete ${called} and its results for ever?`, remove, refresh) }, "Delete …"),
-      make("a", { class: "button", href: `#/new/${encodeURIComponent(id)}` }, "Copy as a new study"),
-      make("span", { class: "actions-message", role: "alert" }));
-    const facts = [["State", make("span", { class: study.state }, study.state)], ["Position in line", line(study)], ["Kind", study.kind], ["Owner", study.owner], ["Priority", study.priority || null], ["Seed", study.seed], ["Cases", study.cases],
-      ["Realisations", `${done} / ${total}${failed ? `, ${failed} failed` : ""}`], ["CPU time", duration(study.cpu_seconds)], ["Workers", live ? study.workers : null],
-      ["Time left", live ? duration(study.seconds_left) : null], ["Cases without values", study.cases_valueless || null], ["Error reached", study.error_reached ? `${(100 * study.error_reached).toPrecision(3)} %` : null],
-      ["Created", time(study.created)], ["Finished", study.finished ? time(study.finished) : null], ["Program", study.program], ["Id", make("code", {}, study.id)]];
-    replace(head, make("h1", {}, study.name), live ? bar(share(study), `progress of ${study.name}`) : "",
-      make("dl", { class: "facts" }, facts.filter(([, value]) => value !== null && value !== undefined && value !== "").map(([name, value]) => make("div", {}, make("dt", {}, name), make("dd", {}, value)))),
-      actions, failures(study) ?? "");
+  const called = () => `study “${study.name}”`;
+  const asks = (question, action) => async () => {
+    if (question && !confirm(question())) return;
+    message.textContent = "";
+    try {
+      if ((await action()) !== "gone") await refresh();
+    } catch (error) {
+      message.textContent = error.message;
+    }
+  };
+  async function extend() {
+    const more = prompt(`How many realisations a case shall ${called()} have?`, String(2 * Math.round(study.realisations.total / Math.max(1, study.cases))));
+    return more === null ? "gone" : sendJson("POST", `${path}/extend`, { realisations: Number(more) });
   }
+  async function remove() {
+    await sendJson("DELETE", `${path}?results=true`);
+    location.hash = "#/";
+    return "gone";
+  }
+  const buttons = [
+    [make("button", { onclick: asks(() => `Cancel ${called()}?`, () => sendJson("DELETE", path)) }, "Cancel"), isLive],
+    [make("button", { onclick: asks(null, () => sendJson("POST", `${path}/retry`)) }, "Retry"), ({ jobs, cases_failed: failed }) => jobs.failed + jobs.cancelled > 0 || failed > 0],
+    [make("button", { onclick: asks(null, extend) }, "Extend …"), ({ state }) => state === "done"],
+    [make("button", { class: "danger", onclick: asks(() => `Delete ${called()} and its results for ever?`, remove) }, "Delete …"), (one) => !isLive(one)],
+  ];
+
+  function update(next) {
+    study = next;
+    document.title = `${study.name} – Rugo`;
+    say(title, study.name);
+    patch(progress, bar(share(study), `progress of ${study.name}`));
+    progress.hidden = !isLive(study);
+    each(facts, factsOf(study), ([name]) => name, ([name, value]) => make("div", {}, make("dt", {}, name), make("dd", {}, value)));
+    for (const [button, isShown] of buttons) button.hidden = !isShown(study);
+    const failed = study.failures ?? [];
+    failures.hidden = failed.length === 0;
+    say(count, `${failed.length} failures`);
+    each(list, failed.slice(0, FAILURES_MOST), (one) => `${one.case} ${one.job}`, (one) => make("li", {}, `case ${one.case}, job ${one.job}: ${one.reason}`, one.worker ? ` (${one.worker})` : ""));
+  }
+  const element = make("div", {}, title, progress, facts, make("div", { class: "tools" }, buttons.map(([button]) => button),
+    make("a", { class: "button", href: `#/new/${encodeURIComponent(id)}` }, "Copy as a new study"), message), failures);
+  return { element, update };
+}
+
+/** Shows a study, and of it the part that the address names: else its curves, or, where these are too many to tell apart, a picture of the sweep. */
+export async function showStudy(root, signal, id, part) {
+  const path = `/v1/studies/${encodeURIComponent(id)}`;
+  const head = headOf(id, () => getJson(path, { signal }).then(update)), tabs = make("nav", { class: "tabs", "aria-label": "Parts of the study" }), body = make("section");
+  root.append(make("p", { role: "status", class: "waiting" }, "Loading …"));
+  let study, redraw = null, contents = null, following = false, drawing = false, again = false;
 
   function update(next) {
     const before = study?.revision;
     study = next;
-    drawHead();
+    head.update(study);
     follow();
     if (before === next.revision) return;
     if (contents && contents.curves.length === 0) fill();
-    else if (redraw) redraw();
+    else if (redraw) redrawLast();
+  }
+
+  /** Draws what has come in, one drawing after another: where some come while one is drawn, the last of them is drawn next. */
+  async function redrawLast() {
+    again = true;
+    if (drawing) return;
+    drawing = true;
+    while (again && !signal.aborted) {
+      again = false;
+      await redraw();
+    }
+    drawing = false;
   }
 
   /** Shows the part; again where there were no results the last time. */
@@ -103,7 +157,7 @@ export async function showStudy(root, signal, id, part = "curves") {
     try {
       contents = await getJson(`${path}/contents`, { signal });
       body.replaceChildren();
-      redraw = ({ table: showTable, realisation: showRealisation }[part] ?? showCurves)(body, signal, study, contents);
+      redraw = ({ picture: showPicture, table: showTable, realisation: showRealisation }[part] ?? showCurves)(body, signal, study, contents);
     } catch (error) {
       if (!signal.aborted) body.replaceChildren(make("p", { role: "alert" }, error.message));
     }
@@ -126,9 +180,10 @@ export async function showStudy(root, signal, id, part = "curves") {
 
   try {
     study = await getJson(path, { signal });
-    root.replaceChildren(head, tabs, body);
+    part ??= study.cases > CASES_FIRST ? "picture" : "curves";
+    root.replaceChildren(head.element, tabs, body);
     tabs.append(...PARTS.map(([key, label]) => make("a", { href: `#/study/${encodeURIComponent(id)}/${key}`, "aria-current": key === part ? "page" : null }, label)));
-    drawHead();
+    head.update(study);
     if (part === "report") await showReport(body, signal, study);
     else if (part === "document") await showDocument(body, signal, study);
     else await fill();

@@ -1,5 +1,5 @@
 // Who works, on what, and how fast; what waits.
-import { make, number, time } from "/web/elements.js";
+import { each, make, number, say, time } from "/web/elements.js";
 import { getJson } from "/web/session.js";
 
 const PERIOD = 3000;
@@ -21,10 +21,10 @@ export function showWorkers(root, signal) {
   async function refresh() {
     try {
       const { workers, waiting } = await getJson("/v1/workers", { signal });
-      body.replaceChildren(...workers.map(row));
+      each(body, workers, (worker) => worker.name, row);
       table.hidden = workers.length === 0;
-      queue.textContent = `${waiting} jobs wait.`;
-      message.textContent = workers.length === 0 ? "No worker was seen in the last hour. Start one with rugo work, or rugo serve --workers 2." : "";
+      say(queue, `${waiting} jobs wait.`);
+      say(message, workers.length === 0 ? "No worker was seen in the last hour. Start one with rugo work, or rugo serve --workers 2." : "");
     } catch (error) {
       if (signal.aborted) return;
       message.textContent = error.message;

@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test as declare } from "node:test";
+import { says, tab as openTab } from "./hands.mjs";
 import { end, finished, folder, launch, send, serve, WAIT_MS } from "./service.mjs";
 
 const { PICTURES } = process.env;
@@ -20,28 +21,11 @@ const STATISTICS = { name: "summits", kind: "statistics", seed: 1, realisations:
   surface: { hurst: [0.2, 0.5, 0.8], wavelength_ratio: 4, length_ratio: 4, points_per_wavelength: 8 } };
 const LONG = { ...STATISTICS, name: "a long one", realisations: 1000000 };
 
-/** A tab whose errors fail the test: scripts, requests that the test does not expect, refused contents. */
-async function tab(t, expected = []) {
-  const page = await browser.newPage(), faults = [];
-  page.setDefaultTimeout(WAIT_MS);
-  await page.setViewport({ width: 1300, height: 1100 });
-  page.on("pageerror", (error) => faults.push(error.message));
-  page.on("console", (message) => message.type() === "error" && !message.text().startsWith("Failed to load resource") && faults.push(message.text()));
-  page.on("response", (answer) => answer.status() >= 400 && !expected.includes(answer.status()) && faults.push(`${answer.status()} ${answer.url()}`));
-  t.after(async () => {
-    await page.close();
-    assert.deepEqual(faults, []);
-  });
-  return page;
-}
+const tab = (t, expected) => openTab(browser, t, expected);
 
 async function click(page, text) {
   await page.waitForFunction((wanted) => [...document.querySelectorAll("button, a, summary")].some((one) => one.textContent.trim() === wanted && one.offsetParent), { timeout: WAIT_MS }, text);
   await page.evaluate((wanted) => [...document.querySelectorAll("button, a, summary")].find((one) => one.textContent.trim() === wanted && one.offsetParent).click(), text);
-}
-
-function says(page, text) {
-  return page.waitForFunction((wanted) => document.body.innerText.includes(wanted), { timeout: WAIT_MS }, text);
 }
 
 async function choose(page, label, value) {
@@ -205,7 +189,7 @@ test("a new study is begun from a ready one, checked as it is written, and submi
   const page = await tab(t, [422]);
   await page.goto(`${open}/#/new`);
   await says(page, "1 case of 1000 realisations");
-  const set = (pointer, value) => page.$eval(`[data-pointer="${pointer}"]`, (one, text) => { one.value = text; one.dispatchEvent(new Event("change")); }, value);
+  const set = (pointer, value) => page.$eval(`[data-pointer="${pointer}"]`, (one, text) => { one.value = text; one.dispatchEvent(new Event("input")); }, value);
   await set("/surface/hurst", "1.4");
   await says(page, "This cannot run yet");
   await page.waitForFunction(() => document.querySelector('[data-fault="/surface/hurst"]').textContent.length > 0);
@@ -319,7 +303,7 @@ test("sixty cases with thirty loads are there within a second, and move at fifty
   assert.equal((await finished(open, id)).state, "done");
   const page = await tab(t);
   const began = Date.now();
-  await page.goto(`${open}/#/study/${id}`);
+  await page.goto(`${open}/#/study/${id}/curves`);
   await page.waitForSelector(".uplot canvas");
   t.diagnostic(`curves after ${Date.now() - began} ms`); // reported, not asserted: the machine may be busy
   await page.evaluate(() => [...document.querySelectorAll(".cases button")].find((one) => one.textContent === "all").click());

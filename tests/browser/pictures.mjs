@@ -29,7 +29,7 @@ try {
     study.id = (await send(url, "POST", "/v1/studies", study)).id;
     const { state } = await finished(url, study.id);
     if (state !== "done") throw new Error(`${study.name} is ${state}`);
-    await page.goto(`${url}/#/study/${study.id}`);
+    await page.goto(`${url}/#/study/${study.id}/curves`);
     await page.waitForSelector(".uplot canvas");
     if (study === statistics) await page.select("label.choice select", "summit_height_pdf");
     await shoot(page, study.name);

@@ -237,7 +237,7 @@ static int plan_realisations(const struct contact_answer *answer, const struct c
 /* The parts of the error at the load where it is largest. Loads without a value are left out, as
  * their curve shows. */
 struct reached {
-    double all, statistical, mesh, cell, model;
+    double all, statistical, mesh, cell, model, solver;
 };
 
 static struct reached error_reached(const struct contact_answer *answer,
@@ -247,9 +247,12 @@ static struct reached error_reached(const struct contact_answer *answer,
         double y = fabs(sum->value[k]);
         double all = hypot(sum->width[k], contact_sum_bounds(answer, sum, k)) / y;
         if (!isnan(y) && !(all <= most.all))
-            most = (struct reached){isnan(all) ? INFINITY : all, sum->width[k] / y,
-                                    answer->named_mesh ? 0 : sum->mesh[k] / y, sum->cell[k] / y,
-                                    sum->model[k] / y};
+            most = (struct reached){isnan(all) ? INFINITY : all,
+                                    sum->width[k] / y,
+                                    answer->named_mesh ? 0 : sum->mesh[k] / y,
+                                    sum->cell[k] / y,
+                                    sum->model[k] / y,
+                                    sum->solver[k] / y};
     }
     return most;
 }
@@ -474,6 +477,7 @@ static int put_scalars(const struct contact_answer *answer, const struct contact
                    {"error_mesh", reached.mesh},
                    {"error_cell", reached.cell},
                    {"error_model", reached.model},
+                   {"error_solver", reached.solver},
                    {"length_ratio", component_case(answer->of[ROLE_BASE])->surface.length_ratio},
                    {"work", work},
                    {"plain_work", plain_work(answer, sum, error)},

@@ -11,11 +11,13 @@
     ASSET("curves.js", "text/javascript; charset=utf-8", server_web_curves_js)                     \
     ASSET("elements.js", "text/javascript; charset=utf-8", server_web_elements_js)                 \
     ASSET("new.js", "text/javascript; charset=utf-8", server_web_new_js)                           \
+    ASSET("picture.js", "text/javascript; charset=utf-8", server_web_picture_js)                   \
     ASSET("realisation.js", "text/javascript; charset=utf-8", server_web_realisation_js)           \
     ASSET("session.js", "text/javascript; charset=utf-8", server_web_session_js)                   \
     ASSET("studies.js", "text/javascript; charset=utf-8", server_web_studies_js)                   \
     ASSET("study.js", "text/javascript; charset=utf-8", server_web_study_js)                       \
     ASSET("surface.js", "text/javascript; charset=utf-8", server_web_surface_js)                   \
+    ASSET("sweep.js", "text/javascript; charset=utf-8", server_web_sweep_js)                       \
     ASSET("table.js", "text/javascript; charset=utf-8", server_web_table_js)                       \
     ASSET("workers.js", "text/javascript; charset=utf-8", server_web_workers_js)                   \
     ASSET("uplot.js", "text/javascript; charset=utf-8", server_web_vendor_uplot_js)                \

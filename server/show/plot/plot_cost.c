@@ -38,6 +38,38 @@ static bool law_of(const struct report_series *series, struct cost_law *out) {
     return out->realisation > 0 && out->deviation > 0 && isfinite(out->deviation);
 }
 
+/* NaN where there is none. */
+static double scalar_at(const struct case_report *one, const char *name) {
+    for (size_t s = 0; s < one->scalar_count; s++)
+        if (strcmp(one->scalars[s].name, name) == 0)
+            return one->scalars[s].value;
+    return (double)NAN;
+}
+
+/* Returns the case with the largest error reached of a study that asks for one; NULL of others. */
+static const struct case_report *worst_of(const struct study_report *report) {
+    const struct case_report *worst = NULL;
+    double most = 0;
+    for (size_t c = 0; c < report->case_count; c++) {
+        double reached = scalar_at(&report->cases[c], "error_reached");
+        if (isfinite(reached) && reached > most) {
+            most = reached;
+            worst = &report->cases[c];
+        }
+    }
+    return worst;
+}
+
+/* Makes a law pass through the error reached, as all else that shows the study has it: at the
+ * worst point, with the confidence asked for. */
+static void meet_reached(struct cost_law *law, const struct case_report *worst) {
+    double reached = scalar_at(worst, "error_reached"), chance = scalar_at(worst, "error_chance");
+    if (!(chance > 0 && chance <= reached))
+        return;
+    law->deviation = chance * sqrt(law->spent / law->realisation);
+    law->systematic = sqrt(reached * reached - chance * chance);
+}
+
 /* The law as a line in equal steps of the logarithm of cost. */
 static void line_of(const struct cost_law *law, double x[STEPS], double y[STEPS]) {
     double end = law->realisation * pow(law->deviation / (END_PART * law->systematic), 2);
@@ -73,8 +105,12 @@ static void draw_front(struct plot_pen *pen, size_t count, const struct cost_law
 static void label_of(const struct curve *place, char label[PLOT_LABEL_SIZE]) {
     char model[64];
     model_text(place->model, place->kinematics, model, sizeof model);
-    snprintf(label, PLOT_LABEL_SIZE, "%.60s, level %.4g, %.60s", model, place->level,
-             place->series != NULL && *place->series != '\0' ? place->series : "-");
+    size_t used = (size_t)snprintf(label, PLOT_LABEL_SIZE, "%.60s", model);
+    if (!isnan(place->level))
+        used +=
+            (size_t)snprintf(label + used, PLOT_LABEL_SIZE - used, ", level %.4g", place->level);
+    if (place->series != NULL && *place->series != '\0')
+        snprintf(label + used, PLOT_LABEL_SIZE - used, ", %.60s", place->series);
 }
 
 static void draw_law(struct plot_pen *pen, const struct cost_law *law, size_t colour) {
@@ -131,7 +167,8 @@ static void draw(struct plot_pen *pen, const struct study_report *report, size_t
     }
     if (!frame_finish(&pen->frame))
         return;
-    frame_draw(pen->file, &pen->frame, "CPU s a case", "relative error");
+    frame_draw(pen->file, &pen->frame, "CPU s a case",
+               worst_of(report) != NULL ? "largest relative error" : "relative error");
     draw_front(pen, count, laws);
     for (size_t a = 0; a < count; a++)
         draw_law(pen, &laws[a], a);
@@ -151,6 +188,10 @@ int plot_cost(const struct study_report *report, FILE *file, struct error *err) 
             snprintf(subject, sizeof subject, "error of %.60s by cost", main->place.quantity);
     }
     size_t count = choose_laws(&list, laws);
+    const struct case_report *worst = worst_of(report);
+    for (size_t a = 0; a < count && worst != NULL; a++)
+        if (isnan(laws[a].series->place->level))
+            meet_reached(&laws[a], worst);
     if (count == 0)
         return error_set(err, ERROR_ABSENT,
                          "study %s has no model whose cost and error are known yet", report->id);

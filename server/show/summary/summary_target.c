@@ -2,6 +2,8 @@
 #include "jobs/target.h"
 #include "server/show/summary/summary_cells.h"
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 /* NaN where there is none. */
 static double scalar_of(const struct case_result *one, const char *name) {
@@ -9,21 +11,49 @@ static double scalar_of(const struct case_result *one, const char *name) {
     return scalar != NULL ? scalar->value : (double)NAN;
 }
 
+/* A source of the error reached. */
+struct part {
+    const char *scalar, *name;
+    double error; /* relative */
+};
+
+enum { PARTS = 5 };
+
+static int compare_parts(const void *a, const void *b) {
+    double left = ((const struct part *)a)->error, right = ((const struct part *)b)->error;
+    return left > right ? -1 : left < right;
+}
+
+/* Lists the sources of which a case has an error, the largest first; returns their number. What
+ * older programs published has no error of the solver. */
+static size_t parts_of(const struct case_result *one, struct part parts[PARTS]) {
+    static const struct part ALL[PARTS] = {{"error_chance", "statistical", 0},
+                                           {"error_mesh", "mesh", 0},
+                                           {"error_cell", "cell", 0},
+                                           {"error_model", "model", 0},
+                                           {"error_solver", "solver", 0}};
+    size_t count = 0;
+    for (size_t a = 0; a < PARTS; a++) {
+        parts[count] = ALL[a];
+        parts[count].error = scalar_of(one, ALL[a].scalar);
+        count += parts[count].error > 0 ? 1 : 0;
+    }
+    qsort(parts, count, sizeof *parts, compare_parts);
+    return count;
+}
+
 /* Prints which source keeps the answer from the error asked for, and what more sampling would take:
  * sources add up by their squares, and the statistical one falls as the work grows. */
-static void print_left(const struct case_result *one, FILE *file) {
-    static const char *const SOURCES[] = {"error_mesh", "error_cell", "error_model"};
-    static const char *const NAMES[] = {"mesh", "cell", "model"};
-    enum { COUNT = sizeof SOURCES / sizeof *SOURCES };
+static void print_left(const struct case_result *one, size_t count, const struct part *parts,
+                       FILE *file) {
     double asked = scalar_of(one, "error_asked"), chance = scalar_of(one, "error_chance");
     double bounds = 0;
-    size_t most = 0;
-    for (size_t a = 0; a < COUNT; a++) {
-        if (result_scalar(one, SOURCES[a]) != NULL)
-            bounds = hypot(bounds, scalar_of(one, SOURCES[a]));
-        if (scalar_of(one, SOURCES[a]) > scalar_of(one, SOURCES[most]))
-            most = a;
-    }
+    const char *most = "";
+    for (size_t a = count; a-- > 0;)
+        if (strcmp(parts[a].scalar, "error_chance") != 0) {
+            bounds = hypot(bounds, parts[a].error);
+            most = parts[a].name;
+        }
     if (bounds < asked)
         fprintf(file, "Not reached: it would take about %.2g times the work done.\n",
                 chance * chance / (asked * asked - bounds * bounds));
@@ -31,7 +61,7 @@ static void print_left(const struct case_result *one, FILE *file) {
         fprintf(file,
                 "Not reached: what is left is the %s, which no number of realisations "
                 "lessens.\n",
-                NAMES[most]);
+                most);
 }
 
 /* less: how many times as much plain sampling takes. */
@@ -47,19 +77,20 @@ static void print_work(double less, double consistency, FILE *file) {
 
 void summary_of_target(const struct case_result *one, FILE *file) {
     double asked = scalar_of(one, "error_asked"), reached = scalar_of(one, "error_reached");
+    struct part parts[PARTS];
+    size_t count;
     if (isnan(asked))
         return;
     fprintf(file, "error asked %.3g %%, reached %.3g %%", 100 * asked, 100 * reached);
-    if (result_scalar(one, "error_mesh") != NULL)
-        fprintf(file, ": statistical %.2g, mesh %.2g, cell %.2g, model %.2g %%",
-                100 * scalar_of(one, "error_chance"), 100 * scalar_of(one, "error_mesh"),
-                100 * scalar_of(one, "error_cell"), 100 * scalar_of(one, "error_model"));
-    fputc('\n', file);
+    count = parts_of(one, parts);
+    for (size_t a = 0; a < count && count > 1; a++)
+        fprintf(file, "%s %s %.2g", a == 0 ? ":" : ",", parts[a].name, 100 * parts[a].error);
+    fputs(count > 1 ? " %\n" : "\n", file);
     if (result_scalar(one, "plain_work") != NULL)
         print_work(scalar_of(one, "plain_work") / scalar_of(one, "work"),
                    scalar_of(one, "consistency"), file);
     if (reached > asked)
-        print_left(one, file);
+        print_left(one, count, parts, file);
 }
 
 void summary_of_plan(const struct study_case *one, FILE *file) {

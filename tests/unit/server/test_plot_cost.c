@@ -113,10 +113,39 @@ static void nothing_to_draw_is_said(void **state) {
     free(draw(&f.study, ERROR_ABSENT));
 }
 
+/* The circle of a study that asks for an error is at the error reached, which its answer states and
+ * all else shows: where a study stands whose own errors are of those sizes. An answer has no level.
+ */
+static void a_target_stands_at_what_it_reached(void **state) {
+    (void)state;
+    struct cost_fixture f;
+    struct scalar_report scalars[] = {{.name = "error_reached", .value = 0.13},
+                                      {.name = "error_chance", .value = 0.05}};
+    fixture_make(&f);
+    f.one.curve_count = 1;
+    f.curves[0].statistical = 0.05;
+    f.curves[0].errors[ERROR_DISCRETISATION] = 0.12;
+    char *same = draw(&f.study, 0), *circle = strstr(same, "<circle ");
+    f.curves[0].statistical = 0.001;
+    f.curves[0].errors[ERROR_DISCRETISATION] = 0.002;
+    f.curves[0].place.level = NAN;
+    f.one.scalars = scalars;
+    f.one.scalar_count = 2;
+    char *text = draw(&f.study, 0);
+    assert_non_null(circle);
+    circle[strcspn(circle, "\n")] = '\0';
+    assert_non_null(strstr(text, circle));
+    assert_non_null(strstr(text, ">halfspace, edges<"));
+    assert_null(strstr(text, "nan"));
+    free(same);
+    free(text);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_series_is_drawn),
         cmocka_unit_test(the_front_is_the_least),
+        cmocka_unit_test(a_target_stands_at_what_it_reached),
         cmocka_unit_test(nothing_to_draw_is_said),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
