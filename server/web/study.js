@@ -118,8 +118,8 @@ function headOf(id, refresh) {
     say(count, `${failed.length} failures`);
     each(list, failed.slice(0, FAILURES_MOST), (one) => `${one.case} ${one.job}`, (one) => make("li", {}, `case ${one.case}, job ${one.job}: ${one.reason}`, one.worker ? ` (${one.worker})` : ""));
   }
-  const element = make("div", {}, title, progress, facts, make("div", { class: "tools" }, buttons.map(([button]) => button),
-    make("a", { class: "button", href: `#/new/${encodeURIComponent(id)}` }, "Copy as a new study"), message), failures);
+  const actions = make("div", { class: "tools" }, buttons.map(([button]) => button), make("a", { class: "button", href: `#/new/${encodeURIComponent(id)}` }, "Copy as a new study"), message);
+  const element = make("div", {}, title, actions, progress, facts, failures); // what grows is below the buttons: they do not move under the pointer
   return { element, update };
 }
 

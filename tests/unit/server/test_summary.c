@@ -4,6 +4,7 @@
 #include "server/show/summary/summary.h"
 #include "server/show/summary/summary_cells.h"
 #include "server/show/summary/summary_status.h"
+#include "server/show/summary/summary_target.h"
 #include "tests/support/check.h"
 #include "tests/support/result_builder.h"
 #include <stdio.h>
@@ -244,6 +245,32 @@ static void failures_are_told(void **state) {
     cJSON_Delete(empty);
 }
 
+/* What a target reached has all its sources, the largest first; one that is the largest is what is
+ * left. */
+static void a_target_names_its_sources_by_size(void **state) {
+    (void)state;
+    static const struct {
+        const char *name;
+        double value;
+    } SCALARS[] = {{"error_asked", 0.004}, {"error_reached", 0.0079}, {"error_chance", 0.006},
+                   {"error_mesh", 0.0005}, {"error_cell", 0},         {"error_model", 0.001},
+                   {"error_solver", 0.005}};
+    struct study_result study = built_study("contact", "target", 1);
+    char *text = NULL;
+    size_t size = 0;
+    for (size_t s = 0; s < sizeof SCALARS / sizeof *SCALARS; s++)
+        built_scalar(&study.cases[0], SCALARS[s].name, SCALARS[s].value, NAN, NAN);
+    FILE *file = open_memstream(&text, &size);
+    assert_non_null(file);
+    summary_of_target(&study.cases[0], file);
+    assert_int_equal(fclose(file), 0);
+    check_shown(text, (const char *[]){"reached 0.79 %: statistical 0.6, solver 0.5, model 0.1, "
+                                       "mesh 0.05 %\n",
+                                       "what is left is the solver", NULL});
+    free(text);
+    study_result_clear(&study);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scalars_are_those_of_the_view),
@@ -251,6 +278,7 @@ int main(void) {
         cmocka_unit_test(statistical_errors_are_shown_as_sizes),
         cmocka_unit_test(many_cases_have_a_row_each),
         cmocka_unit_test(a_report_tells_errors_by_source),
+        cmocka_unit_test(a_target_names_its_sources_by_size),
         cmocka_unit_test(failures_are_told),
         cmocka_unit_test(numbers_have_the_digits_of_their_error),
     };
