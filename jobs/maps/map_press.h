@@ -87,7 +87,7 @@ struct map_press {
     struct contact_solver *solver;
     struct area_workspace *areas;
     struct patch_finder *patches;
-    const struct press_watch *watch; /* borrowed; NULL: none */
+    const struct press_watch *watch;       /* borrowed; NULL: none */
     struct counted_asperities *asperities; /* of the map as it is pressed; NULL: a profile */
 };
 
