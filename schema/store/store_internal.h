@@ -21,6 +21,7 @@ struct store {
     bool claim_failed_jobs;
     bool shrinks;            /* a study was purged, and its pages are not given back yet */
     int batch;               /* inside store_begin .. store_commit */
+    bool spoiled;            /* the batch holds a part of a change, and is rolled back at its end */
     struct due_case damaged; /* store_found_damage; study "": none */
     /* Workers that asked for jobs lately and their threads, as counted at seen_ms; 0: not yet. */
     int64_t workers_seen, threads_seen, seen_ms;

@@ -201,16 +201,27 @@ int store_execute(struct store *store, const char *sql, struct error *err) {
     return sqlite3_exec(store->db, sql, NULL, NULL, NULL) != 0 ? store_error(store, err) : 0;
 }
 
-static const char ROLL_BACK[] = "ROLLBACK";
+static const char ROLL_BACK[] = "ROLLBACK", ROLL_BACK_TO[] = "ROLLBACK TO change";
 
-/* Prepares the statement that rolls back before there is anything to undo. If memory were lacking
- * for it later, a change that could not be undone would keep others from writing. */
+static int error_rolled_back(const struct store *store, struct error *err) {
+    return error_set(err, ERROR_SYSTEM, "database %s: the transaction was rolled back",
+                     store->path);
+}
+
+/* Prepares the statements that roll back before there is anything to undo. If memory were lacking
+ * for them later, a change that could not be undone would keep others from writing, or a part of it
+ * would stay in its batch. */
 int change_begin(struct store *store, struct error *err) {
     sqlite3_stmt *undo;
+    bool inside = sqlite3_get_autocommit(store->db) == 0;
     if (store->options.read_only)
         return error_set(err, ERROR_SYSTEM, "database %s was opened for reading only", store->path);
+    if (store->batch != 0 && (!inside || store->spoiled)) /* no savepoint of another transaction */
+        return error_rolled_back(store, err);
     int status = find_statement(store, ROLL_BACK, &undo, err);
-    if (status == 0 && store->batch == 0 && sqlite3_get_autocommit(store->db) == 0)
+    if (status == 0)
+        status = find_statement(store, ROLL_BACK_TO, &undo, err);
+    if (status == 0 && store->batch == 0 && inside)
         status = store_run(store, err, ROLL_BACK, ""); /* which failed after the last change */
     if (status != 0)
         return status;
@@ -234,12 +245,13 @@ int change_end(struct store *store, int status, struct error *err) {
         status = check_not_moved(store, err);
     if (status == 0)
         status = store_run(store, err, store->batch != 0 ? "RELEASE change" : "COMMIT", "");
-    /* After a full disk SQLite may have rolled back by itself: then there is nothing left to
-     * undo. */
+    /* After a full disk SQLite may have rolled back by itself: then there is nothing left to undo.
+     * A change of a batch that cannot be undone alone takes the batch with it, at its end where it
+     * cannot be undone yet. */
     if (status != 0 && sqlite3_get_autocommit(store->db) == 0) {
-        if (store->batch != 0)
-            store_run(store, NULL, "ROLLBACK TO change", "");
-        store_run(store, NULL, store->batch != 0 ? "RELEASE change" : ROLL_BACK, "");
+        bool alone = store->batch != 0 && store_run(store, NULL, ROLL_BACK_TO, "") == 0;
+        int undone = store_run(store, NULL, alone ? "RELEASE change" : ROLL_BACK, "");
+        store->spoiled = store->batch != 0 && !alone && undone != 0;
     }
     return status;
 }
@@ -271,15 +283,17 @@ int store_begin(struct store *store, struct error *err) {
 
 int store_commit(struct store *store, struct error *err) {
     store->batch = 0;
-    if (sqlite3_get_autocommit(store->db) != 0)
-        return error_set(err, ERROR_SYSTEM, "database %s: the transaction was rolled back",
-                         store->path);
-    return change_end(store, 0, err);
+    if (!store->spoiled && sqlite3_get_autocommit(store->db) == 0)
+        return change_end(store, 0, err);
+    (void)change_end(store, ERROR_STATE, NULL);
+    store->spoiled = false;
+    return error_rolled_back(store, err);
 }
 
 void store_abandon(struct store *store) {
     store->batch = 0;
     (void)change_end(store, ERROR_STATE, NULL);
+    store->spoiled = false;
 }
 
 int store_probe(struct store *store, struct error *err) {

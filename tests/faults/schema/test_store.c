@@ -6,6 +6,7 @@
 #include "schema/store/store_verify.h"
 #include "schema/study/study_reader.h"
 #include "tests/support/failing/each_allocation.h"
+#include "tests/support/failing/failing_allocator.h"
 #include "tests/support/fake_kind.h"
 #include <sqlite3.h>
 #include <stdio.h>
@@ -256,6 +257,46 @@ static int verify(void *context, struct error *err) {
     return status;
 }
 
+/* A handle that has never undone a change lacks memory for it, too: a change of a batch stays
+ * whole, or nothing of it. Other changes of the batch may be lost with it. */
+static void a_batch_keeps_no_part_of_a_change(void **state) {
+    (void)state;
+    enum { SOME = 10, ALLOCATIONS_MOST = 4000 };
+    uint64_t failures = 0;
+    bool reached = false;
+    for (uint64_t n = 0; n < ALLOCATIONS_MOST && !reached; n += 5) {
+        struct store_life batch = {.study = life.study};
+        struct claimed_job jobs[4] = {0};
+        char id[STUDY_ID_SIZE];
+        struct claim claim = {.worker = "w", .host = "h", .study = id, .count = 4};
+        struct damage damage = {0};
+        struct error err = {0};
+        size_t count = 0;
+        bool existing = false;
+        assert_int_equal(store_open(&batch.store, "batch.db", &(struct store_options){0}, &err), 0);
+        assert_int_equal(store_submit(batch.store, batch.study, NULL, id, &existing, &err), 0);
+        assert_int_equal(store_claim(batch.store, &claim, jobs, &count, &err), 0);
+        assert_true(count > 1);
+        assert_int_equal(store_begin(batch.store, &err), 0);
+        failing_arm(n, SOME);
+        (void)complete_jobs(&batch, jobs, count, &err);
+        struct failing_count failed = failing_disarm();
+        (void)store_commit(batch.store, &err);
+        failures += failed.failed > 0;
+        reached = failed.failed == 0;
+        for (size_t j = 0; j < count; j++)
+            claimed_job_clear(&jobs[j]);
+        damage.store = batch.store;
+        assert_int_equal(verify(&damage, &err), 0);
+        assert_int_equal(damage.flaws, 0);
+        store_close(&batch.store);
+        unlink("batch.db");
+        unlink("batch.db-wal");
+        unlink("batch.db-shm");
+    }
+    assert_true(reached && failures > 10);
+}
+
 static void verification_of_damage(void **state) {
     struct error err = {0};
     struct damage damage = {0};
@@ -282,6 +323,7 @@ int main(void) {
         cmocka_unit_test(opening),
         cmocka_unit_test(a_study),
         cmocka_unit_test(other_ways),
+        cmocka_unit_test(a_batch_keeps_no_part_of_a_change),
         cmocka_unit_test(verification_of_damage),
     };
     return cmocka_run_group_tests(tests, open_life, close_life);

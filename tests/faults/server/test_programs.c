@@ -104,7 +104,7 @@ static void each_failure(const struct program *program) {
     assert_true(program->from == NULL || *expected != 0);
     const char *wish = getenv("RUGO_FAULTS");
     bool all = wish != NULL && strcmp(wish, "all") == 0;
-    uint64_t most = FAILURES * effort(), step = all || total < most ? 1 : total / most;
+    uint64_t most = FAILURES * effort(), step = all || most == 0 || total < most ? 1 : total / most;
     for (uint64_t n = 0; n < total; n += step, failed += 2) {
         fail_at(program, n, 1, expected);
         fail_at(program, n, program->store != NULL ? SOME : UINT64_MAX, expected);
