@@ -161,7 +161,8 @@ int counted_asperities_take(struct counted_asperities *asperities, const double 
                          load / sqrt(own) * exp(gsl_spline_eval(asperities->load, x, NULL))}};
     }
     asperities->count = summits->count;
-    qsort(asperities->counted, asperities->count, sizeof *asperities->counted, fall);
+    if (asperities->count > 1)
+        qsort(asperities->counted, asperities->count, sizeof *asperities->counted, fall);
     return 0;
 }
 
