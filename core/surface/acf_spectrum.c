@@ -1,14 +1,10 @@
 #include "core/surface/acf_spectrum.h"
+#include <gsl/gsl_integration.h>
 #include <gsl/gsl_interp.h>
 #include <math.h>
 #include <stdlib.h>
 
-/* Nodes and weights of Gauss and Legendre on [-1, 1]; of each pair the positive node. */
-enum { PAIRS = 4, NODES = 2 * PAIRS };
-static const double NODE[PAIRS] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
-                                   0.9602898564975363};
-static const double WEIGHT[PAIRS] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
-                                     0.1012285362903763};
+enum { NODES = 8 }; /* of Gauss and Legendre's rule, a panel */
 /* A panel holds a third of a wave at most, of which the rule has all digits. */
 static const double PANEL = 2;
 enum { PANELS_MOST = 1000000 };
@@ -40,20 +36,18 @@ static size_t panels_between(const struct acf_table *table, size_t a, double hig
 
 /* Interpolates between the lags as Steffen (1990) does, which adds no extremes. */
 static void nodes_fill(struct nodes *nodes, const struct acf_table *table, const gsl_interp *curve,
-                       double highest) {
+                       const gsl_integration_glfixed_table *rule, double highest) {
     size_t at = 0;
     for (size_t a = 0; a + 1 < table->n; a++) {
         size_t panels = panels_between(table, a, highest);
-        double half = (table->lag[a + 1] - table->lag[a]) / (double)panels / 2;
+        double width = (table->lag[a + 1] - table->lag[a]) / (double)panels;
         for (size_t p = 0; p < panels; p++)
-            for (int node = 0; node < NODES; node++, at++) {
-                double side = node < PAIRS ? -1 : 1;
-                double lag =
-                    table->lag[a] + half * ((double)(2 * p + 1) + side * NODE[node % PAIRS]);
-                nodes->lag[at] = lag;
-                nodes->value[at] =
-                    half * WEIGHT[node % PAIRS] *
-                    gsl_interp_eval(curve, table->lag, table->correlation, lag, NULL);
+            for (size_t node = 0; node < NODES; node++, at++) {
+                double low = table->lag[a] + (double)p * width, weight;
+                (void)gsl_integration_glfixed_point(low, low + width, node, &nodes->lag[at],
+                                                    &weight, rule);
+                nodes->value[at] = weight * gsl_interp_eval(curve, table->lag, table->correlation,
+                                                            nodes->lag[at], NULL);
             }
     }
 }
@@ -71,16 +65,19 @@ static int nodes_create(struct nodes *nodes, const struct acf_table *table, doub
         nodes->count += NODES * panels_between(table, a, highest);
     nodes->lag = array_create(2 * nodes->count, sizeof *nodes->lag);
     gsl_interp *curve = gsl_interp_alloc(gsl_interp_steffen, table->n);
-    int status = nodes->lag != NULL && curve != NULL
+    gsl_integration_glfixed_table *rule = gsl_integration_glfixed_table_alloc(NODES);
+    int status = nodes->lag != NULL && curve != NULL && rule != NULL
                      ? 0
                      : error_memory(err, 2 * nodes->count * sizeof *nodes->lag, "a transform");
     if (status == 0) {
         nodes->value = nodes->lag + nodes->count;
         (void)gsl_interp_init(curve, table->lag, table->correlation, table->n);
-        nodes_fill(nodes, table, curve, highest);
+        nodes_fill(nodes, table, curve, rule, highest);
     }
     if (curve != NULL)
         gsl_interp_free(curve);
+    if (rule != NULL)
+        gsl_integration_glfixed_table_free(rule);
     return status;
 }
 
