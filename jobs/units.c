@@ -69,6 +69,7 @@ static const struct unit_row SCALARS[] = {
     {"mean_gap_last", 0, NULL, "m", 0, 1, HEIGHT, 0},
     {"kappa_highest_load", 0, NULL, "Pa", 1, 0, {{"rms_slope", 1}}, 0},
     {"power_law_highest_load", 0, NULL, "Pa", 1, 0, {{"rms_slope", 1}}, 0},
+    {"erf_highest_load", 0, NULL, "Pa", 1, 0, {{"rms_slope", 1}}, 0},
 };
 /* clang-format on */
 

@@ -294,9 +294,8 @@ static bool scale_fits(const struct contact_case *one_case, const struct asked *
         return true;
     values_fault(values, "/surface/points_per_wavelength",
                  "%zu by %zu points: blocks in rms_heights, loads in Pa, and the model full, need "
-                 "the RMS height "
-                 "and slope of the surface, which are computed of %.0f points at most. Give "
-                 "block_height in lengths, or take fewer points",
+                 "the RMS height and slope of the surface, which are computed of %.0f points at "
+                 "most. Give block_height in lengths, or take fewer points",
                  grid->nx, grid->ny, SCALE_POINTS_MOST);
     return false;
 }

@@ -288,13 +288,18 @@ static double fitted(enum contact_measure fit, double a, double b, double load) 
     return fit == MEASURE_KAPPA ? a * load : erf(sqrt(M_PI) / 2 * a * load);
 }
 
+/* Appends a scalar whose name begins with that of the model. */
+static int put_of_model(struct case_result *out, const char *model, struct scalar scalar,
+                        struct error *err) {
+    if (model != NULL)
+        scalar.name = result_text(out, model_text(model, scalar.name).text);
+    return scalar.name != NULL ? result_add_scalar(out, &scalar, err)
+                               : error_set(err, ERROR_MEMORY, "no memory left for scalars");
+}
+
 static int put_named(struct case_result *out, const char *model, const char *name, double value,
                      double standard_error, struct error *err) {
-    const char *whole = model != NULL ? result_text(out, model_text(model, name).text) : name;
-    if (whole == NULL)
-        return error_set(err, ERROR_MEMORY, "no memory left for scalars");
-    const struct scalar scalar = scalar_named(whole, value, standard_error, NAN);
-    return result_add_scalar(out, &scalar, err);
+    return put_of_model(out, model, scalar_named(name, value, standard_error, NAN), err);
 }
 
 int contact_scalars_put_range(const struct contact_fit *fit, const char *model,
@@ -321,14 +326,11 @@ int contact_scalars_put_range(const struct contact_fit *fit, const char *model,
 static int put_value(const struct contact_tally *tally, const struct contact_fit *fit, size_t model,
                      size_t loads, struct case_result *out, struct error *err) {
     const char *name = contact_model_name(tally->one_case->models[model]);
-    struct scalar scalar =
-        scalar_named(result_text(out, model_text(name, fit->name).text), NAN, NAN, NAN);
-    if (scalar.name == NULL)
-        return error_set(err, ERROR_MEMORY, "no memory left for scalars");
+    struct scalar scalar = scalar_named(fit->name, NAN, NAN, NAN);
     int status = put_measure(tally, fit->measure, model, loads, &scalar, err);
     if (status == 0)
         status = put_law(tally, fit->measure, model, loads, &scalar, err);
-    return status == 0 ? result_add_scalar(out, &scalar, err) : status;
+    return status == 0 ? put_of_model(out, name, scalar, err) : status;
 }
 
 /* Appends the fits of a model with what they were made on. area: scratch, a value a load. */

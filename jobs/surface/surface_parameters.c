@@ -24,6 +24,14 @@ static const struct choice LAWS[] = {
     {"iterated", LAW_ITERATED}, {"translation", LAW_TRANSLATION}, {0}};
 static const struct choice DRAWS[] = {{"random", DRAW_RANDOM}, {"quantiles", DRAW_QUANTILES}, {0}};
 
+/* The tolerance on one error of the iteration. */
+#define OWN_TOLERANCE(error, what)                                                                 \
+    {                                                                                              \
+        .path = "/surface/heights/tolerances/" error, .type = PARAMETER_NUMBER, .minimum = 0,      \
+        .maximum = 1, .above_minimum = true, .sweep = true, .later = true, .example_json = "0.01", \
+        .help = "on " error " alone, " what "; as tolerance, above 0, unless given"                \
+    }
+
 static const struct parameter ROWS[] = {
     {.path = "/surface/dimension",
      .type = PARAMETER_INTEGER,
@@ -319,34 +327,9 @@ static const struct parameter ROWS[] = {
      .default_json = "0.001",
      .example_json = "0",
      .help = "on eps_h, eps_s and eps_s0 of non-Gaussian generation; 0 runs until it stalls"},
-    {.path = "/surface/heights/tolerances/eps_h",
-     .type = PARAMETER_NUMBER,
-     .minimum = 0,
-     .maximum = 1,
-     .above_minimum = true,
-     .sweep = true,
-     .later = true,
-     .example_json = "0.01",
-     .help = "on eps_h alone, the error of heights; as tolerance, above 0, unless given"},
-    {.path = "/surface/heights/tolerances/eps_s",
-     .type = PARAMETER_NUMBER,
-     .minimum = 0,
-     .maximum = 1,
-     .above_minimum = true,
-     .sweep = true,
-     .later = true,
-     .example_json = "0.01",
-     .help = "on eps_s alone, the error of the spectrum; as tolerance, above 0, unless given"},
-    {.path = "/surface/heights/tolerances/eps_s0",
-     .type = PARAMETER_NUMBER,
-     .minimum = 0,
-     .maximum = 1,
-     .above_minimum = true,
-     .sweep = true,
-     .later = true,
-     .example_json = "0.01",
-     .help = "on eps_s0 alone, the error of waves outside the spectrum; as tolerance, above 0, "
-             "unless given"},
+    OWN_TOLERANCE("eps_h", "the error of heights"),
+    OWN_TOLERANCE("eps_s", "the error of the spectrum"),
+    OWN_TOLERANCE("eps_s0", "the error of waves outside the spectrum"),
     {.path = "/surface/heights/keep",
      .type = PARAMETER_CHOICE,
      .choices = KEPT,

@@ -16,7 +16,6 @@ static const double SUMMIT_SECONDS = 1e-7;
 static const double POINTS_OF_SUMMIT = 60;
 
 struct asperities {
-    size_t grids;
     double rms_height, rms_slope;
     struct counted_asperities *of[GRIDS_MOST]; /* owned, as the next */
     double *z;                                 /* on the finest level */
@@ -67,10 +66,9 @@ static int asperities_create(void *workspace, const struct contact_case *one_cas
     struct asperities *asperities = workspace;
     size_t points = grid_points(&plan->level.grid);
     int status = 0;
-    asperities->grids = grids_of(one_case);
     asperities->rms_height = moments->rms_height;
     asperities->rms_slope = moments->rms_slope;
-    for (size_t g = 0; g < asperities->grids && status == 0; g++)
+    for (size_t g = 0; g < grids_of(one_case) && status == 0; g++)
         status =
             counted_asperities_create(&asperities->of[g], &level_of(one_case, g)->grid, false, err);
     if (status != 0)
@@ -99,7 +97,7 @@ static int asperities_solve(void *workspace, const struct contact_surface *surfa
     struct asperities *asperities = workspace;
     const struct contact_case *one_case = tally->one_case;
     int status = 0;
-    for (size_t g = 0; g < asperities->grids && status == 0; g++) {
+    for (size_t g = 0; g < grids_of(one_case) && status == 0; g++) {
         if (stopper->stop(stopper->context) != 0)
             return error_set(err, ERROR_STOPPED, "stopped at the summits of a surface");
         status = contact_level_sample(level_of(one_case, g), &one_case->surface,

@@ -493,7 +493,8 @@ static int put_scalars(const struct contact_answer *answer, const struct contact
 /* Adds a fit at the heaviest load whose area, by edges, is within its range. */
 static int put_fit(const struct contact_answer *answer, const struct contact_sum *area,
                    const struct contact_fit *fit, struct error *err) {
-    struct contact_sum sum, power;
+    struct contact_sum sum, exponent;
+    double b = NAN; /* of a power law */
     size_t n = 0;
     while (n < answer->loads && area->value[n] <= fit->area_most)
         n++;
@@ -501,12 +502,13 @@ static int put_fit(const struct contact_answer *answer, const struct contact_sum
         return contact_scalars_put_range(fit, NULL, answer->one_case, 0, NULL, NAN, NAN,
                                          answer->result, err);
     int status = contact_sum_create(answer, fit->measure, &sum, err);
+    if (status == 0 && fit->measure == MEASURE_POWER_LAW_A) {
+        status = contact_sum_create(answer, MEASURE_POWER_LAW_B, &exponent, err);
+        b = status == 0 ? exponent.value[n - 1] : b;
+    }
     if (status == 0)
-        status = contact_sum_create(answer, MEASURE_POWER_LAW_B, &power, err);
-    if (status == 0)
-        status =
-            contact_scalars_put_range(fit, NULL, answer->one_case, n, area->value, sum.value[n - 1],
-                                      power.value[n - 1], answer->result, err);
+        status = contact_scalars_put_range(fit, NULL, answer->one_case, n, area->value,
+                                           sum.value[n - 1], b, answer->result, err);
     if (status != 0)
         return status;
     struct scalar scalar =
