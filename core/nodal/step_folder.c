@@ -1,27 +1,9 @@
 #include "core/nodal/step_folder.h"
+#include "core/file.h"
 #include "core/nodal/map_vtu.h"
 #include "core/nodal/node_table.h"
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-
-static int file_open(FILE **file, const char *path, struct error *err) {
-    *file = fopen(path, "wb");
-    return *file != NULL
-               ? 0
-               : error_set(err, ERROR_SYSTEM, "cannot open %s: %s", path, strerror(errno));
-}
-
-static int file_close(FILE **file, const char *path, int status, struct error *err) {
-    if (*file == NULL)
-        return status;
-    bool failed = ferror(*file) != 0;
-    if ((fclose(*file) != 0 || failed) && status == 0)
-        status = error_set(err, ERROR_SYSTEM, "cannot write %s: %s", path, strerror(errno));
-    *file = NULL;
-    return status;
-}
 
 /* Writes the path of a file of the folder into folder->name. */
 static void name_step(struct step_folder *folder, size_t number) {
@@ -33,14 +15,15 @@ static void name_collection(struct step_folder *folder) {
 }
 
 static int collection_open(struct step_folder *folder, struct error *err) {
-    if (mkdir(folder->path, 0777) != 0 && errno != EEXIST)
-        return error_set(err, ERROR_SYSTEM, "cannot make %s: %s", folder->path, strerror(errno));
+    int status = folder_make(folder->path, err);
+    if (status != 0)
+        return status;
     folder->name_size = strlen(folder->path) + 40; /* "/step-", 20 digits, ".vtu" */
     folder->name = array_create(folder->name_size, 1);
     if (folder->name == NULL)
         return error_memory(err, folder->name_size, "a path");
     name_collection(folder);
-    int status = file_open(&folder->collection, folder->name, err);
+    status = file_open(&folder->collection, folder->name, err);
     if (status == 0)
         fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
               "byte_order=\"LittleEndian\">\n  <Collection>\n",
@@ -73,7 +56,7 @@ static int put_vtu(struct step_folder *folder, const struct nodal_step *step, st
     if (status != 0)
         return status;
     status = step_vtu(file, step, err);
-    status = file_close(&file, folder->name, status, err);
+    status = file_close(file, folder->name, status, err);
     if (status == 0)
         fprintf(folder->collection,
                 "    <DataSet timestep=\"%.9g\" group=\"\" part=\"0\" file=\"step-%zu.vtu\"/>\n",
@@ -93,9 +76,10 @@ int step_folder_close(struct step_folder *folder, int status, struct error *err)
     if (folder->collection != NULL) {
         fputs("  </Collection>\n</VTKFile>\n", folder->collection);
         name_collection(folder);
-        status = file_close(&folder->collection, folder->name, status, err);
+        status = file_close(folder->collection, folder->name, status, err);
     }
-    status = file_close(&folder->table, folder->nodes, status, err);
+    if (folder->table != NULL)
+        status = file_close(folder->table, folder->nodes, status, err);
     free(folder->name);
     *folder = (struct step_folder){0};
     return status;

@@ -44,21 +44,6 @@ static bool read_number(const struct option_row *row, const char *text, double *
     return end != text && *end == '\0' && within;
 }
 
-bool rising_numbers(const char *text, size_t most, double *out, size_t *count) {
-    double last = 0;
-    *count = 0;
-    for (char *stop;; text = stop + 1) {
-        double value = strtod(text, &stop);
-        if (stop == text || !(value > last && isfinite(value)) || *count == most)
-            return false;
-        out[(*count)++] = last = value;
-        if (*stop == '\0')
-            return true;
-        if (*stop != ',')
-            return false;
-    }
-}
-
 /* Returns the number of a word in "one|two|three"; -1 where it is none of them. */
 static int read_choice(const char *words, const char *text) {
     size_t length = strlen(text);

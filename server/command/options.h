@@ -42,10 +42,6 @@ void options_clear(const struct option_row *rows, void *values);
 /* "rugo COMMAND: text; see rugo COMMAND --help" on standard error; EXIT_USAGE. */
 __attribute__((format(printf, 2, 3))) int usage_error(const char *command, const char *format, ...);
 
-/* A text of numbers with commas between, rising and above 0; false where it is not that, or more
- * than `most`. */
-bool rising_numbers(const char *text, size_t most, double *out, size_t *count);
-
 /* Finds the models of a text of their names with commas between, each once; false where it is not
  * that. positions: in CONTACT_MODELS. */
 bool models_find(const char *text, int positions[CONTACT_MODELS_MOST], size_t *count);

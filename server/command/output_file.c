@@ -1,4 +1,5 @@
 #include "server/command/output_file.h"
+#include "core/file.h"
 #include "core/memory_file.h"
 #include "server/command/rasterise.h"
 #include "server/show/map/map_png.h"
@@ -20,33 +21,14 @@ int output_file_check(const char *path, struct error *err) {
     return status;
 }
 
-int output_file_open(FILE **file, const char *path, struct error *err) {
-    *file = fopen(path, "wb");
-    return *file != NULL
-               ? 0
-               : error_set(err, ERROR_SYSTEM, "cannot open %s: %s", path, strerror(errno));
-}
-
-int output_file_close(FILE *file, const char *path, int status, struct error *err) {
-    bool failed = ferror(file) != 0;
-    if ((fclose(file) != 0 || failed) && status == 0)
-        status = error_set(err, ERROR_SYSTEM, "cannot write %s: %s", path, strerror(errno));
-    return status;
-}
-
-static bool ends_in(const char *path, const char *ending) {
-    size_t length = strlen(path), last = strlen(ending);
-    return length > last && strcmp(path + length - last, ending) == 0;
-}
-
 bool output_file_is_png(const char *path) {
-    return ends_in(path, ".png");
+    return file_ends_in(path, ".png");
 }
 
 int output_file_check_drawn(const char *path, struct error *err) {
     static const char *const ENDINGS[] = {".svg", ".png", ".pdf", ".eps"};
     for (size_t a = 0; a < sizeof ENDINGS / sizeof *ENDINGS; a++)
-        if (ends_in(path, ENDINGS[a]))
+        if (file_ends_in(path, ENDINGS[a]))
             return 0;
     return error_set(err, ERROR_INPUT,
                      "picture %.200s: its name ends in none of .svg, .png, .pdf, .eps", path);
@@ -56,7 +38,7 @@ static int write_drawn(const char *path, const char *svg, size_t size, FILE *fil
                        struct error *err) {
     if (output_file_is_png(path))
         return rasterise(svg, size, file, err);
-    if (!ends_in(path, ".svg"))
+    if (!file_ends_in(path, ".svg"))
         return print_as(path + strlen(path) - strlen("pdf"), svg, size, file, err);
     (void)fwrite(svg, 1, size, file); /* the file remembers a failure */
     return 0;
@@ -66,10 +48,10 @@ int output_file_drawn(const char *path, const char *svg, size_t size, struct err
     FILE *file;
     int status = output_file_check_drawn(path, err);
     if (status == 0)
-        status = output_file_open(&file, path, err);
+        status = file_open(&file, path, err);
     if (status != 0)
         return status;
-    status = output_file_close(file, path, write_drawn(path, svg, size, file, err), err);
+    status = file_close(file, path, write_drawn(path, svg, size, file, err), err);
     if (status != 0)
         (void)unlink(path);
     return status;
@@ -78,10 +60,9 @@ int output_file_drawn(const char *path, const char *svg, size_t size, struct err
 /* A map in PNG has a pixel a point, which is no drawing of an SVG. */
 static int write_pixels(const char *path, const struct map_picture *picture, struct error *err) {
     FILE *file;
-    int status = output_file_open(&file, path, err);
-    return status != 0
-               ? status
-               : output_file_close(file, path, map_png(file, picture->grid, picture->z, err), err);
+    int status = file_open(&file, path, err);
+    return status != 0 ? status
+                       : file_close(file, path, map_png(file, picture->grid, picture->z, err), err);
 }
 
 int output_file_picture(const char *path, const struct map_picture *picture, struct error *err) {

@@ -8,11 +8,6 @@
 /* ERROR_SYSTEM where the file could not be written as things are: asked before a long computation,
  * it makes nothing. */
 int output_file_check(const char *path, struct error *err);
-/* ERROR_SYSTEM with the path and the reason. */
-int output_file_open(FILE **file, const char *path, struct error *err);
-/* Closes the file, and returns the status of what was written, or that of the file, which may be
- * full. */
-int output_file_close(FILE *file, const char *path, int status, struct error *err);
 /* Whether a file of this name is to hold a PNG. */
 bool output_file_is_png(const char *path);
 /* Writes a picture into a file of its own: a pixel a point where its name ends in .png, else as

@@ -43,6 +43,21 @@ bool quantity_parse(const char *text, size_t size, const char *unit, double *out
     return true;
 }
 
+bool rising_numbers(const char *text, size_t most, double *out, size_t *count) {
+    double last = 0;
+    *count = 0;
+    for (char *stop;; text = stop + 1) {
+        double value = strtod(text, &stop);
+        if (stop == text || !(value > last && isfinite(value)) || *count == most)
+            return false;
+        out[(*count)++] = last = value;
+        if (*stop == '\0')
+            return true;
+        if (*stop != ',')
+            return false;
+    }
+}
+
 bool quantities_parse(const char *text, const char *unit, size_t most, double *out, size_t *count) {
     *count = 0;
     for (;; text++) {
@@ -96,4 +111,11 @@ double unit_readable(const char *unit, double most, char *out, size_t size) {
     snprintf(out, size, "%s%s%s", inverse ? "1/" : "", name, power);
     scale = pow(scale, exponent);
     return inverse ? 1 / scale : scale;
+}
+
+void unit_note(const char *label, const char *symbol, const char *unit, double scale, char *out,
+               size_t size) {
+    char name[32];
+    double readable = unit_readable(unit, scale, name, sizeof name);
+    snprintf(out, size, "%.60s of 1: %s = %.4g %s", label, symbol, scale / readable, name);
 }

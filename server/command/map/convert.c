@@ -1,7 +1,7 @@
 /* rugo convert FILE OUT: a height map in a file, prepared, into another file. */
+#include "core/file.h"
 #include "server/command/command.h"
 #include "server/command/map/map_file.h"
-#include "server/command/output_file.h"
 
 struct convert_options {
     struct map_options map;
@@ -30,13 +30,13 @@ static int write_map(const char *path, const struct height_map *map,
                      const struct preparation_record *record, struct error *err) {
     const enum height_map_format format = height_map_format_of(path);
     FILE *file;
-    int status = output_file_open(&file, path, err);
+    int status = file_open(&file, path, err);
     if (status != 0)
         return status;
     if (format != HEIGHT_MAP_NPY)
         write_header(file, format, map, record);
     status = height_map_write(file, format, &map->grid, map->z, err);
-    return output_file_close(file, path, status, err);
+    return file_close(file, path, status, err);
 }
 
 static int print(const struct height_map *map, const struct preparation_record *record,

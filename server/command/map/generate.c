@@ -1,5 +1,6 @@
 /* rugo generate STUDY.json: surfaces of a study, or a block meshed on one and pressed, to look at
  * or to use elsewhere. */
+#include "core/file.h"
 #include "core/map/height_map_file.h"
 #include "jobs/kind.h"
 #include "jobs/surface/realisation_map.h"
@@ -9,10 +10,8 @@
 #include "server/command/output_file.h"
 #include "server/show/map/map_report.h"
 #include "server/show/plot/plot_map.h"
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 struct generate_options {
@@ -130,11 +129,11 @@ static int read_order(struct generate_order *order, const struct generate_option
 static int write_file(const struct generate_order *order, const char *path, const struct grid *grid,
                       const double *z, struct error *err) {
     FILE *file;
-    int status = output_file_open(&file, path, err);
+    int status = file_open(&file, path, err);
     if (status != 0)
         return status;
     status = height_map_write(file, order->format, grid, z, err);
-    return output_file_close(file, path, status, err);
+    return file_close(file, path, status, err);
 }
 
 static int write_output(const struct generate_order *order, uint64_t realisation,
@@ -223,10 +222,8 @@ static int generate_one(const struct generate_order *order, const struct study *
     return status;
 }
 
-static int make_folder(const struct generate_order *order, struct error *err) {
-    if (!is_folder(order->output) || mkdir(order->output, 0777) == 0 || errno == EEXIST)
-        return 0;
-    return error_set(err, ERROR_SYSTEM, "cannot make %s: %s", order->output, strerror(errno));
+static int make_output(const struct generate_order *order, struct error *err) {
+    return is_folder(order->output) ? folder_make(order->output, err) : 0;
 }
 
 static int generate(const struct generate_order *order, const struct study *study,
@@ -239,7 +236,7 @@ static int generate(const struct generate_order *order, const struct study *stud
     int status = surface_case_read(&surface, study->cases[case_number].parameters, NULL, err);
     if (status != 0)
         return status;
-    status = make_folder(order, err);
+    status = make_output(order, err);
     for (uint64_t r = order->first; r <= order->last && status == 0; r++)
         status = generate_one(order, study, &surface, r, err);
     surface_case_clear(&surface);

@@ -1,20 +1,17 @@
 #include "server/command/map/generate_steps.h"
+#include "core/file.h"
 #include "core/full/file/mesh_inp.h"
 #include "core/full/file/mesh_msh.h"
 #include "core/nodal/step_folder.h"
 #include "jobs/kind.h"
 #include "server/command/exit_status.h"
 #include "server/command/output_file.h"
+#include "server/show/quantity.h"
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 enum { STEP_LOADS_MOST = 1000 };
-
-static bool ends_with(const char *path, const char *ending) {
-    size_t length = strlen(path), tail = strlen(ending);
-    return length > tail && strcmp(path + length - tail, ending) == 0;
-}
 
 bool step_words_ask(const struct step_words *words) {
     return words->mesh != NULL || words->steps != NULL || words->nodes != NULL;
@@ -55,9 +52,9 @@ static int write_mesh(const struct step_files *files, FILE *file, const struct n
                                     .material = step->step->material,
                                     .step_count = step->load > 0 ? files->count : 0,
                                     .steps = files->history};
-    if (ends_with(path, ".msh"))
+    if (file_ends_in(path, ".msh"))
         return mesh_msh(file, step->mesh, err);
-    if (ends_with(path, ".inp"))
+    if (file_ends_in(path, ".inp"))
         return mesh_inp(file, step->title, &model, err);
     return step_vtu(file, step, err);
 }
@@ -65,11 +62,11 @@ static int write_mesh(const struct step_files *files, FILE *file, const struct n
 static int put_mesh(const struct step_files *files, const struct nodal_step *step,
                     struct error *err) {
     FILE *file;
-    int status = output_file_open(&file, files->words->mesh, err);
+    int status = file_open(&file, files->words->mesh, err);
     if (status != 0)
         return status;
     status = write_mesh(files, file, step, err);
-    status = output_file_close(file, files->words->mesh, status, err);
+    status = file_close(file, files->words->mesh, status, err);
     if (status != 0)
         (void)unlink(files->words->mesh);
     return status;

@@ -1,14 +1,10 @@
 #include "server/command/map/map_output.h"
+#include "core/file.h"
 #include "core/map/height_map_file.h"
 #include <string.h>
 
-static bool ends_with(const char *path, const char *ending) {
-    size_t length = strlen(path), tail = strlen(ending);
-    return length > tail && strcmp(path + length - tail, ending) == 0;
-}
-
 bool map_output_is_picture(const char *path) {
-    return ends_with(path, ".png") || ends_with(path, ".svg");
+    return file_ends_in(path, ".png") || file_ends_in(path, ".svg");
 }
 
 int map_output_check(const char *path, struct error *err) {
@@ -33,10 +29,10 @@ int map_output_write(const char *path, const struct map_picture *labels, const s
         picture.unmarked = true;
         return output_file_picture(path, &picture, err);
     }
-    int status = output_file_open(&file, path, err);
+    int status = file_open(&file, path, err);
     if (status != 0)
         return status;
     status = height_map_write(file, format == HEIGHT_MAP_FORMATS ? HEIGHT_MAP_NPY : format, grid,
                               values, err);
-    return output_file_close(file, path, status, err);
+    return file_close(file, path, status, err);
 }

@@ -1,4 +1,5 @@
 /* rugo press FILE: the contact of a height map in a file with a rigid flat. */
+#include "core/file.h"
 #include "core/nodal/step_folder.h"
 #include "jobs/maps/map_press_curves.h"
 #include "jobs/maps/map_press_error.h"
@@ -46,12 +47,12 @@ static int write_map(const char *path, const char *name, const struct grid *grid
 static int write_mesh(const char *path, const struct nodal_step *step, struct error *err) {
     struct nodal_step face = *step;
     FILE *file;
-    int status = output_file_open(&file, path, err);
+    int status = file_open(&file, path, err);
     if (status != 0)
         return status;
     face.mesh = NULL; /* the surface, whatever the model */
     status = step_vtu(file, &face, err);
-    return output_file_close(file, path, status, err);
+    return file_close(file, path, status, err);
 }
 
 /* Writes the files of the last load. */

@@ -1,13 +1,12 @@
 #include "server/command/study/kept_nodes.h"
+#include "core/file.h"
 #include "core/nodal/step_folder.h"
 #include "jobs/surface/realisation_map.h"
 #include "jobs/surface/surface_case.h"
 #include "server/command/command.h"
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 /* --- the realisations of a case --- */
 
@@ -45,9 +44,9 @@ static int make_folders(struct kept_writer *writer, uint64_t realisation, const 
     for (char *slash = writer->path + strlen(order->folder) + 1;
          (slash = strchr(slash, '/')) != NULL; *slash++ = '/') {
         *slash = '\0';
-        if (mkdir(writer->path, 0777) != 0 && errno != EEXIST)
-            return error_set(err, ERROR_SYSTEM, "cannot make %s: %s", writer->path,
-                             strerror(errno));
+        int status = folder_make(writer->path, err);
+        if (status != 0)
+            return status;
     }
     return 0;
 }

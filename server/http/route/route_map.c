@@ -9,8 +9,9 @@
 #include "server/http/accept.h"
 #include "server/http/route/route.h"
 #include "server/show/map/map_png.h"
+#include "server/show/quantity.h"
 #include "worker/clock.h"
-#include <math.h>
+
 #include <poll.h>
 #include <stdlib.h>
 #include <string.h>
@@ -235,23 +236,6 @@ struct node_question {
     double loads[NODE_LOADS_MOST];
 };
 
-/* Reads rising loads with commas between; false where they are not that. */
-static bool read_loads(const char *text, struct node_question *out) {
-    double before = 0;
-    for (const char *at = text;;) {
-        char *end;
-        double load = strtod(at, &end);
-        if (end == at || !(load > before) || !isfinite(load) || out->load_count == NODE_LOADS_MOST)
-            return false;
-        out->loads[out->load_count++] = before = load;
-        if (*end == '\0')
-            return true;
-        if (*end != ',')
-            return false;
-        at = end + 1;
-    }
-}
-
 /* Returns false after an answer. */
 static bool read_nodes(struct exchange *exchange, const char *id, struct node_question *out) {
     const char *load = exchange_query(exchange, "load"),
@@ -263,7 +247,7 @@ static bool read_nodes(struct exchange *exchange, const char *id, struct node_qu
     out->vtu = format != NULL && strcmp(format, "vtu") == 0;
     if (format != NULL && !out->vtu && strcmp(format, "csv") != 0)
         fault(exchange, "?format", "allowed: csv, vtu");
-    else if (load != NULL && !read_loads(load, out))
+    else if (load != NULL && !rising_numbers(load, NODE_LOADS_MOST, out->loads, &out->load_count))
         fault(exchange, "?load", "rising loads p/(E* h') above 0, with commas between");
     else if (out->vtu && out->load_count != 1)
         fault(exchange, "?load", "a VTU file has one load: give it");

@@ -413,12 +413,10 @@ static void draw_second(const struct plot *plot) {
 
 /* Names the units of a picture of several panels in its legend. */
 static void note_unit(struct plot *plot, const struct physical_unit *unit, const char *label) {
-    char text[PLOT_LABEL_SIZE], name[32];
+    char text[PLOT_LABEL_SIZE];
     if (unit->unit == NULL || plot->panels < 2)
         return;
-    double scale = unit_readable(unit->unit, unit->scale, name, sizeof name);
-    snprintf(text, sizeof text, "%s of 1: %s = %.4g %s", label, unit->symbol, unit->scale / scale,
-             name);
+    unit_note(label, unit->symbol, unit->unit, unit->scale, text, sizeof text);
     (void)legend_add(&plot->legend, text, "");
 }
 

@@ -189,12 +189,10 @@ static void note_case(struct plot_pen *pen, const struct study_result *study,
 
 /* Notes what one of an axis is in its physical unit. */
 static void note_unit(struct plot_pen *pen, const char *label, const struct physical_unit *unit) {
-    char text[PLOT_LABEL_SIZE], name[32];
+    char text[PLOT_LABEL_SIZE];
     if (unit->unit == NULL)
         return;
-    double scale = unit_readable(unit->unit, unit->scale, name, sizeof name);
-    snprintf(text, sizeof text, "%.60s of 1: %s = %.4g %s", label, unit->symbol,
-             unit->scale / scale, name);
+    unit_note(label, unit->symbol, unit->unit, unit->scale, text, sizeof text);
     pen_note(pen, text);
 }
 

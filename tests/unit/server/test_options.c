@@ -1,6 +1,7 @@
 /* Protects: the one table of options: each type's values, bounds and defaults, the messages on
  * wrong ones, and that every command's own table is sound. */
 #include "server/command/command.h"
+#include "server/show/quantity.h"
 #include "tests/support/check.h"
 #include <stdint.h>
 #include <stdio.h>
