@@ -89,6 +89,10 @@ struct study_status {
 };
 void study_status_clear(struct study_status *status);
 int store_status(struct store *store, const char *id, struct study_status *out, struct error *err);
+/* Reads the same but for what needs the study's jobs: share, seconds_left and starts_in are NaN,
+ * and it has no position in the queue. It costs the same however many jobs and cases there are. */
+int store_status_counted(struct store *store, const char *id, struct study_status *out,
+                         struct error *err);
 /* Reads who computed the study, when and on which hosts (schema/result/provenance.h); the caller
  * deletes it. */
 int store_provenance(struct store *store, const char *id, cJSON **out, struct error *err);

@@ -139,9 +139,10 @@ void study_status_clear(struct study_status *status) {
     *status = (struct study_status){0};
 }
 
-int store_status(struct store *store, const char *id, struct study_status *out, struct error *err) {
+/* Reads the row of a study and its number. */
+static int read_row(struct store *store, const char *id, int64_t *row, struct study_status *out,
+                    struct error *err) {
     sqlite3_stmt *statement = NULL;
-    struct study_status read = {0};
     int status = store_query(store, &statement, err,
                              "SELECT " STATUS_COLUMNS " FROM study WHERE public = ?", "t", id);
     if (status == 0)
@@ -150,16 +151,33 @@ int store_status(struct store *store, const char *id, struct study_status *out, 
         return error_set(err, ERROR_ABSENT, "there is no study \"%.40s\"", id);
     if (status < 0)
         return status;
-    int64_t row = sqlite3_column_int64(statement, 19);
-    status = read_status(statement, &read, err);
+    *row = sqlite3_column_int64(statement, 19);
+    status = read_status(statement, out, err);
     sqlite3_reset(statement);
-    if (status == 0)
+    return status;
+}
+
+static int study_read(struct store *store, const char *id, bool outlook, struct study_status *out,
+                      struct error *err) {
+    struct study_status read = {.share = NAN, .seconds_left = NAN, .starts_in = NAN};
+    int64_t row = 0;
+    int status = read_row(store, id, &row, &read, err);
+    if (status == 0 && outlook)
         status = read_outlook(store, row, &read, err);
     if (status != 0)
         study_status_clear(&read);
     else
         *out = read;
     return status;
+}
+
+int store_status(struct store *store, const char *id, struct study_status *out, struct error *err) {
+    return study_read(store, id, true, out, err);
+}
+
+int store_status_counted(struct store *store, const char *id, struct study_status *out,
+                         struct error *err) {
+    return study_read(store, id, false, out, err);
 }
 
 /* Reads the one JSON text that a query of a study returns. */

@@ -105,7 +105,7 @@ static int local_left(void *self, int *left, bool *due, struct error *err) {
         return found;
     if (local->study[0] != '\0') {
         struct study_status study = {0};
-        int status = store_status(local->store, local->study, &study, err);
+        int status = store_status_counted(local->store, local->study, &study, err);
         if (status == 0) {
             *left = study.jobs_waiting + study.jobs_running > 0;
             study_status_clear(&study);

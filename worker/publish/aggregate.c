@@ -259,7 +259,7 @@ static int answer_case(struct store *store, const struct aggregate *aggregate, u
 int aggregate_begin(struct store *store, const char *study, struct aggregate *out,
                     struct error *err) {
     struct aggregate found = {0};
-    int status = store_status(store, study, &found.about, err);
+    int status = store_status_counted(store, study, &found.about, err);
     if (status != 0)
         return status;
     found.kind = kind_find(found.about.kind);

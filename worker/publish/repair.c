@@ -104,7 +104,7 @@ static int repair_case(struct store *store, const struct flaw *flaw, bool *repai
 
 static int drop_block(struct store *store, const struct flaw *flaw, struct error *err) {
     struct study_status about = {0};
-    int status = store_status(store, flaw->study, &about, err);
+    int status = store_status_counted(store, flaw->study, &about, err);
     const struct job_kind *kind = status == 0 ? kind_find(about.kind) : NULL;
     study_status_clear(&about);
     return status != 0 ? status

@@ -150,7 +150,7 @@ static int write_case(struct store *store, const char *id, const struct study_st
 
 int kept_nodes_write(struct store *store, const char *id, const char *folder, struct error *err) {
     struct study_status study = {0};
-    int status = store_status(store, id, &study, err);
+    int status = store_status_counted(store, id, &study, err);
     if (status != 0)
         return status;
     struct kept_order order = {.kind = kind_find(study.kind), .folder = folder};

@@ -116,7 +116,7 @@ static int find_case(struct exchange *exchange, const struct map_question *quest
     struct study_status study = {0};
     int status = exchange_reader(exchange, &reader, err);
     if (status == 0)
-        status = store_status(reader, question->id, &study, err);
+        status = store_status_counted(reader, question->id, &study, err);
     if (status == 0)
         status = store_case(reader, question->id, question->case_number, info, err);
     service_give_back(exchange->service, reader);
