@@ -53,7 +53,7 @@ LIBS_worker = -lcurl $(LIBS_jobs)
 LIBS_server = -lmicrohttpd -lgnutls -lpng -lz $(LIBS_worker)
 
 # Files linked in as data: _binary_<path with underscores>_start and _end.
-embedded = $(filter %.html %.js %.css %.yaml %.py,$(wildcard $(addprefix $(1)/,web/* web/vendor/* http/* python/*)))
+embedded = $(filter %.html %.js %.css %.yaml %.py,$(wildcard $(addprefix $(1)/,web/* web/vendor/* http/* python/rugo/client.py)))
 # The migrations of the store as one block of data in the order of their names, each ended by a NUL.
 MIGRATIONS = $(sort $(wildcard schema/store/migrations/*.sql))
 DATA_schema = $(BUILD)/schema/store/migrations.data.o
@@ -438,7 +438,7 @@ install: all
 	$(INSTALL_DATA) core/rugo_lists.h $(DESTDIR)$(includedir)/rugo_lists.h
 	$(INSTALL_DATA) $(BUILD)/rugo.1 $(DESTDIR)$(mandir)/man1/rugo.1
 	$(INSTALL_DATA) $(BUILD)/rugo.bash $(DESTDIR)$(completion)/rugo
-	$(INSTALL_DATA) server/python/rugo.py $(DESTDIR)$(pythondir)/rugo.py
+	$(INSTALL_DATA) server/python/rugo/client.py $(DESTDIR)$(pythondir)/rugo.py
 	for unit in $(UNITS); do \
 	    sed 's|/usr/local/bin|$(bindir)|' server/systemd/$$unit >$(BUILD)/$$unit && \
 	    $(INSTALL_DATA) $(BUILD)/$$unit $(DESTDIR)$(unitdir)/$$unit || exit; done

@@ -38,6 +38,11 @@ extern "C" {
 
 /* Returns the version of the linked library, as RUGO_VERSION; not to be freed. */
 RUGO_API const char *rugo_version(void);
+/* Returns the name, as studies write it, of choice n (from 0) of a list of rugo_lists.h: "spectra",
+ * "distributions", "summit_rules", "trends" or "models"; NULL behind the last and for another list.
+ * *value, unless NULL, becomes that of its enumeration. It serves programs that cannot include this
+ * header; the name is not to be freed. */
+RUGO_API const char *rugo_choice(const char *list, size_t n, int *value);
 
 enum {
     RUGO_ERROR_INPUT = -1,   /* an argument or a file is wrong */

@@ -22,7 +22,7 @@
     ASSET("workers.js", "text/javascript; charset=utf-8", server_web_workers_js)                   \
     ASSET("uplot.js", "text/javascript; charset=utf-8", server_web_vendor_uplot_js)                \
     ASSET("uplot.css", "text/css; charset=utf-8", server_web_vendor_uplot_css)                     \
-    ASSET("rugo.py", "text/x-python; charset=utf-8", server_python_rugo_py)                        \
+    ASSET("rugo.py", "text/x-python; charset=utf-8", server_python_rugo_client_py)                 \
     ASSET("openapi.yaml", "application/yaml", server_http_openapi_yaml)                            \
     ASSET("templates.json", "application/json", templates_json)
 

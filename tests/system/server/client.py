@@ -1,12 +1,10 @@
-"""What test_python.c runs: rugo.py against a real service. Arguments: the URL, and a folder with first.json
-and what `rugo run --out results` makes of it."""
+"""What test_python.c runs: the client alone, as rugo.py, against a real service. Arguments: the URL, and a folder."""
 
 import contextlib
 import io
 import json
 import os
 import pathlib
-import re
 import sys
 
 import rugo
@@ -38,6 +36,7 @@ def a_study_from_submission_to_tables(server):
     assert study.document()["surface"] == STUDY["surface"]
     rows = study.curves("summit_height_pdf")
     assert {row["case"] for row in rows} == {0, 1} and {row["quantity"] for row in rows} == {"summit_height_pdf"}
+    assert {row["series"] for row in rows} == {"main"}
     document = study.results("summit_height_pdf")
     points = [y for case in document["cases"] for curve in case["curves"] for y in curve["y"]]
     assert [row["y"] for row in rows] == points and len(points) > 100
@@ -124,26 +123,9 @@ def tokens_are_read_as_commands_do():
     path.unlink()
 
 
-def what_the_page_claims():
-    """The blocks of the page, one after the other, where there is pandas."""
-    page = pathlib.Path(rugo.__file__).with_name("README.md").read_text(encoding="utf-8")
-    try:
-        import pandas
-    except ImportError:
-        print("SKIP the page: there is no pandas")
-        return
-    blocks = re.findall("```python\n(.*?)```", page, re.S)
-    assert len(blocks) == 4
-    names = {}
-    for block in blocks:
-        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
-            exec(block.replace("http://127.0.0.1:8080", URL), names)
-    assert isinstance(names["table"], pandas.DataFrame) and len(names["table"]) == 2
-
-
+assert pathlib.Path(rugo.__file__).name == "rugo.py" and rugo.Client is rugo.Server
 os.chdir(FOLDER)
 here = rugo.Server(URL)
-what_the_page_claims()
 one = a_study_from_submission_to_tables(here)
 studies_are_found_and_changed(here, one)
 faults_are_told(here)

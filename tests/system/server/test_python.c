@@ -1,10 +1,13 @@
-/* Protects: the client in Python, against a real service, and what its page claims (client.py). */
+/* Protects: Rugo in Python: the client, alone and against a real service (client.py), the package
+ * with librugo and the program, and what its page and its notebook claim (package.py). */
+#include "core/rugo.h"
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static const char FIRST[] =
     "{\"name\":\"first\",\"kind\":\"statistics\",\"seed\":1,\"realisations\":8,\"surface\":{"
@@ -16,31 +19,65 @@ static const char *source(void) {
     return folder != NULL ? folder : ".";
 }
 
-static void the_client_and_its_page(void **state) {
-    (void)state;
-    struct process server = {0};
-    char line[1200];
+static void need_python(void) {
     if (system("python3 -c 'import sys; sys.exit(sys.version_info < (3, 8))' 2>/dev/null") != 0) {
         print_message("SKIP: there is no python3 of version 3.8 or later\n");
         skip();
     }
+}
+
+/* Runs a script of this folder; it must end well, with the sentence. */
+static void run_script(const char *environment, const char *script, const char *arguments,
+                       const char *sentence) {
+    char line[4000];
+    snprintf(line, sizeof line,
+             "env -u RUGO_TOKEN PYTHONDONTWRITEBYTECODE=1 %s timeout 400 python3 "
+             "'%s/tests/system/server/%s' %s >script.out 2>&1",
+             environment, source(), script, arguments);
+    int status = system(line);
+    char *printed = slurp("script.out");
+    print_message("%s", printed);
+    assert_non_null(strstr(printed, sentence));
+    free(printed);
+    assert_int_equal(status, 0);
+}
+
+/* The file that a service gives away needs nothing of the package. */
+static void the_client_works_alone(void **state) {
+    (void)state;
+    struct process server = {0};
+    char path[1000], arguments[100];
+    need_python();
+    unsigned port = serve_start(&server, (const char *[]){"--workers", "1", NULL});
+    snprintf(path, sizeof path, "%s/server/python/rugo/client.py", source());
+    char *file = slurp(path);
+    assert_int_equal(mkdir("alone", 0777), 0);
+    spit("alone/rugo.py", file);
+    free(file);
+    snprintf(arguments, sizeof arguments, "http://127.0.0.1:%u .", port);
+    run_script("PYTHONPATH=\"$PWD/alone:$PYTHONPATH\"", "client.py", arguments,
+               "client: all as it should be");
+    process_kill(&server, SIGTERM);
+    assert_int_equal(process_wait(&server, 15), 0);
+}
+
+/* librugo lies beside the program. */
+static void the_package_and_its_page(void **state) {
+    (void)state;
+    struct process server = {0};
+    char environment[3000], arguments[1200];
+    need_python();
     unsigned port = serve_start(&server, (const char *[]){"--workers", "1", NULL});
     spit("first.json", FIRST);
     assert_int_equal(run_rugo("run", (const char *[]){"run", "--db", "own.db", "first.json",
                                                       "--out", "results", NULL}),
                      0);
-    snprintf(
-        line, sizeof line,
-        "env -u RUGO_TOKEN PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=\"%s/server/python:$PYTHONPATH\" "
-        "timeout 400 python3 %s/tests/system/server/client.py http://127.0.0.1:%u . "
-        ">client.out 2>&1",
-        source(), source(), port);
-    int status = system(line);
-    char *told = slurp("client.out");
-    print_message("%s", told);
-    assert_non_null(strstr(told, "client: all as it should be"));
-    free(told);
-    assert_int_equal(status, 0);
+    snprintf(environment, sizeof environment,
+             "PYTHONPATH=\"%s/server/python:$PYTHONPATH\" RUGO_PROGRAM='%s' "
+             "RUGO_LIBRARY=\"$(dirname '%s')/librugo.so." RUGO_VERSION "\"",
+             source(), rugo(), rugo());
+    snprintf(arguments, sizeof arguments, "'%s' . http://127.0.0.1:%u", source(), port);
+    run_script(environment, "package.py", arguments, "package: all as it should be");
     process_kill(&server, SIGTERM);
     assert_int_equal(process_wait(&server, 15), 0);
 }
@@ -51,10 +88,7 @@ static void the_client_speaks_tls(void **state) {
     struct process server = {0};
     char line[1600], fingerprint[80] = "";
     unsigned port = 0;
-    if (system("python3 -c 'import sys; sys.exit(sys.version_info < (3, 8))' 2>/dev/null") != 0) {
-        print_message("SKIP: there is no python3 of version 3.8 or later\n");
-        skip();
-    }
+    need_python();
     assert_int_equal(run_rugo("new", (const char *[]){"certificate", "new", "tls", NULL}), 0);
     process_start(&server, "tls",
                   (const char *[]){"serve", "--db", "tls.db", "--listen", "127.0.0.1:0",
@@ -96,7 +130,7 @@ static void the_service_gives_it_away(void **state) {
     (void)state;
     struct process server = {0};
     char path[600], *answer;
-    snprintf(path, sizeof path, "%s/server/python/rugo.py", source());
+    snprintf(path, sizeof path, "%s/server/python/rugo/client.py", source());
     char *file = slurp(path);
     unsigned port = serve_start(&server, NULL);
     assert_int_equal(http_exchange(port, "GET", "/rugo.py", NULL, NULL, &answer), 200);
@@ -109,7 +143,8 @@ static void the_service_gives_it_away(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_client_and_its_page),
+        cmocka_unit_test(the_client_works_alone),
+        cmocka_unit_test(the_package_and_its_page),
         cmocka_unit_test(the_client_speaks_tls),
         cmocka_unit_test(the_service_gives_it_away),
     };

@@ -354,6 +354,25 @@ static void unknown_choices_are_named(void **state) {
     assert_non_null(strstr(err.text, "no rule 3"));
 }
 
+/* Programs in other languages have no other source of the enumerations. */
+static void choices_have_their_names(void **state) {
+    (void)state;
+    int value = -1;
+    assert_string_equal(rugo_choice("spectra", 0, &value), "self_affine");
+    assert_int_equal(value, RUGO_SELF_AFFINE);
+    assert_string_equal(rugo_choice("distributions", 3, &value), "lognormal");
+    assert_int_equal(value, RUGO_LOGNORMAL);
+    assert_string_equal(rugo_choice("summit_rules", 2, &value), "refined");
+    assert_int_equal(value, RUGO_REFINED);
+    assert_string_equal(rugo_choice("trends", 1, NULL), "plane");
+    assert_string_equal(rugo_choice("models", 2, &value), "full");
+    assert_int_equal(value, RUGO_FULL);
+    assert_null(rugo_choice("models", 3, &value));
+    assert_null(rugo_choice("models", SIZE_MAX, &value));
+    assert_null(rugo_choice("colours", 0, &value));
+    assert_int_equal(value, RUGO_FULL);
+}
+
 /* rugo.h promises it: a failure comes before the first height is written. */
 static void a_map_that_cannot_be_sampled_is_left_alone(void **state) {
     (void)state;
@@ -379,6 +398,7 @@ int main(void) {
         cmocka_unit_test(a_map_that_cannot_be_sampled_is_left_alone),
         cmocka_unit_test(values_of_choices_stay),
         cmocka_unit_test(unknown_choices_are_named),
+        cmocka_unit_test(choices_have_their_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

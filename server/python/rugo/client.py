@@ -32,9 +32,10 @@ import urllib.error
 import urllib.parse
 import urllib.request
 
-__all__ = ["Server", "Study", "Rows", "RugoError"]
+__all__ = ["Client", "Server", "Study", "Rows", "RugoError"]
 
 CSV_CASES_MOST = 64  # of one answer; each case of a larger study is asked for by itself
+MAIN_SERIES = "main"  # in rows, of a curve that is the only one of its quantity: pandas drops rows without a name
 ENDS = ("done", "failed", "cancelled")
 
 
@@ -71,10 +72,24 @@ def _value(text):
     return text
 
 
-def _rows(text):
-    """The rows of a CSV text, whose lines before the header may be comments."""
+def rows_of_csv(text):
+    """The rows of a CSV text, whose lines before the header may be comments; a series without a name is "main"."""
     lines = [line for line in io.StringIO(text) if not line.startswith("#")]
-    return Rows({name: _value(cell) for name, cell in row.items()} for row in csv.DictReader(lines))
+    rows = Rows({name: _value(cell) for name, cell in row.items()} for row in csv.DictReader(lines))
+    for row in rows:
+        if row.get("series", MAIN_SERIES) is None:
+            row["series"] = MAIN_SERIES
+    return rows
+
+
+def rows_of_scalars(document):
+    """The rows of the scalars of a document of curves."""
+    rows = Rows()
+    for one in document["cases"]:
+        parameters = {pointer.rsplit("/", 1)[1]: value for pointer, value in one["parameters"].items()}
+        for name, scalar in one.get("scalars", {}).items():
+            rows.append({"case": one["case"], **parameters, "name": name, **scalar})
+    return rows
 
 
 def _token_of_file(path):
@@ -281,6 +296,9 @@ class Server:
         return path
 
 
+Client = Server
+
+
 def _no_answer(url, error):
     """A RugoError of a request without an answer; what was refused before it was sent is not lost."""
     reason = getattr(error, "reason", error)
@@ -360,7 +378,7 @@ class Study:
         rows = Rows()
         for number in numbers:
             query = {"quantity": quantity, "case": number}
-            rows.extend(_rows(self.server.text("GET", self._path("/curves"), query=query, accept="text/csv")))
+            rows.extend(rows_of_csv(self.server.text("GET", self._path("/curves"), query=query, accept="text/csv")))
         return rows
 
     def table(self, columns=None, where=None):
@@ -370,7 +388,7 @@ class Study:
                  for value in (given if isinstance(given, (list, tuple)) else [given])]
         query = {"columns": ",".join(columns) if columns else None,
                  "where": ",".join(f"{name}={value}" for name, value in pairs) or None}
-        return _rows(self.server.text("GET", self._path("/table"), query=query, accept="text/csv"))
+        return rows_of_csv(self.server.text("GET", self._path("/table"), query=query, accept="text/csv"))
 
     def results(self, quantity=None, case=None):
         """Curves, scalars, parameters and notes of the cases, as the service's document: a dict."""
@@ -378,12 +396,7 @@ class Study:
 
     def scalars(self):
         """A row a case and scalar: case, its parameters, name, value, standard_error, theory."""
-        rows = Rows()
-        for one in self.results()["cases"]:
-            parameters = {pointer.rsplit("/", 1)[1]: value for pointer, value in one["parameters"].items()}
-            for name, scalar in one.get("scalars", {}).items():
-                rows.append({"case": one["case"], **parameters, "name": name, **scalar})
-        return rows
+        return rows_of_scalars(self.results())
 
     def report(self):
         """Cost beside error, by case: a dict."""
