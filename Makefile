@@ -310,7 +310,7 @@ nightly: all
 	$(MAKE) lint
 	RUGO_EFFORT=4 $(MAKE) unit validation
 	RUGO_EFFORT=4 $(MAKE) faults
-	$(MAKE) check-documents check-install check-units check-openapi check-figures check-results tour
+	$(MAKE) check-documents check-install check-python check-units check-openapi check-figures check-results tour
 	-@tests/install-deps "" "slurmctld slurmd slurm-client munge" munged slurmctld slurmd sbatch
 	$(MAKE) slurm-test
 	$(MAKE) check-static
@@ -424,8 +424,10 @@ check-circles: $(call archive,$(LAYERS))
 
 INSTALLED = $(bindir)/rugo $(libdir)/$(SHARED) $(libdir)/$(SONAME) $(libdir)/librugo.so $(libdir)/librugo.a \
             $(libdir)/pkgconfig/rugo.pc $(includedir)/rugo.h $(includedir)/rugo_lists.h $(mandir)/man1/rugo.1 $(completion)/rugo \
-            $(pythondir)/rugo.py $(addprefix $(unitdir)/,$(UNITS)) $(sysusersdir)/rugo.conf
+            $(pythondir)/rugo.py $(PACKAGE:server/python/%=$(pythondir)/%) $(addprefix $(unitdir)/,$(UNITS)) \
+            $(sysusersdir)/rugo.conf
 UNITS     = rugo.service rugo-work@.service
+PACKAGE   = $(wildcard server/python/rugo/*.py) server/python/rugo/py.typed
 install: all
 	$(INSTALL) -d $(sort $(dir $(addprefix $(DESTDIR),$(INSTALLED))))
 	$(INSTALL_PROGRAM) $(BUILD)/rugo $(DESTDIR)$(bindir)/rugo
@@ -439,16 +441,22 @@ install: all
 	$(INSTALL_DATA) $(BUILD)/rugo.1 $(DESTDIR)$(mandir)/man1/rugo.1
 	$(INSTALL_DATA) $(BUILD)/rugo.bash $(DESTDIR)$(completion)/rugo
 	$(INSTALL_DATA) server/python/rugo/client.py $(DESTDIR)$(pythondir)/rugo.py
+	$(INSTALL_DATA) $(PACKAGE) $(DESTDIR)$(pythondir)/rugo
 	for unit in $(UNITS); do \
 	    sed 's|/usr/local/bin|$(bindir)|' server/systemd/$$unit >$(BUILD)/$$unit && \
 	    $(INSTALL_DATA) $(BUILD)/$$unit $(DESTDIR)$(unitdir)/$$unit || exit; done
 	$(INSTALL_DATA) server/systemd/rugo.conf $(DESTDIR)$(sysusersdir)/rugo.conf
 uninstall:
 	rm -f $(addprefix $(DESTDIR),$(INSTALLED))
+	rm -rf $(DESTDIR)$(pythondir)/rugo/__pycache__
 
 # Into a prefix of its own: header, libraries and pkg-config agree, and the example runs with each library.
 check-install: all
 	@CC="$(CC)" MAKE="$(MAKE) --no-print-directory BUILD=$(BUILD)" tests/check-install core/example.c
+# The package for Python in a virtual environment, with NumPy and pandas from PyPI; skipped, with a word, without these.
+check-python: all $(BUILD)/tests/system/server/test_python
+	@tests/check-python $(abspath $(BUILD)) $(BUILD)/tests/system/server/test_python
+.PHONY: check-python
 # The units of systemd, by its own tools, and the server's tried by kills; skipped where there are none.
 check-units: all
 	@tests/check-units $(abspath $(BUILD))/rugo
