@@ -11,7 +11,6 @@
 #include "server/show/map/map_png.h"
 #include "server/show/quantity.h"
 #include "worker/clock.h"
-
 #include <poll.h>
 #include <stdlib.h>
 #include <string.h>
