@@ -157,7 +157,7 @@ static int read_row(struct store *store, const char *id, int64_t *row, struct st
     return status;
 }
 
-static int study_read(struct store *store, const char *id, bool outlook, struct study_status *out,
+static int read_study(struct store *store, const char *id, bool outlook, struct study_status *out,
                       struct error *err) {
     struct study_status read = {.share = NAN, .seconds_left = NAN, .starts_in = NAN};
     int64_t row = 0;
@@ -172,12 +172,12 @@ static int study_read(struct store *store, const char *id, bool outlook, struct 
 }
 
 int store_status(struct store *store, const char *id, struct study_status *out, struct error *err) {
-    return study_read(store, id, true, out, err);
+    return read_study(store, id, true, out, err);
 }
 
 int store_status_counted(struct store *store, const char *id, struct study_status *out,
                          struct error *err) {
-    return study_read(store, id, false, out, err);
+    return read_study(store, id, false, out, err);
 }
 
 /* Reads the one JSON text that a query of a study returns. */

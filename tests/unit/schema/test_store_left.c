@@ -6,6 +6,7 @@
 #include "schema/study/study_reader.h"
 #include "tests/support/check.h"
 #include "tests/support/fake_kind.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -199,6 +200,13 @@ static void behind_others(void **state) {
     assert_int_equal(store_list(store, "", 10, &list, &count, NULL), 0);
     assert_int_equal(count, 3);
     check_close(list[2].seconds_left, left_of(store, third), 1e-12);
+    struct study_status counted = {0};
+    assert_int_equal(store_status_counted(store, third, &counted, NULL), 0);
+    assert_int_equal(counted.realisations_total, list[2].realisations_total);
+    assert_int_equal(counted.jobs_waiting, list[2].jobs_waiting);
+    assert_true(isnan(counted.seconds_left) && isnan(counted.share) && isnan(counted.starts_in));
+    study_status_clear(&counted);
+    assert_int_equal(store_status_counted(store, "0123", &counted, NULL), ERROR_ABSENT);
     for (size_t i = 0; i < count; i++)
         study_status_clear(&list[i]);
     free(list);
