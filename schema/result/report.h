@@ -4,8 +4,10 @@
  * the deviation from a theory |y - theory|/|theory|, where |.| is the root of the sum of squares
  * over the points where both are known. That of a source is of |value| + bound. The discretisation
  * error is the distance of every mesh level from the limit; the others are those of the finest
- * level. A case's errors are those of its main curve: the first one that has a statistical error
- * and a theory, or else the first one with an error. */
+ * level. The total is a size of one standard error and of the others at most, in quadrature,
+ * without their signs; an interval of 95 % is another matter (total.h). A case's errors are those
+ * of its main curve: the first one that has a statistical error and a theory, or else the first one
+ * with an error. */
 #ifndef RUGO_SCHEMA_RESULT_REPORT_H
 #define RUGO_SCHEMA_RESULT_REPORT_H
 

@@ -1,0 +1,56 @@
+#include "schema/result/total.h"
+#include <math.h>
+#include <string.h>
+
+struct total total_of(double value, double standard_error,
+                      const struct scalar_error errors[ERROR_SOURCES]) {
+    struct total total = {.low = NAN, .high = NAN};
+    double most = 0, least = 0;
+    bool any = !isnan(standard_error);
+    for (size_t s = 0; s < ERROR_SOURCES; s++) {
+        const struct scalar_error *error = &errors[s];
+        bool known = error->applies && error->known && !isnan(error->value);
+        bool bounded = known && !isnan(error->bound);
+        total.unknown[s] = error->applies && !bounded;
+        most += known ? error->value + (bounded ? error->bound : 0) : 0;
+        least += known ? error->value - (bounded ? error->bound : 0) : 0;
+        any = any || known;
+    }
+    if (isnan(value) || !any)
+        return total;
+    double statistical = isnan(standard_error) ? 0 : TOTAL_DEVIATIONS * standard_error;
+    total.low = value - (statistical + fmax(0, most));
+    total.high = value + (statistical + fmax(0, -least));
+    return total;
+}
+
+struct total scalar_total(const struct scalar *scalar) {
+    return total_of(scalar->value, scalar->standard_error, scalar->errors);
+}
+
+static double at_or_nan(const double *numbers, size_t at) {
+    return numbers != NULL ? numbers[at] : (double)NAN;
+}
+
+struct total curve_total(const struct curve *curve, size_t at) {
+    struct scalar_error errors[ERROR_SOURCES];
+    for (size_t s = 0; s < ERROR_SOURCES; s++) {
+        const struct curve_error *error = &curve->errors[s];
+        errors[s] = (struct scalar_error){.applies = error->applies,
+                                          .known = error->value != NULL,
+                                          .value = at_or_nan(error->value, at),
+                                          .bound = at_or_nan(error->bound, at)};
+    }
+    return total_of(curve->y[at], curve->standard_error[at], errors);
+}
+
+void curve_unknown(const struct curve *curve, bool unknown[ERROR_SOURCES]) {
+    memset(unknown, 0, ERROR_SOURCES * sizeof *unknown);
+    for (size_t s = 0; s < ERROR_SOURCES; s++)
+        unknown[s] = curve->errors[s].applies && curve->errors[s].value == NULL;
+    for (size_t at = 0; at < curve_value_count(curve); at++) {
+        const struct total total = curve_total(curve, at);
+        for (size_t s = 0; s < ERROR_SOURCES && !isnan(curve->y[at]); s++)
+            unknown[s] = unknown[s] || total.unknown[s];
+    }
+}

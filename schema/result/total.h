@@ -1,0 +1,46 @@
+/* The total error of a value: the interval in which the truth lies by all that is known of it.
+ *
+ * A result states of each source that (reported - true) lies within value +- bound,
+ * and its standard error s. With H the sum of (value + bound) and L that of (value - bound) over
+ * the known sources that bear on the value y,
+ *
+ *     low  = y - (1.96 s + max(0, H)),
+ *     high = y + (1.96 s + max(0, -L)).
+ *
+ * The interval holds y, and the truth with a probability of 95 % at least, wherever the errors of
+ * the sources lie within their bounds: 1.96 s is half the width of the statistical interval of 95
+ * %, and H and L are the largest and the least that the sources come to. They add up plainly, as
+ * the sources' errors are the same in every realisation. The root of the sum of squares, as of
+ * errors that are independent, would hold a truth at the end of the bounds of 2 +- 0.25, beside a
+ * standard error of 0.25, in 58 % of studies; this one does in 97 %.
+ *
+ * A source that bears on the value but is not known adds nothing: the interval is that of the
+ * others, and the source is named. A standard error that is not known, or of a single map, adds
+ * nothing either. */
+#ifndef RUGO_SCHEMA_RESULT_TOTAL_H
+#define RUGO_SCHEMA_RESULT_TOTAL_H
+
+#include "schema/result/result.h"
+
+/* Half the width of an interval of 95 %, in standard errors. */
+#define TOTAL_DEVIATIONS 1.96
+
+/* In the units of the value. NaN: the value is not known, or neither is its standard error nor any
+ * source. */
+struct total {
+    double low, high;
+    /* Sources that bear on the value, and are not in the interval; of a source that has a value
+     * without a bound the value is. */
+    bool unknown[ERROR_SOURCES];
+};
+
+/* Returns the total of a value with its errors by source. */
+struct total total_of(double value, double standard_error,
+                      const struct scalar_error errors[ERROR_SOURCES]);
+struct total scalar_total(const struct scalar *scalar);
+/* Returns the total of a point, or of a matrix of an occupied cell: at < curve_value_count. */
+struct total curve_total(const struct curve *curve, size_t at);
+/* Finds the sources that are not known at some point that has a value, or nowhere. */
+void curve_unknown(const struct curve *curve, bool unknown[ERROR_SOURCES]);
+
+#endif
