@@ -2,6 +2,7 @@
 #include "schema/json/json.h"
 #include "schema/result/provenance.h"
 #include "schema/result/swept.h"
+#include "schema/result/total.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -104,6 +105,20 @@ static void print_units(FILE *file, const struct curve *curve, double x, double 
                                                  : (double)NAN);
 }
 
+/* Prints the columns of the total interval of a value. */
+static void print_total(FILE *file, const struct curve *curve, size_t n) {
+    const struct total total = curve_total(curve, n);
+    bool first = true;
+    print_field(file, total.low);
+    print_field(file, total.high);
+    fputc(',', file);
+    for (size_t s = 0; s < ERROR_SOURCES; s++)
+        if (total.unknown[s]) {
+            fprintf(file, "%s%s", first ? "" : " ", ERROR_SOURCE_ROWS[s].name);
+            first = false;
+        }
+}
+
 /* Prints value number `n` of the curve: a point, or an occupied cell of a matrix. */
 static void print_line(FILE *file, const struct case_result *one, const struct curve *curve,
                        size_t n, const struct columns *columns) {
@@ -130,6 +145,7 @@ static void print_line(FILE *file, const struct case_result *one, const struct c
         print_field(file, theory_at(curve, columns->names[t], at));
     if (columns->units)
         print_units(file, curve, x, x2, n);
+    print_total(file, curve, n);
     fputc('\n', file);
 }
 
@@ -167,7 +183,7 @@ static void print_heading(FILE *file, const struct columns *columns) {
     if (columns->units)
         fputs(",x_physical,x_unit,x2_physical,x2_unit,y_physical,y_unit,standard_error_physical",
               file);
-    fputc('\n', file);
+    fputs(",total_low,total_high,unknown_errors\n", file);
 }
 
 static size_t theories_most(size_t case_count, const struct case_result *cases) {

@@ -5,8 +5,10 @@
  * Columns: case, a column for each parameter that the study sweeps (swept_name), quantity, the
  * attributes of CURVE_ATTRIBUTES that stand in tables, x, x2, y, standard_error, a column for each
  * source of ERROR_SOURCE_ROWS, valueless, law_difference, law_standard_error. Differences add less
- * (the case taken off), minuend, subtrahend and paired. Last comes theory_NAME for each theory of
- * the curves printed. Numbers read back to the same doubles; an unknown value is empty. */
+ * (the case taken off), minuend, subtrahend and paired. Then comes theory_NAME for each theory of
+ * the curves printed, then physical units, where there are any. Last come total_low and total_high
+ * (total.h) and unknown_errors, names of sources with spaces between. Numbers read back to the same
+ * doubles; an unknown value is empty. */
 #ifndef RUGO_SCHEMA_RESULT_CSV_H
 #define RUGO_SCHEMA_RESULT_CSV_H
 

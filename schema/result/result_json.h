@@ -4,9 +4,12 @@
  *
  *     {"study", "name", "kind", "state", "random"?, "swept"?, "provenance"?, "cases": [
  *       {"case", "parameters": {pointer: value}, "realisations",
- *        "scalars": {name: {"value", "standard_error", "theory"?}},
- *        "curves": [{"quantity", attributes, "x", "y", "standard_error", errors, "theory", ...}],
- *        "notes": {"count", "kept": [{"realisation", "text"}]}?, "error"?}]}
+ *        "scalars": {name: {"value", "standard_error", "theory"?, errors, totals}},
+ *        "curves": [{"quantity", attributes, "x", "y", "standard_error", errors, totals, "theory",
+ * ...}], "notes": {"count", "kept": [{"realisation", "text"}]}?, "error"?}]}
+ *
+ * Totals (total.h) are "total_low", "total_high" and "unknown_errors". They follow from the errors,
+ * and are not read: documents of older programs have none.
  *
  * A matrix is printed whole, as an array of rows; empty cells are those without counts. */
 #ifndef RUGO_SCHEMA_RESULT_RESULT_JSON_H

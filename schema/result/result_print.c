@@ -1,4 +1,5 @@
 #include "schema/result/result_json.h"
+#include "schema/result/total.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -127,6 +128,43 @@ static bool put_error(FILE *file, bool *first, const struct curve *curve,
     return done;
 }
 
+/* Prints the sources that are not known, an array of their names. */
+static bool put_unknown(FILE *file, bool *first, const bool unknown[ERROR_SOURCES]) {
+    bool done = put_key(file, first, "unknown_errors"), none = true;
+    fputc('[', file);
+    for (size_t s = 0; s < ERROR_SOURCES && done; s++) {
+        if (!unknown[s])
+            continue;
+        fputs(none ? "" : ",", file);
+        none = false;
+        done = json_print_text(file, ERROR_SOURCE_ROWS[s].name);
+    }
+    fputc(']', file);
+    return done;
+}
+
+/* Prints the ends of the total intervals, which are computed here and not kept; empty cells have
+ * none. */
+static bool put_totals(FILE *file, bool *first, const struct curve *curve) {
+    size_t count = curve_value_count(curve);
+    double *low = array_create(count + 1, 2 * sizeof *low);
+    bool unknown[ERROR_SOURCES];
+    if (low == NULL)
+        return false;
+    double *high = low + count;
+    for (size_t a = 0; a < count; a++) {
+        const struct total total = curve_total(curve, a);
+        low[a] = total.low;
+        high[a] = total.high;
+    }
+    curve_unknown(curve, unknown);
+    bool done = put_values(file, first, "total_low", curve, low, NAN) &&
+                put_values(file, first, "total_high", curve, high, NAN) &&
+                put_unknown(file, first, unknown);
+    free(low);
+    return done;
+}
+
 static bool put_theories(FILE *file, bool *first, const struct curve *curve) {
     bool done = put_key(file, first, "theory"), none = true;
     fputc('{', file);
@@ -164,6 +202,7 @@ static bool print_curve(FILE *file, const struct curve *curve) {
                    curve->empty_standard_error);
     for (size_t s = 0; s < ERROR_SOURCES && done; s++)
         done = put_error(file, &first, curve, (enum error_source)s);
+    done = done && put_totals(file, &first, curve);
     if (done && curve->law_difference != NULL)
         done =
             put_values(file, &first, "law_difference", curve, curve->law_difference, NAN) &&
@@ -241,6 +280,10 @@ static bool print_scalar(FILE *file, const struct scalar *scalar) {
                 (isnan(scalar->grid) || put_number(file, &first, "grid_theory", scalar->grid));
     for (size_t s = 0; s < ERROR_SOURCES && done; s++)
         done = put_scalar_error(file, &first, &scalar->errors[s], &ERROR_SOURCE_ROWS[s]);
+    const struct total total = scalar_total(scalar);
+    done = done && put_number(file, &first, "total_low", total.low) &&
+           put_number(file, &first, "total_high", total.high) &&
+           put_unknown(file, &first, total.unknown);
     if (done && !isnan(scalar->law_difference))
         done = put_number(file, &first, "law_difference", scalar->law_difference) &&
                put_number(file, &first, "law_standard_error", scalar->law_standard_error);

@@ -371,7 +371,8 @@ class Study:
         return self
 
     def curves(self, quantity=None, case=None):
-        """A row a point of each curve (of one quantity, of one case): case, quantity, x, y, errors, theories."""
+        """A row a point of each curve (of one quantity, of one case): case, quantity, x, y, errors, theories,
+        total_low and total_high (where the truth lies, to 95 %) and unknown_errors (what these leave out)."""
         numbers = [case]
         if case is None and self.status()["cases"] > CSV_CASES_MOST:
             numbers = range(self.status()["cases"])
@@ -395,7 +396,8 @@ class Study:
         return self.server.json("GET", self._path("/curves"), query={"quantity": quantity, "case": case})
 
     def scalars(self):
-        """A row a case and scalar: case, its parameters, name, value, standard_error, theory."""
+        """A row a case and scalar: case, its parameters, name, value, standard_error, theory,
+        total_low, total_high and a list unknown_errors."""
         return rows_of_scalars(self.results())
 
     def report(self):

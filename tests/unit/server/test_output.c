@@ -58,22 +58,24 @@ static void every_curve_has_its_lines(void **state) {
     struct error err = {0};
     assert_int_equal(output_write(&study, "out", &err), 0);
     assert_int_equal(output_write(&study, "out", &err), 0); /* replaces what was there */
-    check_text(FILES[0], "case,quantity,series,model,kinematics,level,pressure,x,x2,y,"
-                         "standard_error,discretisation_error,discretisation_bound,cell_error,"
-                         "cell_bound,block_error,block_bound,model_error,model_bound,"
-                         "solver_error,solver_bound,"
-                         "missing_error,missing_bound,valueless,law_difference,law_standard_error,"
-                         "theory_line\n"
-                         "1,contact_area,edges,full,small,8,,0.1,,0.25,0.01,,,,,,,,,,,,,,,,0.25\n"
-                         "1,contact_area,edges,full,small,8,,0.2,,0.5,,,,,,,,,,,,,,,,,0.5\n"
-                         "1,contact_area,edges,full,small,4,,0.1,,0.25,0.01,,,,,,,,,,,,,,,,0.25\n"
-                         "1,contact_area,edges,full,small,4,,0.2,,0.5,,,,,,,,,,,,,,,,,0.5\n"
-                         "1,patch_count,cell,full,small,8,,0.1,,0.25,0.01,,,,,,,,,,,,,,,,0.25\n"
-                         "1,patch_count,cell,full,small,8,,0.2,,0.5,,,,,,,,,,,,,,,,,0.5\n"
-                         "1,patch_count,wave,full,small,8,,0.1,,0.25,0.01,,,,,,,,,,,,,,,,0.25\n"
-                         "1,patch_count,wave,full,small,8,,0.2,,0.5,,,,,,,,,,,,,,,,,0.5\n"
-                         "1,contact_pressure_pdf,,,,,0.25,0.1,,0.25,0.01,,,,,,,,,,,,,,,,0.25\n"
-                         "1,contact_pressure_pdf,,,,,0.25,0.2,,0.5,,,,,,,,,,,,,,,,,0.5\n");
+    check_text(
+        FILES[0],
+        "case,quantity,series,model,kinematics,level,pressure,x,x2,y,"
+        "standard_error,discretisation_error,discretisation_bound,cell_error,"
+        "cell_bound,block_error,block_bound,model_error,model_bound,"
+        "solver_error,solver_bound,"
+        "missing_error,missing_bound,valueless,law_difference,law_standard_error,"
+        "theory_line,total_low,total_high,unknown_errors\n"
+        "1,contact_area,edges,full,small,8,,0.1,,0.25,0.01,,,,,,,,,,,,,,,,0.25,0.2304,0.2696,\n"
+        "1,contact_area,edges,full,small,8,,0.2,,0.5,,,,,,,,,,,,,,,,,0.5,,,\n"
+        "1,contact_area,edges,full,small,4,,0.1,,0.25,0.01,,,,,,,,,,,,,,,,0.25,0.2304,0.2696,\n"
+        "1,contact_area,edges,full,small,4,,0.2,,0.5,,,,,,,,,,,,,,,,,0.5,,,\n"
+        "1,patch_count,cell,full,small,8,,0.1,,0.25,0.01,,,,,,,,,,,,,,,,0.25,0.2304,0.2696,\n"
+        "1,patch_count,cell,full,small,8,,0.2,,0.5,,,,,,,,,,,,,,,,,0.5,,,\n"
+        "1,patch_count,wave,full,small,8,,0.1,,0.25,0.01,,,,,,,,,,,,,,,,0.25,0.2304,0.2696,\n"
+        "1,patch_count,wave,full,small,8,,0.2,,0.5,,,,,,,,,,,,,,,,,0.5,,,\n"
+        "1,contact_pressure_pdf,,,,,0.25,0.1,,0.25,0.01,,,,,,,,,,,,,,,,0.25,0.2304,0.2696,\n"
+        "1,contact_pressure_pdf,,,,,0.25,0.2,,0.5,,,,,,,,,,,,,,,,,0.5,,,\n");
     char *text = slurp("out/curves.json");
     struct study_result read = {0};
     cJSON *document = NULL;
