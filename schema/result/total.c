@@ -32,15 +32,20 @@ static double at_or_nan(const double *numbers, size_t at) {
     return numbers != NULL ? numbers[at] : (double)NAN;
 }
 
+struct scalar_error curve_error_at(const struct curve *curve, enum error_source source, size_t at) {
+    const struct curve_error *error = &curve->errors[source];
+    double value = at_or_nan(error->value, at);
+    return (struct scalar_error){.applies = error->applies,
+                                 .known = !isnan(value),
+                                 .value = value,
+                                 .bound = at_or_nan(error->bound, at),
+                                 .standard_error = at_or_nan(error->standard_error, at)};
+}
+
 struct total curve_total(const struct curve *curve, size_t at) {
     struct scalar_error errors[ERROR_SOURCES];
-    for (size_t s = 0; s < ERROR_SOURCES; s++) {
-        const struct curve_error *error = &curve->errors[s];
-        errors[s] = (struct scalar_error){.applies = error->applies,
-                                          .known = error->value != NULL,
-                                          .value = at_or_nan(error->value, at),
-                                          .bound = at_or_nan(error->bound, at)};
-    }
+    for (enum error_source s = 0; s < ERROR_SOURCES; s++)
+        errors[s] = curve_error_at(curve, s, at);
     return total_of(curve->y[at], curve->standard_error[at], errors);
 }
 

@@ -38,6 +38,8 @@ struct total {
 struct total total_of(double value, double standard_error,
                       const struct scalar_error errors[ERROR_SOURCES]);
 struct total scalar_total(const struct scalar *scalar);
+/* Returns the error of a source at a point, or of a matrix in an occupied cell. */
+struct scalar_error curve_error_at(const struct curve *curve, enum error_source source, size_t at);
 /* Returns the total of a point, or of a matrix of an occupied cell: at < curve_value_count. */
 struct total curve_total(const struct curve *curve, size_t at);
 /* Finds the sources that are not known at some point that has a value, or nowhere. */

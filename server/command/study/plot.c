@@ -14,7 +14,7 @@ struct options {
     int64_t difference[2];
     const char *quantity, *x, *colour, *dash, *panel, *model, *series, *level, *width, *out;
     const char **where;
-    int axes;
+    int axes, total; /* total: the second word is no */
 };
 #define AT(member) offsetof(struct options, member)
 static const struct option_row OPTIONS[] = {
@@ -43,6 +43,8 @@ static const struct option_row OPTIONS[] = {
     {"log", 0, OPTION_CHOICE, 0, 0, AT(axes), AXES_WORDS, "auto",
      "which axes are logarithmic; auto: as suits the quantity and the steps of x; one-plus: y as "
      "log10(1 + y)"},
+    {"total", 0, OPTION_CHOICE, 0, 0, AT(total), "yes|no", "yes",
+     "total errors, to 95 %, around the standard errors"},
     {"width", 0, OPTION_TEXT, 0, 0, AT(width), "MM", NULL,
      "for print: so many millimetres wide, or one (85) or two (178) columns; without the title"},
     {"out", 'o', OPTION_TEXT, 0, 0, AT(out), "FILE", NULL,
@@ -89,6 +91,7 @@ static int draw(struct access *access, const char *id, const struct options *opt
         .level = options->level,
         .width = options->width,
         .axes = options->axes,
+        .without_total = options->total != 0,
         .case_number = options->case_number,
         .difference = options->difference[0] >= 0 ? &comparison : NULL};
     return picture_draw(&source, &request, file, err);

@@ -22,7 +22,7 @@ static const struct route ROUTES[] = {
      ROLE_READ,
      handle_plot,
      {"quantity", "where", "x", "colour", "dash", "panel", "model", "series", "level", "log",
-      "width", "case", "difference"}},
+      "total", "width", "case", "difference"}},
     {"GET", "/v1/studies/*/table", ROLE_READ, handle_table, {"columns", "where", "format"}},
     {"GET", "/v1/studies/*/events", ROLE_READ, handle_events, {NULL}},
     {"GET", "/v1/studies/*/contents", ROLE_READ, handle_contents, {NULL}},

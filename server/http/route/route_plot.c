@@ -87,6 +87,19 @@ static bool read_axes(struct exchange *exchange, int *axes) {
     return false;
 }
 
+/* Reads ?total=; false after a 422. */
+static bool read_total(struct exchange *exchange, bool *without) {
+    const char *asked = exchange_query(exchange, "total");
+    struct fault_list faults = {0};
+    *without = asked != NULL && strcmp(asked, "no") == 0;
+    if (asked == NULL || *without || strcmp(asked, "yes") == 0)
+        return true;
+    fault_add(&faults, "?total", "%.40s is none of yes|no", asked);
+    answer_problem(exchange, 422, "the query is not valid", &faults);
+    fault_list_clear(&faults);
+    return false;
+}
+
 void handle_plot(struct exchange *exchange, const char *id) {
     struct error err = {0};
     struct origin origin = {exchange, id};
@@ -109,7 +122,7 @@ void handle_plot(struct exchange *exchange, const char *id) {
         refuse_without_quantity(exchange);
         return;
     }
-    if (!read_axes(exchange, &request.axes))
+    if (!read_axes(exchange, &request.axes) || !read_total(exchange, &request.without_total))
         return;
     if (query_difference(exchange, &comparison, &differs) != 0 ||
         !query_number(exchange, "case", 0, INT64_MAX - 1, &request.case_number))

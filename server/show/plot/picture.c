@@ -235,7 +235,8 @@ int picture_draw(const struct picture_source *source, const struct picture_reque
                                                  .names = {[CHANNEL_PANEL] = request->panel,
                                                            [CHANNEL_COLOUR] = request->colour,
                                                            [CHANNEL_DASH] = request->dash}},
-                                       .axes = (enum plot_axes)request->axes},
+                                       .axes = (enum plot_axes)request->axes,
+                                       .without_total = request->without_total},
                               .file = file};
     int status = plot_width_read(request->width, &drawing.plot.millimetres, err);
     if (status != 0)

@@ -18,6 +18,7 @@ struct picture_request {
     const char *model, *series, *level; /* of curves: these alone; NULL: all */
     const char *width;                  /* on paper (plot_layout.h); NULL: for screens */
     int axes;                           /* enum plot_axes */
+    bool without_total;                 /* standard errors alone */
     int64_t case_number; /* of curves; -1: all, of a density the first that has begun */
     const struct comparison *difference; /* of curves, in place of cases; NULL: none */
 };

@@ -1,5 +1,6 @@
 #include "server/show/plot/plot.h"
 #include "schema/result/swept.h"
+#include "server/show/plot/plot_errors.h"
 #include "server/show/plot/plot_layout.h"
 #include "server/show/plot/plot_style.h"
 #include "server/show/quantity.h"
@@ -121,6 +122,7 @@ struct plot {
     const struct plot_request *request;
     const struct plot_words *words;
     enum plot_marks marks;
+    struct errors_drawn errors;
     size_t panels;
     struct plot_pen pen;
     struct legend legend;
@@ -131,53 +133,6 @@ struct plot {
 };
 
 /* --- one line --- */
-
-static double clamped(const struct frame *frame, double y) {
-    return frame_y(frame, fmin(frame->y.high, fmax(frame->y.low, y)));
-}
-
-/* Draws a bar of one standard error to either side, where the error can be seen. */
-static void draw_bars(const struct plot_pen *pen, const struct curve *curve, const char *colour) {
-    const struct frame *frame = &pen->frame;
-    for (size_t n = 0; n < curve->n; n++) {
-        double x = curve->x[n], y = curve->y[n], error = curve->standard_error[n];
-        if (!pen_reaches(pen, x, y) || !isfinite(error) || (frame->y.logarithmic && y - error <= 0))
-            continue;
-        double top = clamped(frame, y + error), bottom = clamped(frame, y - error);
-        if (bottom - top > 1)
-            fprintf(pen->file, "<path d=\"M%.2f %.2fV%.2f\" class=\"bar\" stroke=\"%s\"/>",
-                    frame_x(frame, x), top, bottom, colour);
-    }
-    fputc('\n', pen->file);
-}
-
-static bool has_band(const struct plot_pen *pen, const struct curve *curve, size_t n) {
-    return n < curve->n && pen_reaches(pen, curve->x[n], curve->y[n]) &&
-           isfinite(curve->standard_error[n]) &&
-           (!pen->frame.y.logarithmic || curve->y[n] > curve->standard_error[n]);
-}
-
-/* Draws a band of one standard error to either side, a part for each run of points that have
- * one. */
-static void draw_band(const struct plot_pen *pen, const struct curve *curve, const char *colour) {
-    const struct frame *frame = &pen->frame;
-    for (size_t n = 0; n < curve->n;) {
-        size_t end = n;
-        while (has_band(pen, curve, end))
-            end++;
-        if (end > n + 1) {
-            fputs("<path class=\"band\" fill-opacity=\".18\" d=\"", pen->file);
-            for (size_t k = n; k < end; k++)
-                fprintf(pen->file, "%c%.2f %.2f", k == n ? 'M' : 'L', frame_x(frame, curve->x[k]),
-                        clamped(frame, curve->y[k] + curve->standard_error[k]));
-            for (size_t k = end; k-- > n;)
-                fprintf(pen->file, "L%.2f %.2f", frame_x(frame, curve->x[k]),
-                        clamped(frame, curve->y[k] - curve->standard_error[k]));
-            fprintf(pen->file, "Z\" fill=\"%s\"/>\n", colour);
-        }
-        n = end > n ? end : n + 1;
-    }
-}
 
 /* Marks where values were computed; open circles where some realisations have none. */
 static void draw_marks(const struct plot *plot, const struct plot_line *line, const char *colour) {
@@ -203,10 +158,8 @@ static void draw_line(const struct plot *plot, const struct plot_line *line) {
     char style[LEGEND_STYLE_SIZE], colour[COLOUR_SIZE];
     plot_colour(&plot->lines->channels[CHANNEL_COLOUR], line->at[CHANNEL_COLOUR], colour);
     plot_curve_style(plot->lines, line, style);
-    if (line->coarseness == 0 && (plot->marks == MARKS_NONE || line->curve->minuend != NULL))
-        draw_band(&plot->pen, line->curve, colour);
-    else if (line->coarseness == 0)
-        draw_bars(&plot->pen, line->curve, colour);
+    if (line->coarseness == 0)
+        plot_errors_draw(&plot->pen, line->curve, &plot->errors, colour);
     pen_line(&plot->pen, line->curve->n, line->curve->x, line->curve->y, style);
     draw_marks(plot, line, colour);
 }
@@ -316,6 +269,8 @@ static bool fit(struct plot *plot, const struct study_result *study) {
     for (size_t n = 0; n < plot->lines->count; n++)
         if (plot->lines->list[n].at[CHANNEL_PANEL] < plot->panels)
             include(frame, plot, plot->lines->list[n].curve);
+    if (plot->errors.total)
+        plot_errors_include(frame, plot->lines, plot->panels, plot->words->points);
     struct plot_axis own = frame->x;
     if (!frame_finish(frame))
         return false;
@@ -454,7 +409,11 @@ static void lay_out(struct plot *plot) {
     plot->marks = plot_marks_of(plot->lines, plot->words);
     plot_legend_lines(&plot->legend, plot->lines, plot->marks, plot->words);
     plot_theories_name(plot->lines, &plot->legend);
-    plot_legend_notes(&plot->legend, plot->lines, plot->marks, plot->words->note);
+    plot->errors = (struct errors_drawn){.bands = plot->marks == MARKS_NONE ||
+                                                  plot->lines->list[0].curve->minuend != NULL,
+                                         .total = !plot->request->without_total};
+    plot_errors_note(&plot->legend, plot->lines, &plot->errors);
+    plot_legend_notes(&plot->legend, plot->lines, plot->words->note);
     plot->x_unit = common_unit(plot->lines, true);
     plot->y_unit = common_unit(plot->lines, false);
     note_unit(plot, &plot->x_unit, plot->words->x);
@@ -463,6 +422,7 @@ static void lay_out(struct plot *plot) {
     plot->layout.second_y = plot->y_unit.unit != NULL;
     plot_lay_out(&plot->layout, plot->panels, columns_of(panels), &plot->legend,
                  plot->request->millimetres);
+    plot->errors.scale = plot->layout.scale;
 }
 
 int plot_lines_draw(const struct plot_lines *lines, const struct study_result *study,

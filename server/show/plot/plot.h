@@ -14,6 +14,7 @@ enum plot_axes { AXES_AUTOMATIC, AXES_LINEAR, AXES_X, AXES_Y, AXES_XY, AXES_ONE_
 struct plot_request {
     struct lines_request lines;
     enum plot_axes axes;
+    bool without_total;  /* standard errors alone (plot_errors.h) */
     bool theories_whole; /* axes reach as far as theories do, not as curves alone */
     double millimetres;  /* the width on paper; 0: for screens */
 };

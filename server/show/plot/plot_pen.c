@@ -50,7 +50,10 @@ void pen_head_sized(const struct plot_pen *pen, const struct pen_size *size) {
             ".title{font-weight:600}.middle{text-anchor:middle}.end{text-anchor:end}"
             ".note{fill:#666;font-size:%gpx}.grid{stroke:#e4e4e4}.frame{fill:none;stroke:#444}"
             ".curve{fill:none;stroke-linejoin:round}.theory{fill:none;stroke-width:1.4}"
-            ".bar{stroke-width:1.4;stroke-opacity:.45}.partial{fill:#fff}"
+            ".bar{stroke-width:3;stroke-opacity:.45}.partial{fill:#fff}"
+            ".total{fill:none;stroke-width:.9;stroke-opacity:.7}.total.part{stroke-dasharray:3 2}"
+            ".band{fill-opacity:.22}.wide{fill-opacity:.09}"
+            ".wide.part{stroke-width:.7;stroke-opacity:.6;stroke-dasharray:4 3}"
             ".dot{stroke-width:3.6;stroke-linecap:round}.index{font-size:75%%}</style>\n"
             "<rect width=\"%d\" height=\"%d\" fill=\"#fff\"/>\n",
             size->font, size->font - 1, size->width, size->height);

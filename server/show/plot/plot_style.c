@@ -183,12 +183,9 @@ static bool is_partial(const struct plot_lines *lines) {
     return false;
 }
 
-void plot_legend_notes(struct legend *legend, const struct plot_lines *lines, enum plot_marks marks,
-                       const char *note) {
+void plot_legend_notes(struct legend *legend, const struct plot_lines *lines, const char *note) {
     const struct plot_channel *panels = &lines->channels[CHANNEL_PANEL];
     char text[PLOT_LABEL_SIZE + 16];
-    bool bands = marks == MARKS_NONE || lines->list[0].curve->minuend != NULL;
-    legend_add(legend, bands ? "bands: one standard error" : "bars: one standard error", "");
     if (is_partial(lines))
         legend_add(legend, "circles: not over all realisations", "");
     if (note != NULL && *note != '\0')

@@ -24,8 +24,7 @@ enum plot_marks plot_marks_of(const struct plot_lines *lines, const struct plot_
  * line that there is. */
 void plot_legend_lines(struct legend *legend, const struct plot_lines *lines, enum plot_marks marks,
                        const struct plot_words *words);
-/* Adds what bars, bands and open circles are, and what is left out. */
-void plot_legend_notes(struct legend *legend, const struct plot_lines *lines, enum plot_marks marks,
-                       const char *note);
+/* Adds what open circles are, and what is left out. */
+void plot_legend_notes(struct legend *legend, const struct plot_lines *lines, const char *note);
 
 #endif

@@ -56,7 +56,8 @@ static int table_add(struct case_table *table, struct table_column column,
                                        .grid = NAN,
                                        .law_difference = NAN,
                                        .law_standard_error = NAN,
-                                       .physical = NAN};
+                                       .physical = NAN,
+                                       .total = {.low = NAN, .high = NAN}};
     column.values = room;
     table->columns[table->column_count++] = column;
     *values = room;
@@ -109,23 +110,30 @@ static int set_physical(struct case_table *table, const struct physical_unit *un
     return 0;
 }
 
+/* Sums up the errors of a value, which are set, and marks those that are not known. */
+static void sum_errors(struct table_value *value, bool unknown[ERROR_SOURCES]) {
+    value->error = NAN;
+    value->total = total_of(value->value, value->standard_error, value->errors);
+    for (size_t s = 0; s < ERROR_SOURCES; s++) {
+        const struct scalar_error *error = &value->errors[s];
+        unknown[s] = unknown[s] || (value->total.unknown[s] && !isnan(value->value));
+        if (error->applies && error->known)
+            value->error = (isnan(value->error) ? 0 : value->error) + fabs(error->value) +
+                           (isnan(error->bound) ? 0 : error->bound);
+    }
+}
+
 /* --- scalars --- */
 
 static struct table_value value_of(const struct scalar *scalar, bool unknown[ERROR_SOURCES]) {
     struct table_value value = {.value = scalar->value,
                                 .standard_error = scalar->standard_error,
-                                .error = NAN,
                                 .theory = scalar->theory,
                                 .grid = scalar->grid,
                                 .law_difference = scalar->law_difference,
                                 .law_standard_error = scalar->law_standard_error};
-    for (size_t s = 0; s < ERROR_SOURCES; s++) {
-        const struct scalar_error *error = &scalar->errors[s];
-        unknown[s] = unknown[s] || (error->applies && !error->known);
-        if (error->applies && error->known)
-            value.error = (isnan(value.error) ? 0 : value.error) + fabs(error->value) +
-                          (isnan(error->bound) ? 0 : error->bound);
-    }
+    memcpy(value.errors, scalar->errors, sizeof value.errors);
+    sum_errors(&value, unknown);
     return value;
 }
 
@@ -254,20 +262,14 @@ static struct table_value value_at(const struct curve *curve, size_t k, const st
                                    bool unknown[ERROR_SOURCES]) {
     struct table_value value = {.value = curve->y[k],
                                 .standard_error = curve->standard_error[k],
-                                .error = NAN,
                                 .theory = NAN,
                                 .grid = NAN,
                                 .law_difference = number_at(curve->law_difference, k),
                                 .law_standard_error = number_at(curve->law_standard_error, k)};
     value.theory = theory != NULL ? number_at(theory->y, k) : (double)NAN;
-    for (size_t s = 0; s < ERROR_SOURCES; s++) {
-        const struct curve_error *error = &curve->errors[s];
-        double own = number_at(error->value, k), bound = number_at(error->bound, k);
-        unknown[s] = unknown[s] || (error->applies && isnan(own));
-        if (!isnan(own))
-            value.error =
-                (isnan(value.error) ? 0 : value.error) + fabs(own) + (isnan(bound) ? 0 : bound);
-    }
+    for (enum error_source s = 0; s < ERROR_SOURCES; s++)
+        value.errors[s] = curve_error_at(curve, s, k);
+    sum_errors(&value, unknown);
     return value;
 }
 

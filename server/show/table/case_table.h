@@ -9,6 +9,7 @@
 #define RUGO_SERVER_SHOW_TABLE_CASE_TABLE_H
 
 #include "schema/result/result.h"
+#include "schema/result/total.h"
 #include "server/show/plot/picture_source.h"
 
 struct table_request {
@@ -28,6 +29,8 @@ struct table_value {
     double grid; /* theory on the grid, of a scalar alone */
     double law_difference, law_standard_error;
     double physical; /* the value in the column's physical unit */
+    struct scalar_error errors[ERROR_SOURCES];
+    struct total total; /* the interval of 95 % in which the truth lies */
 };
 struct table_column {
     enum table_column_type type;

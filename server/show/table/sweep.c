@@ -118,6 +118,32 @@ static void add_theory(struct curve *curve, const char *name, const double *y) {
         }
 }
 
+/* Sets the error of a source at the points of a line; NaN where it is not known. */
+static int set_error(struct sweep *sweep, const struct table_column *column, const size_t *rows,
+                     enum error_source source, struct curve *curve, struct error *err) {
+    size_t n = curve->n;
+    struct curve_error *to = &curve->errors[source];
+    for (size_t k = 0; k < n; k++)
+        to->applies = to->applies || column->values[rows[k]].errors[source].applies;
+    if (!to->applies)
+        return 0;
+    double *value = result_numbers(&sweep->table->room, 3 * n);
+    if (value == NULL)
+        return error_memory(err, 3 * n * sizeof *value, "errors of a line");
+    double *bound = value + n, *standard_error = bound + n;
+    for (size_t k = 0; k < n; k++) {
+        const struct scalar_error *from = &column->values[rows[k]].errors[source];
+        bool none = !from->applies; /* at this point */
+        value[k] = none ? 0 : from->known ? from->value : (double)NAN;
+        bound[k] = none ? 0 : from->bound;
+        standard_error[k] = none ? 0 : from->standard_error;
+    }
+    to->value = value;
+    to->bound = bound;
+    to->standard_error = standard_error;
+    return 0;
+}
+
 /* Makes the curve of a line in the table's room. */
 static int add_line(struct sweep *sweep, const struct table_column *column, const size_t *rows,
                     size_t n, struct error *err) {
@@ -146,7 +172,10 @@ static int add_line(struct sweep *sweep, const struct table_column *column, cons
     add_theory(curve, "theory of the grid", numbers[4]);
     sweep->list[sweep->count++] =
         (struct plot_line){.one = sweep->table->rows[rows[0]], .curve = curve};
-    return 0;
+    int status = 0;
+    for (enum error_source s = 0; s < ERROR_SOURCES && status == 0; s++)
+        status = set_error(sweep, column, rows, s, curve, err);
+    return status;
 }
 
 static int add_column(struct sweep *sweep, const struct table_column *column, size_t *rows,

@@ -103,6 +103,7 @@ static void what_cannot_be_drawn_is_refused(void **state) {
         {"?quantity=psd&dash=shape", 422, "what differs: hurst"},
         {"?quantity=psd&model=layered", 422, "of this model"},
         {"?quantity=psd&log=z", 422, "?log"},
+        {"?quantity=psd&total=1", 422, "none of yes|no"},
         {"?quantity=psd&width=3", 422, "neither one, two"},
         {"?quantity=summit_density&model=layered", 422, "belong to curves"},
         {"?quantity=psd@3", 422, "psd has no value at 3"},

@@ -332,7 +332,7 @@ static void many_cases_are_panels(void **state) {
     assert_int_equal(count_of(text, "class=\"middle\">0.2</text>"), 2);
     assert_int_equal(count_of(text, "first 12"), 0);
     assert_int_equal(count_of(text, "#440154"),
-                     4 * (1 + 1 + 2 * 2) + 3); /* the least H is darkest */
+                     4 * (1 + 1 + 2 + 2 * 2) + 3); /* the least H is darkest */
     free(text);
     study_result_clear(&study);
 }
@@ -380,6 +380,73 @@ static void differences_have_bands(void **state) {
     assert_int_equal(count_of(text, "class=\"bar\""), 0);
     assert_int_equal(count_of(text, ">bands: one standard error<"), 1);
     free(text);
+    study_result_clear(&study);
+}
+
+/* Around a bar of one standard error stands that of the total, dashed where a source is not known;
+ * around a band a paler one. */
+static void total_errors_are_drawn_around(void **state) {
+    (void)state;
+    static const double MESH[] = {-0.01, -0.01}, BOUND[] = {0.02, 0.02};
+    struct study_result study = contact_of(1, 1);
+    struct case_result *one = &study.cases[0];
+    one->curve_count = 1;
+    one->curves[0].errors[ERROR_DISCRETISATION] = (struct curve_error){
+        .applies = true, .value = MESH, .bound = BOUND, .standard_error = BOUND, .order = NAN};
+    char *text = picture_of(&study, &AREA);
+    assert_int_equal(count_of(text, "class=\"bar\""), 1);
+    assert_int_equal(count_of(text, "class=\"total\""), 2 * 3); /* a bar and its ends, each */
+    assert_int_equal(count_of(text, ">bars: one standard error<"), 1);
+    assert_int_equal(count_of(text, ">thin bars: total, 95 %<"), 1);
+    assert_int_equal(count_of(text, "dashed"), 0);
+    free(text);
+    one->curves[0].errors[ERROR_BLOCK].applies = true;
+    one->curves[0].errors[ERROR_SOLVER].applies = true;
+    text = picture_of(&study, &AREA);
+    assert_int_equal(count_of(text, "class=\"total part\""), 2);
+    assert_int_equal(count_of(text, ">dashed bars: without block, solver<"), 1);
+    free(text);
+    text = picture_of(&study, &(struct plot_request){.lines = {.quantity = "contact_area"},
+                                                     .without_total = true});
+    assert_int_equal(count_of(text, "class=\"total"), 0);
+    assert_int_equal(count_of(text, "total, 95 %") + count_of(text, "dashed"), 0);
+    assert_int_equal(count_of(text, "class=\"bar\""), 1);
+    free(text);
+    one->curves[0].minuend = one->curves[0].subtrahend = one->curves[0].y;
+    one->curves[0].standard_error = BOUND;
+    text = picture_of(&study, &AREA);
+    assert_int_equal(count_of(text, "class=\"band\""), 1);
+    assert_int_equal(count_of(text, "class=\"wide part\""), 1);
+    assert_int_equal(count_of(text, ">pale bands: total, 95 %<"), 1);
+    assert_int_equal(count_of(text, ">dashed edges: without block, solver<"), 1);
+    free(text);
+    study_result_clear(&study);
+}
+
+/* However large a total is, lines keep a fifth of the height at least, and its bar ends at the
+ * frame. */
+static void lines_stay_large(void **state) {
+    (void)state;
+    static const double LARGE[] = {0, 0}, BOUND[] = {1000, 1000};
+    struct study_result study = contact_of(1, 1);
+    struct case_result *one = &study.cases[0];
+    one->curve_count = 1;
+    one->curves[0].errors[ERROR_CELL] = (struct curve_error){
+        .applies = true, .value = LARGE, .bound = BOUND, .standard_error = LARGE, .order = NAN};
+    for (enum plot_axes axes = AXES_LINEAR; axes < AXES_COUNT; axes++) {
+        char *text = picture_of(
+            &study, &(struct plot_request){.lines = {.quantity = "contact_area"}, .axes = axes});
+        double x, from, to;
+        const char *path = strstr(text, "class=\"curve\"");
+        path = path != NULL ? strstr(path, " d=\"M") : NULL;
+        assert_true(path != NULL && sscanf(path, " d=\"M%lf %lfL%lf %lf", &x, &from, &x, &to) == 4);
+        if (!(from - to > (FRAME_BOTTOM - FRAME_TOP) / 5.0))
+            fail_msg("axes %d: the line goes from %g to %g", (int)axes, from, to);
+        assert_int_equal(count_of(text, "class=\"total\""), 2); /* bars without ends */
+        assert_null(strstr(text, "nan"));
+        assert_null(strstr(text, "inf"));
+        free(text);
+    }
     study_result_clear(&study);
 }
 
@@ -486,6 +553,8 @@ int main(void) {
         cmocka_unit_test(a_picture_names_what_it_draws),
         cmocka_unit_test(missing_realisations_are_seen),
         cmocka_unit_test(differences_have_bands),
+        cmocka_unit_test(total_errors_are_drawn_around),
+        cmocka_unit_test(lines_stay_large),
         cmocka_unit_test(the_view_sets_logarithmic_axes),
         cmocka_unit_test(one_plus_shows_peaks_beside_low_parts),
         cmocka_unit_test(pits_are_named_after_their_distribution),

@@ -79,6 +79,24 @@ static void check_count(struct study_result *study, const struct request *reques
 
 static const struct request DENSITY = {.name = "summit_density"};
 
+/* The errors of a scalar go with it: those that are known at every point, and those that are not at
+ * some. */
+static void points_have_total_errors(void **state) {
+    (void)state;
+    struct study_result study = study_of(RATIOS);
+    const size_t points = study.case_count;
+    check_count(&study, &DENSITY, "class=\"total\"", 3 * points); /* a bar and its ends */
+    check_count(&study, &DENSITY, "dashed bars", 0);
+    study.cases[0].scalars[0].errors[ERROR_CELL].applies = true;
+    check_count(&study, &DENSITY, "class=\"total part\"", 1);
+    check_count(&study, &DENSITY, ">dashed bars: without cell<", 1);
+    study.cases[0].scalars[0].errors[ERROR_CELL] = (struct scalar_error){
+        .applies = true, .known = true, .value = -100, .bound = 200, .standard_error = 0};
+    check_count(&study, &DENSITY, "class=\"total\"", 3 * points);
+    check_count(&study, &DENSITY, ">300</text>", 1); /* the axis reaches as far: 8.8 + 300 */
+    study_result_clear(&study);
+}
+
 static void each_setting_is_a_line(void **state) {
     (void)state;
     struct study_result study = study_of(RATIOS);
@@ -157,9 +175,9 @@ static void colours_are_of_a_parameter(void **state) {
     struct study_result study = study_of(4);
     for (size_t c = 0; c < study.case_count; c++)
         study.cases[c].parameters[2].text = c % 4 < 2 ? "self_affine" : "table";
-    check_count(&study, &DENSITY, "stroke=\"#440154\"", 1 + 2 * HURSTS + 2); /* the least ratio */
+    check_count(&study, &DENSITY, "stroke=\"#440154\"", 1 + 5 * HURSTS + 2); /* the least ratio */
     check_count(&study, &by_spectrum, "stroke=\"#440154\"", 0);
-    check_count(&study, &by_spectrum, "stroke=\"#d55e00\"", 2 * (1 + 2 * HURSTS) + 2);
+    check_count(&study, &by_spectrum, "stroke=\"#d55e00\"", 2 * (1 + 5 * HURSTS) + 2);
     study_result_clear(&study);
 }
 
@@ -187,9 +205,9 @@ static void what_is_left_out_is_told(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_setting_is_a_line),   cmocka_unit_test(points_rise_along_a_line),
-        cmocka_unit_test(parameters_are_named),     cmocka_unit_test(colours_are_of_a_parameter),
-        cmocka_unit_test(what_is_left_out_is_told),
+        cmocka_unit_test(points_have_total_errors),   cmocka_unit_test(each_setting_is_a_line),
+        cmocka_unit_test(points_rise_along_a_line),   cmocka_unit_test(parameters_are_named),
+        cmocka_unit_test(colours_are_of_a_parameter), cmocka_unit_test(what_is_left_out_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
