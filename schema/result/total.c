@@ -28,6 +28,17 @@ struct total scalar_total(const struct scalar *scalar) {
     return total_of(scalar->value, scalar->standard_error, scalar->errors);
 }
 
+double total_half_width(double value, const struct total *total) {
+    return isnan(total->low) ? (double)NAN : fmax(value - total->low, total->high - value);
+}
+
+bool total_is_partial(const struct total *total) {
+    bool partial = false;
+    for (size_t s = 0; s < ERROR_SOURCES; s++)
+        partial = partial || total->unknown[s];
+    return partial;
+}
+
 static double at_or_nan(const double *numbers, size_t at) {
     return numbers != NULL ? numbers[at] : (double)NAN;
 }

@@ -42,6 +42,10 @@ struct total scalar_total(const struct scalar *scalar);
 struct scalar_error curve_error_at(const struct curve *curve, enum error_source source, size_t at);
 /* Returns the total of a point, or of a matrix of an occupied cell: at < curve_value_count. */
 struct total curve_total(const struct curve *curve, size_t at);
+/* Returns the larger distance of the ends of a total from its value; NaN without ends. */
+double total_half_width(double value, const struct total *total);
+/* Returns whether some source that bears on the value is not in the interval. */
+bool total_is_partial(const struct total *total);
 /* Finds the sources that are not known at some point that has a value, or nowhere. */
 void curve_unknown(const struct curve *curve, bool unknown[ERROR_SOURCES]);
 

@@ -16,10 +16,7 @@ static struct span standard_span(const struct curve *curve, size_t n) {
 
 static struct span total_span(const struct curve *curve, size_t n) {
     const struct total total = curve_total(curve, n);
-    struct span span = {.low = total.low, .high = total.high};
-    for (size_t s = 0; s < ERROR_SOURCES; s++)
-        span.dashed = span.dashed || total.unknown[s];
-    return span;
+    return (struct span){total.low, total.high, total_is_partial(&total)};
 }
 
 static double clamped(const struct frame *frame, double y) {

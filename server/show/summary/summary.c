@@ -194,7 +194,7 @@ void summary_of_theory(const struct study_result *study, FILE *file) {
 
 /* One case less another: tables of both, and of what lies between them. */
 
-enum { PLACES_SHOWN = 12, COLUMNS = 5 };
+enum { PLACES_SHOWN = 12, COLUMNS = 6 };
 
 /* Errors of the sources but the statistical one, |value| + bound each, added up; NaN where one that
  * bears on the curve is not known. */
@@ -220,13 +220,21 @@ static void put_heading(struct text_table *table, const char *first,
     table_cell(table, "case %llu", (unsigned long long)one->less);
     table_cell(table, "difference");
     table_cell(table, "other errors");
+    table_cell(table, "total");
 }
 
-static void put_errors(struct text_table *table, double errors) {
+/* Adds the sum of the other errors, and half the width of the total interval. */
+static void put_errors(struct text_table *table, double errors, double value,
+                       const struct total *total) {
+    double half = total_half_width(value, total);
     if (errors > 0)
         table_cell(table, "+-%.2g", errors);
     else
         table_cell(table, "-");
+    if (isnan(half))
+        table_cell(table, "-");
+    else
+        table_cell(table, "%s%.2g", total_is_partial(total) ? ">" : "+-", half);
 }
 
 static void print_label(const struct curve *curve, FILE *file) {
@@ -252,7 +260,8 @@ static void print_curve(const struct case_result *one, const struct curve *curve
         table_number(&table, curve->minuend[k]);
         table_number(&table, curve->subtrahend[k]);
         measured_cell(&table, curve->y[k], curve->standard_error[k]);
-        put_errors(&table, other_errors(curve, k, unknown));
+        const struct total total = curve_total(curve, k);
+        put_errors(&table, other_errors(curve, k, unknown), curve->y[k], &total);
     }
     table_print(&table, file);
     table_clear(&table);
@@ -273,7 +282,8 @@ static void print_scalars(const struct case_result *one, FILE *file) {
         table_number(&table, scalar->minuend);
         table_number(&table, scalar->subtrahend);
         measured_cell(&table, scalar->value, scalar->standard_error);
-        put_errors(&table, errors);
+        const struct total total = scalar_total(scalar);
+        put_errors(&table, errors, scalar->value, &total);
     }
     fputc('\n', file);
     table_print(&table, file);
@@ -310,7 +320,9 @@ void summary_of_difference(const struct study_result *study, FILE *file) {
             paired = paired && one->curves[a].paired;
         }
     print_scalars(one, file);
-    fprintf(file, "\n+-: one standard error%s; other errors: bounds of both cases, added up\n",
+    fprintf(file,
+            "\n+-: one standard error%s; other errors: bounds of both cases, added up; total: the "
+            "truth lies within so much, to 95 %% (>: but for errors that are not known)\n",
             paired ? ", of pairs of realisations" : "");
     const struct quantity_table *words = view_of(study->kind)->table;
     print_unknown(unknown, words != NULL ? words->error_words : NULL, file);
@@ -388,10 +400,14 @@ static void comparison_cells(struct text_table *table, double value, double theo
         table_cell(table, "-");
 }
 
-static void scalar_cells(struct text_table *table, const struct scalar *scalar,
+static void scalar_cells(struct text_table *table, const struct scalar *scalar, bool total,
                          const bool compared[]) {
     double value = scalar != NULL ? scalar->value : (double)NAN;
     measured_cell(table, value, scalar != NULL ? scalar->standard_error : (double)NAN);
+    const struct total none = {.low = NAN, .high = NAN};
+    const struct total own = scalar != NULL ? scalar_total(scalar) : none;
+    if (total)
+        total_cell(table, value, &own);
     for (enum comparison with = WITH_THEORY; with <= WITH_GRID; with++)
         if (compared[with])
             comparison_cells(table, value, expected(scalar, with));
@@ -407,6 +423,7 @@ struct scalar_table {
     const char *scalars[COLUMNS_MOST];
     bool compared[COLUMNS_MOST][WITH_GRID + 1]; /* with what beside it */
     bool sources[ERROR_SOURCES];                /* of which errors of these are known */
+    bool totals[COLUMNS_MOST];                  /* its total beside it */
     bool law;                                   /* the other law of some of these is known */
     bool uneven;                                /* not all cases have as many realisations */
 };
@@ -421,7 +438,8 @@ static bool is_even(const struct study_result *study) {
 static size_t column_count(const struct scalar_table *plan) {
     size_t columns = 1 + plan->shown->varied_count + plan->uneven + (plan->report != NULL);
     for (size_t s = 0; s < plan->scalar_count; s++)
-        columns += 1 + 2u * plan->compared[s][WITH_THEORY] + 2u * plan->compared[s][WITH_GRID];
+        columns += 1 + plan->totals[s] + 2u * plan->compared[s][WITH_THEORY] +
+                   2u * plan->compared[s][WITH_GRID];
     for (enum error_source e = 0; e < ERROR_SOURCES; e++)
         columns += plan->sources[e];
     return columns + plan->law;
@@ -433,9 +451,10 @@ static void scalar_table_heading(const struct scalar_table *plan, struct text_ta
     if (plan->uneven)
         table_cell(table, "realisations");
     for (size_t s = 0; s < plan->scalar_count; s++) {
-        if (plan->compared[s][WITH_THEORY] || plan->compared[s][WITH_GRID])
-            table_fold(table);
+        table_fold(table);
         table_cell(table, "%s", plan->scalars[s]);
+        if (plan->totals[s])
+            table_cell(table, "total %%");
         for (enum comparison with = WITH_THEORY; with <= WITH_GRID; with++)
             if (plan->compared[s][with]) {
                 table_cell(table, with == WITH_GRID ? "grid" : "theory");
@@ -460,7 +479,8 @@ static void scalar_table_row(const struct scalar_table *plan, size_t c, struct t
     if (plan->uneven)
         table_number(table, (double)one->realisations);
     for (size_t s = 0; s < plan->scalar_count; s++)
-        scalar_cells(table, result_scalar(one, plan->scalars[s]), plan->compared[s]);
+        scalar_cells(table, result_scalar(one, plan->scalars[s]), plan->totals[s],
+                     plan->compared[s]);
     for (enum error_source e = 0; e < ERROR_SOURCES; e++)
         if (plan->sources[e])
             percent_cell(table, largest_error(one, plan->scalar_count, plan->scalars, e));
@@ -470,6 +490,45 @@ static void scalar_table_row(const struct scalar_table *plan, size_t c, struct t
         const struct case_report *cost = report_of(plan->report, one);
         duration_cell(table, cost != NULL ? cost->time.cpu_seconds : (double)NAN);
     }
+}
+
+/* Returns whether a scalar has a total other than its standard error says in some case, or theory
+ * to compare it with. */
+static bool has_total(const struct scalar_table *plan, size_t s) {
+    bool compared = plan->compared[s][WITH_THEORY] || plan->compared[s][WITH_GRID];
+    for (size_t c = 0; c < plan->shown->count; c++) {
+        const struct scalar *scalar = result_scalar(plan->shown->list[c], plan->scalars[s]);
+        bool borne = compared;
+        for (size_t e = 0; scalar != NULL && e < ERROR_SOURCES; e++)
+            borne = borne || scalar->errors[e].applies;
+        if (scalar == NULL || !borne)
+            continue;
+        const struct total total = scalar_total(scalar);
+        if (total_half_width(scalar->value, &total) > 0)
+            return true;
+    }
+    return false;
+}
+
+/* Names the sources that are not known of some scalar in some case. */
+static void print_scalars_unknown(const struct scalar_table *plan, FILE *file) {
+    struct unknown_of list[COLUMNS_MOST] = {{.name = NULL}};
+    size_t count = 0;
+    for (size_t s = 0; s < plan->scalar_count; s++) {
+        if (!plan->totals[s])
+            continue;
+        struct unknown_of *to = &list[count++];
+        to->name = plan->scalars[s];
+        for (size_t c = 0; c < plan->shown->count; c++) {
+            const struct scalar *scalar = result_scalar(plan->shown->list[c], to->name);
+            if (scalar == NULL || isnan(scalar->value))
+                continue;
+            const struct total total = scalar_total(scalar);
+            for (size_t e = 0; e < ERROR_SOURCES; e++)
+                to->unknown[e] = to->unknown[e] || total.unknown[e];
+        }
+    }
+    print_unknown_of(count, list, NULL, file);
 }
 
 static void find_sources(struct scalar_table *plan) {
@@ -483,7 +542,7 @@ static void find_sources(struct scalar_table *plan) {
 }
 
 static void scalar_table_print(const struct scalar_table *plan, FILE *file) {
-    struct text_table table = {.columns = column_count(plan)};
+    struct text_table table = {.columns = column_count(plan), .room = TABLE_ROOM};
     scalar_table_heading(plan, &table);
     for (size_t c = 0; c < plan->shown->count; c++)
         scalar_table_row(plan, c, &table);
@@ -533,8 +592,16 @@ void summary_of_curves(const struct study_result *study, const struct study_repo
         for (size_t s = 0; s < plan.scalar_count; s++)
             for (enum comparison with = WITH_THEORY; with <= WITH_GRID; with++)
                 plan.compared[s][with] = has_scalar(&shown, plan.scalars[s], with);
+        bool total = false;
+        for (size_t s = 0; s < plan.scalar_count; s++) {
+            plan.totals[s] = has_total(&plan, s);
+            total = total || plan.totals[s];
+        }
         find_sources(&plan);
         scalar_table_print(&plan, file);
+        if (total)
+            print_total_legend(file);
+        print_scalars_unknown(&plan, file);
         if (plan.law)
             print_law_legend(file);
         print_heights(&shown, file);

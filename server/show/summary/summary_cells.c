@@ -53,6 +53,23 @@ void percent_cell(struct text_table *table, double share) {
         table_cell(table, "%.2g", 100 * share);
 }
 
+void total_share_cell(struct text_table *table, double share, bool partial) {
+    if (!isfinite(share))
+        table_cell(table, "-");
+    else
+        table_cell(table, "%s%.2g", partial ? ">" : "", 100 * share);
+}
+
+void total_cell(struct text_table *table, double value, const struct total *total) {
+    total_share_cell(table, total_half_width(value, total) / fabs(value), total_is_partial(total));
+}
+
+void print_total_legend(FILE *file) {
+    fputs("total: the truth lies within so many percent, to 95 %, by all errors that are known "
+          "(>2: others bear on it, too).\n",
+          file);
+}
+
 const char *source_word(const char *const *words, enum error_source source) {
     return words != NULL && words[source] != NULL ? words[source] : ERROR_SOURCE_ROWS[source].name;
 }
@@ -70,6 +87,37 @@ static void print_sources(const char *title, const bool chosen[ERROR_SOURCES],
 
 void print_unknown(const bool unknown[ERROR_SOURCES], const char *const *words, FILE *file) {
     print_sources("Errors not known: ", unknown, words, file);
+}
+
+static void print_source_of(size_t count, const struct unknown_of *list, size_t source,
+                            FILE *file) {
+    size_t lacking = 0, named = 0;
+    for (size_t n = 0; n < count; n++)
+        lacking += list[n].unknown[source];
+    for (size_t n = 0; n < count && lacking < count; n++)
+        if (list[n].unknown[source])
+            fprintf(file, "%s%s",
+                    named++ == 0       ? " of "
+                    : named == lacking ? " and "
+                                       : ", ",
+                    list[n].name);
+}
+
+void print_unknown_of(size_t count, const struct unknown_of *list, const char *const *words,
+                      FILE *file) {
+    bool any = false;
+    for (size_t s = 0; s < ERROR_SOURCES; s++) {
+        size_t n = 0;
+        while (n < count && !list[n].unknown[s])
+            n++;
+        if (n == count)
+            continue;
+        fprintf(file, "%s%s",
+                any ? "; " : "Errors not known: ", source_word(words, (enum error_source)s));
+        print_source_of(count, list, s, file);
+        any = true;
+    }
+    fputs(any ? ".\n" : "", file);
 }
 
 void print_small(const bool small[ERROR_SOURCES], const char *const *words, FILE *file) {

@@ -2,6 +2,7 @@
 #ifndef RUGO_SERVER_SHOW_SUMMARY_SUMMARY_CELLS_H
 #define RUGO_SERVER_SHOW_SUMMARY_SUMMARY_CELLS_H
 
+#include "schema/result/total.h"
 #include "schema/result/work_time.h"
 #include "server/show/table/shown_cases.h"
 #include "server/show/table/text_table.h"
@@ -16,6 +17,13 @@ void measured_cell(struct text_table *table, double value, double error);
 const char *partial_text(double realisations, double valueless, char *out, size_t size);
 /* Adds a share of one in percent, with two digits; "-" for NaN. */
 void percent_cell(struct text_table *table, double share);
+/* Adds half the width of a total interval in percent of its value; ">3.4" where it leaves a source
+ * out. */
+void total_cell(struct text_table *table, double value, const struct total *total);
+/* The same of a size that is at hand: half a width over the value. */
+void total_share_cell(struct text_table *table, double share, bool partial);
+/* The line below a table with columns "total %". */
+void print_total_legend(FILE *file);
 /* Returns what `words` calls a source of error; its own name where that is NULL. */
 const char *source_word(const char *const *words, enum error_source source);
 /* Errors below this share of a value have no column of their own. */
@@ -23,6 +31,14 @@ const char *source_word(const char *const *words, enum error_source source);
 /* "Errors not known: cell." and "Errors below 0.01 %: solver." in lines of their own; nothing where
  * there are none. */
 void print_unknown(const bool unknown[ERROR_SOURCES], const char *const *words, FILE *file);
+/* What is printed beside each other, by name, and the sources that are not known of each. */
+struct unknown_of {
+    const char *name;
+    bool unknown[ERROR_SOURCES];
+};
+/* "Errors not known: cell, mesh of full.": names follow where not all of them lack the source. */
+void print_unknown_of(size_t count, const struct unknown_of *list, const char *const *words,
+                      FILE *file);
 void print_small(const bool small[ERROR_SOURCES], const char *const *words, FILE *file);
 /* The line below a table with columns "law %". */
 void print_law_legend(FILE *file);

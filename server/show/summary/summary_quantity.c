@@ -106,15 +106,30 @@ static void value_cell(struct text_table *table, const struct case_result *one,
     table_cell(table, "%s%s", text, partial);
 }
 
-/* Prints "kappa 2.80 +- 0.08 (theory 1.5958)". */
+static void curve_total_cell(struct text_table *table, const struct curve *curve, size_t k) {
+    const struct total none = {.low = NAN, .high = NAN};
+    const struct total total = k < curve->n ? curve_total(curve, k) : none;
+    total_cell(table, number_at(curve->y, curve, k), &total);
+}
+
+/* Prints "kappa 2.80 +- 0.08 (total 9.1 %, theory 1.5958)". */
 static void print_scalar(const struct case_result *one, const char *name, FILE *file) {
     const struct scalar *scalar = result_scalar(one, name);
     char text[64];
     measured_text(scalar != NULL ? scalar->value : (double)NAN,
                   scalar != NULL ? scalar->standard_error : (double)NAN, text, sizeof text);
     fprintf(file, "%s %s", name, text);
-    if (scalar != NULL && !isnan(scalar->theory))
-        fprintf(file, " (theory %.4f)", scalar->theory);
+    if (scalar == NULL)
+        return;
+    const struct total total = scalar_total(scalar);
+    double share = total_half_width(scalar->value, &total) / fabs(scalar->value);
+    bool shown = share > 0 && isfinite(share);
+    if (shown)
+        fprintf(file, " (total %s%.2g %%", total_is_partial(&total) ? ">" : "", 100 * share);
+    if (!isnan(scalar->theory))
+        fprintf(file, "%s%.4f", shown ? ", theory " : " (theory ", scalar->theory);
+    if (shown || !isnan(scalar->theory))
+        fputc(')', file);
 }
 
 /* --- a table a case --- */
@@ -156,13 +171,23 @@ static void find_small(const struct finest_curves *finest, bool small[ERROR_SOUR
         small[s] = largest_of_all(finest, s) < ERROR_SHOWN;
 }
 
-/* Finds the sources that bear on a curve and of which nothing is known. */
-static void find_unknown(const struct finest_curves *finest, bool unknown[ERROR_SOURCES]) {
-    for (size_t m = 0; m < finest->model_count; m++)
-        for (size_t s = 0; s < ERROR_SOURCES; s++) {
-            const struct curve_error *error = &finest->curves[m]->errors[s];
-            unknown[s] = unknown[s] || (error->applies && error->value == NULL);
-        }
+/* Finds the sources that bear on a curve and are not known, at some point at least. */
+static void find_unknown(const struct curve *curve, bool unknown[ERROR_SOURCES]) {
+    bool own[ERROR_SOURCES];
+    curve_unknown(curve, own);
+    for (size_t s = 0; s < ERROR_SOURCES; s++)
+        unknown[s] = unknown[s] || own[s];
+}
+
+/* Names them by model. */
+static void print_models_unknown(const struct finest_curves *finest, const char *const *words,
+                                 FILE *file) {
+    struct unknown_of list[MODELS_MOST] = {{.name = NULL}};
+    for (size_t m = 0; m < finest->model_count; m++) {
+        list[m].name = text_or(finest->curves[m]->model, "-");
+        find_unknown(finest->curves[m], list[m].unknown);
+    }
+    print_unknown_of(finest->model_count, list, words, file);
 }
 
 static bool has_law(const struct finest_curves *finest) {
@@ -173,7 +198,7 @@ static bool has_law(const struct finest_curves *finest) {
 }
 
 static size_t column_count(const struct finest_curves *finest) {
-    size_t columns = 1 + finest->model_count + finest->theory_count;
+    size_t columns = 1 + 2 * finest->model_count + finest->theory_count;
     columns += finest->curves[0]->x_unit.unit != NULL;
     columns += has_law(finest) ? finest->model_count : 0;
     for (int source = 0; source < ERROR_SOURCES; source++)
@@ -194,6 +219,7 @@ static void put_heading(const struct quantity_table *words, const struct finest_
         const struct curve *curve = finest->curves[m];
         table_fold(table);
         table_cell(table, "%s", model_text(curve->model, curve->kinematics, model, sizeof model));
+        table_cell(table, "total %%");
         for (int source = 0; source < ERROR_SOURCES; source++)
             if (has_column(finest, (enum error_source)source))
                 table_cell(table, "%s %%",
@@ -216,6 +242,7 @@ static void put_place(const struct case_result *one, const struct finest_curves 
     for (size_t m = 0; m < finest->model_count; m++) {
         const struct curve *curve = finest->curves[m];
         value_cell(table, one, curve, k);
+        curve_total_cell(table, curve, k);
         for (int source = 0; source < ERROR_SOURCES; source++)
             if (has_column(finest, (enum error_source)source))
                 error_cell(table, curve, k, (enum error_source)source);
@@ -234,7 +261,7 @@ static void print_table(const struct quantity_table *words, const struct case_re
                         const struct finest_curves *finest, FILE *file) {
     const struct curve *first = finest->curves[0];
     size_t places = first->n, shown = places < PLACES_SHOWN ? places : PLACES_SHOWN;
-    struct text_table table = {.columns = column_count(finest)};
+    struct text_table table = {.columns = column_count(finest), .room = TABLE_ROOM};
     char model[64];
     put_heading(words, finest, &table);
     for (size_t n = 0; n < shown; n++)
@@ -253,9 +280,7 @@ static void print_table(const struct quantity_table *words, const struct case_re
         summary_of_target(one, file);
     else
         fputc('\n', file);
-    bool unknown[ERROR_SOURCES] = {false};
-    find_unknown(finest, unknown);
-    print_unknown(unknown, words->error_words, file);
+    print_models_unknown(finest, words->error_words, file);
     bool small[ERROR_SOURCES];
     find_small(finest, small);
     print_small(small, words->error_words, file);
@@ -294,6 +319,23 @@ static double largest_law(const struct curve *curve) {
     for (size_t k = 0; curve->law_difference != NULL && k < curve->n; k++)
         largest = fmax(largest, fabs(curve->law_difference[k] / curve->y[k]));
     return largest;
+}
+
+/* Puts the size of the total over a curve, as the sizes of its errors are: half the widths over the
+ * values, of each the root of the sum of squares. */
+static void total_size_cell(struct text_table *table, const struct curve *curve) {
+    double squares = 0, reference = 0;
+    bool unknown[ERROR_SOURCES], partial = false;
+    curve_unknown(curve, unknown);
+    for (size_t s = 0; s < ERROR_SOURCES; s++)
+        partial = partial || unknown[s];
+    for (size_t k = 0; k < curve->n; k++) {
+        const struct total total = curve_total(curve, k);
+        double half = total_half_width(curve->y[k], &total);
+        squares += isnan(half) ? 0 : half * half;
+        reference += isnan(half) ? 0 : curve->y[k] * curve->y[k];
+    }
+    total_share_cell(table, reference > 0 ? sqrt(squares / reference) : (double)NAN, partial);
 }
 
 /* --- a row a case --- */
@@ -360,14 +402,17 @@ static void put_row_heading(const struct quantity_table *words, const struct sho
             table_cell(table, "%s at %s %s", words->value, SAMPLE_NAMES[n], words->x);
         else
             table_cell(table, "%s at %.4g", words->value, x[n]);
+    table_cell(table, "total %%");
     for (int source = 0; source < ERROR_SOURCES; source++)
         if (known[source])
             table_cell(table, "%s %%", source_word(words->error_words, (enum error_source)source));
     if (law)
         table_cell(table, "law %%");
     table_fold(table);
-    for (const char *const *name = words->scalars; name != NULL && *name != NULL; name++)
+    for (const char *const *name = words->scalars; name != NULL && *name != NULL; name++) {
         table_cell(table, "%s", *name);
+        table_cell(table, "total %%");
+    }
     table_cell(table, "CPU time");
 }
 
@@ -382,6 +427,10 @@ static void put_row(const struct quantity_table *words, const struct shown_cases
     table_number(table, (double)one->realisations);
     for (size_t n = 0; n < SAMPLES; n++)
         value_cell(table, one, finest.curves[0], sample_place(&finest, n));
+    if (finest.model_count > 0)
+        total_size_cell(table, finest.curves[0]);
+    else
+        table_cell(table, "-");
     for (int source = 0; source < ERROR_SOURCES; source++)
         if (known[source])
             percent_cell(table, cost != NULL && cost->main != NULL ? cost->main->errors[source]
@@ -392,6 +441,9 @@ static void put_row(const struct quantity_table *words, const struct shown_cases
         const struct scalar *scalar = result_scalar(one, *name);
         measured_cell(table, scalar != NULL ? scalar->value : (double)NAN,
                       scalar != NULL ? scalar->standard_error : (double)NAN);
+        const struct total none = {.low = NAN, .high = NAN};
+        const struct total total = scalar != NULL ? scalar_total(scalar) : none;
+        total_cell(table, scalar != NULL ? scalar->value : (double)NAN, &total);
     }
     duration_cell(table, cost != NULL ? cost->time.cpu_seconds : (double)NAN);
 }
@@ -406,13 +458,15 @@ static void print_rows(const struct quantity_table *words, const struct shown_ca
         sources += known[s];
     while (words->scalars != NULL && words->scalars[scalars] != NULL)
         scalars++;
-    struct text_table table = {.columns = 1 + shown->varied_count + 1 + SAMPLES + sources + law +
-                                          scalars + 1};
+    struct text_table table = {.columns = 1 + shown->varied_count + 1 + SAMPLES + 1 + sources +
+                                          law + 2 * scalars + 1,
+                               .room = TABLE_ROOM};
     put_row_heading(words, shown, known, law, &table);
     for (size_t c = 0; c < shown->count; c++) {
         struct finest_curves finest;
         find_finest(&finest, words, shown->list[c]);
-        find_unknown(&finest, unknown);
+        if (finest.model_count > 0)
+            find_unknown(finest.curves[0], unknown);
         put_row(words, shown, c, report_of(report, shown->list[c]), known, law, &table);
     }
     fputc('\n', file);
@@ -430,6 +484,7 @@ void summary_of_quantity(const struct quantity_table *words, const struct shown_
     else
         print_rows(words, shown, report, file);
     fprintf(file, "\n%s\n", words->legend);
+    print_total_legend(file);
     if (any_law(words, shown))
         print_law_legend(file);
     print_heights(shown, file);

@@ -79,13 +79,16 @@ static void put_case(const struct shown_cases *shown, size_t c, const struct cas
 
 static void print_cases(const struct study_report *report, const struct shown_cases *shown,
                         const struct error_columns *columns, FILE *file) {
-    struct text_table table = {.columns = 1 + shown->varied_count + 4 + columns->count + 1};
+    struct text_table table = {.columns = 1 + shown->varied_count + 4 + columns->count + 1,
+                               .room = TABLE_ROOM};
     table_cell(&table, "case");
     varied_headings(&table, shown);
     table_cell(&table, "realisations");
+    table_fold(&table);
     table_cell(&table, "seconds");
     table_cell(&table, "CPU s");
     table_cell(&table, "CPU s/realisation");
+    table_fold(&table);
     error_headings(columns, &table);
     table_cell(&table, "CPU s to halve");
     for (size_t c = 0; c < report->case_count; c++)
@@ -174,6 +177,10 @@ void summary_of_report(const struct study_report *report, FILE *file) {
     print_all_series(report, &shown, &columns, file);
     print_unknown(columns.unknown, NULL, file);
     print_small(columns.small, NULL, file);
+    fputs("total: one standard error and the other errors at most, root of the sum of squares; - "
+          "where "
+          "one is not known.\n",
+          file);
     if (columns.shown[LAW_COLUMN])
         print_law_legend(file);
     print_partial(&shown, words != NULL ? words->x : "point", file);

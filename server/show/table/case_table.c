@@ -110,13 +110,15 @@ static int set_physical(struct case_table *table, const struct physical_unit *un
     return 0;
 }
 
-/* Sums up the errors of a value, which are set, and marks those that are not known. */
-static void sum_errors(struct table_value *value, bool unknown[ERROR_SOURCES]) {
+/* Sums up the errors of a value of a column, which are set, and marks those that are not known. */
+static void sum_errors(struct table_value *value, struct table_column *column) {
     value->error = NAN;
     value->total = total_of(value->value, value->standard_error, value->errors);
+    column->has_total = column->has_total || total_half_width(value->value, &value->total) > 0;
     for (size_t s = 0; s < ERROR_SOURCES; s++) {
         const struct scalar_error *error = &value->errors[s];
-        unknown[s] = unknown[s] || (value->total.unknown[s] && !isnan(value->value));
+        column->unknown[s] =
+            column->unknown[s] || (value->total.unknown[s] && !isnan(value->value));
         if (error->applies && error->known)
             value->error = (isnan(value->error) ? 0 : value->error) + fabs(error->value) +
                            (isnan(error->bound) ? 0 : error->bound);
@@ -125,7 +127,7 @@ static void sum_errors(struct table_value *value, bool unknown[ERROR_SOURCES]) {
 
 /* --- scalars --- */
 
-static struct table_value value_of(const struct scalar *scalar, bool unknown[ERROR_SOURCES]) {
+static struct table_value value_of(const struct scalar *scalar, struct table_column *column) {
     struct table_value value = {.value = scalar->value,
                                 .standard_error = scalar->standard_error,
                                 .theory = scalar->theory,
@@ -133,7 +135,7 @@ static struct table_value value_of(const struct scalar *scalar, bool unknown[ERR
                                 .law_difference = scalar->law_difference,
                                 .law_standard_error = scalar->law_standard_error};
     memcpy(value.errors, scalar->errors, sizeof value.errors);
-    sum_errors(&value, unknown);
+    sum_errors(&value, column);
     return value;
 }
 
@@ -166,7 +168,7 @@ static int add_scalar(struct case_table *table, const char *name, bool optional,
         const struct scalar *scalar = result_scalar(table->rows[r], name);
         if (scalar == NULL)
             continue;
-        values[r] = value_of(scalar, table->columns[table->column_count - 1].unknown);
+        values[r] = value_of(scalar, &table->columns[table->column_count - 1]);
         status = set_physical(table, &scalar->unit, &values[r], err);
     }
     return status;
@@ -259,7 +261,7 @@ static const struct theory *find_theory(const struct curve *curve, size_t k, con
 }
 
 static struct table_value value_at(const struct curve *curve, size_t k, const struct theory *theory,
-                                   bool unknown[ERROR_SOURCES]) {
+                                   struct table_column *column) {
     struct table_value value = {.value = curve->y[k],
                                 .standard_error = curve->standard_error[k],
                                 .theory = NAN,
@@ -269,7 +271,7 @@ static struct table_value value_at(const struct curve *curve, size_t k, const st
     value.theory = theory != NULL ? number_at(theory->y, k) : (double)NAN;
     for (enum error_source s = 0; s < ERROR_SOURCES; s++)
         value.errors[s] = curve_error_at(curve, s, k);
-    sum_errors(&value, unknown);
+    sum_errors(&value, column);
     return value;
 }
 
@@ -395,7 +397,7 @@ static int add_model(struct table_maker *maker, const struct table_wish *wish,
         const struct theory *theory = find_theory(curve, k, column->theory);
         if (theory != NULL && column->theory == NULL)
             column->theory = result_text(&table->room, theory->name);
-        values[r] = value_at(curve, k, theory, column->unknown);
+        values[r] = value_at(curve, k, theory, column);
         status = set_physical(table, &curve->y_unit, &values[r], err);
     }
     return status;

@@ -7,6 +7,7 @@
 #include "server/show/table/case_table.h"
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { UNIT_SIZE = 32 };
@@ -61,17 +62,22 @@ static void text_rows(const struct case_table *table, struct text_table *text) {
         if (table->columns[n].type != COLUMN_PARAMETER)
             table_fold(text);
         table_cell(text, "%s", table->columns[n].name);
-        if (table->columns[n].physical == NULL)
-            continue;
-        (void)physical_unit(table, &table->columns[n], unit);
-        table_cell(text, "in %s", unit);
+        if (table->columns[n].physical != NULL) {
+            (void)physical_unit(table, &table->columns[n], unit);
+            table_cell(text, "in %s", unit);
+        }
+        if (table->columns[n].has_total)
+            table_cell(text, "total %%");
     }
     for (size_t r = 0; r < table->row_count; r++) {
         table_cell(text, "%llu", (unsigned long long)table->rows[r]->case_number);
         table_cell(text, "%llu", (unsigned long long)table->rows[r]->realisations);
         for (size_t n = 0; n < table->column_count; n++) {
-            text_cell(text, &table->columns[n], &table->columns[n].values[r]);
-            physical_cell(table, &table->columns[n], r, text);
+            const struct table_column *column = &table->columns[n];
+            text_cell(text, column, &column->values[r]);
+            physical_cell(table, column, r, text);
+            if (column->has_total)
+                total_cell(text, column->values[r].value, &column->values[r].total);
         }
     }
 }
@@ -106,30 +112,41 @@ static void text_legend(const struct case_table *table, const struct table_colum
     fputc('\n', file);
 }
 
+/* Names the sources that are not known of some value, by column. */
 static void text_unknown(const struct case_table *table, FILE *file) {
-    bool first = true;
-    for (size_t s = 0; s < ERROR_SOURCES; s++) {
-        bool unknown = false;
-        for (size_t n = 0; n < table->column_count; n++)
-            unknown = unknown || table->columns[n].unknown[s];
-        if (unknown)
-            fprintf(file, "%s%s", first ? "Errors not known: " : ", ", ERROR_SOURCE_ROWS[s].name);
-        first = first && !unknown;
+    struct unknown_of *list = array_create(table->column_count + 1, sizeof *list);
+    size_t count = 0;
+    if (list == NULL) {
+        fputs("(no memory for what is not known)\n", file);
+        return;
     }
-    if (!first)
-        fputs(".\n", file);
+    for (size_t n = 0; n < table->column_count; n++) {
+        const struct table_column *column = &table->columns[n];
+        if (column->type == COLUMN_PARAMETER)
+            continue;
+        list[count].name = column->name;
+        memcpy(list[count++].unknown, column->unknown, sizeof column->unknown);
+    }
+    print_unknown_of(count, list, NULL, file);
+    free(list);
 }
 
 void case_table_text(const struct case_table *table, FILE *file) {
-    struct text_table text = {.columns = 2 + table->column_count};
-    for (size_t n = 0; n < table->column_count; n++)
-        text.columns += table->columns[n].physical != NULL;
+    struct text_table text = {.columns = 2 + table->column_count, .room = TABLE_ROOM};
+    bool total = false;
+    for (size_t n = 0; n < table->column_count; n++) {
+        const struct table_column *column = &table->columns[n];
+        text.columns += (size_t)(column->physical != NULL) + column->has_total;
+        total = total || column->has_total;
+    }
     text_print_plain(file, table->study.name);
     fprintf(file, " (%s), study %s\n\n", table->study.state, table->study.id);
     text_rows(table, &text);
     table_print(&text, file);
     table_clear(&text);
     fputs("\nn: realisations; +-: one standard error\n", file);
+    if (total)
+        print_total_legend(file);
     for (size_t n = 0; n < table->column_count; n++)
         text_legend(table, &table->columns[n], file);
     text_unknown(table, file);
@@ -170,6 +187,7 @@ static void csv_heading(const struct case_table *table, FILE *file) {
             fprintf(file, ",%s_law_difference,%s_law_standard_error", column->name, column->name);
         if (column->physical != NULL)
             fprintf(file, ",%s in %s", column->name, column->physical);
+        fprintf(file, ",%s_total_low,%s_total_high", column->name, column->name);
     }
     fputc('\n', file);
 }
@@ -198,6 +216,8 @@ bool case_table_csv(const struct case_table *table, FILE *file) {
             }
             if (column->physical != NULL)
                 csv_number(file, value->physical);
+            csv_number(file, value->total.low);
+            csv_number(file, value->total.high);
         }
         fputc('\n', file);
     }
@@ -287,6 +307,8 @@ static bool print_row(const struct case_table *table, size_t r, FILE *file) {
                    {"standard_errors", offsetof(struct table_value, standard_error)},
                    {"errors", offsetof(struct table_value, error)},
                    {"theory", offsetof(struct table_value, theory)},
+                   {"total_low", offsetof(struct table_value, total.low)},
+                   {"total_high", offsetof(struct table_value, total.high)},
                    /* where some case has one */
                    {"law_differences", offsetof(struct table_value, law_difference)},
                    {"law_standard_errors", offsetof(struct table_value, law_standard_error)}};

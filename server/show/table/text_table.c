@@ -100,11 +100,13 @@ static size_t width_between(const struct column_shape *shapes, size_t begin, siz
     return width;
 }
 
-/* Returns the columns of the terminal; everything else has room. */
-static size_t room_of(FILE *file) {
+/* Returns the columns of the terminal, or those of the table. */
+static size_t room_of(const struct text_table *table, FILE *file) {
     struct winsize size;
     bool known = isatty(fileno(file)) != 0 && ioctl(fileno(file), TIOCGWINSZ, &size) == 0;
-    return known && size.ws_col > 0 ? size.ws_col : SIZE_MAX / 2;
+    if (known && size.ws_col > 0)
+        return size.ws_col;
+    return table->room > 0 ? table->room : SIZE_MAX / 2;
 }
 
 void table_fold(struct text_table *table) {
@@ -122,7 +124,7 @@ void table_print(const struct text_table *table, FILE *file) {
     }
     for (size_t c = 0; c < table->columns; c++)
         shapes[c] = shape_of(table, c);
-    size_t keys = table->fold_count > 0 ? table->folds[0] : 0, room = room_of(file);
+    size_t keys = table->fold_count > 0 ? table->folds[0] : 0, room = room_of(table, file);
     size_t begin = 0, end = 0, key_width = width_between(shapes, 0, keys);
     for (size_t fold = 0; fold <= table->fold_count; fold++) {
         size_t next = fold < table->fold_count ? table->folds[fold] : table->columns;
@@ -143,5 +145,5 @@ void table_clear(struct text_table *table) {
     for (size_t i = 0; i < table->cells; i++)
         free(table->text[i]);
     free(table->text);
-    *table = (struct text_table){.columns = table->columns};
+    *table = (struct text_table){.columns = table->columns, .room = table->room};
 }

@@ -11,10 +11,13 @@ enum { TABLE_FOLDS_MOST = 64 };
 struct text_table {
     size_t columns, cells, capacity;
     char **text; /* owned, row after row; initialise with {.columns = n} */
+    size_t room; /* columns where there is no terminal; 0: as many as it takes */
     bool failed; /* out of memory: the table prints nothing */
     size_t folds[TABLE_FOLDS_MOST], fold_count; /* columns where a folded table may begin anew */
 };
-/* Before a cell of the heading: a table too wide for its terminal may be folded here. Columns
+/* So many columns a report has, also in a file. */
+enum { TABLE_ROOM = 120 };
+/* Before a cell of the heading: a table too wide for its room may be folded here. Columns
  * before the first fold stand at the left of every part. */
 void table_fold(struct text_table *table);
 /* Fills the next cell, from left to right and top to bottom. */

@@ -76,8 +76,8 @@ static void json_comes_back(void **state) {
     result_clear(&again);
 }
 
-/* What a document says of totals is not taken from it: older ones have none, and of a service that
- * adds them in another way they are made anew. */
+/* What a document says of totals is not taken from it: they are made anew, as older documents have
+ * none, and others may have false ones. */
 static void totals_are_not_read(void **state) {
     (void)state;
     static const char *const FALSE_ONES[] = {"[9]", "7", "null", "\"x\"", NULL};

@@ -200,23 +200,25 @@ static void each_format_has_every_number(void **state) {
         &table, TABLE_CSV,
         "# study: four, contact 0123456789abcdef, done, seed 5\n# queued:\n"
         "case,realisations,hurst,shape,kappa,kappa_standard_error,kappa_error,kappa_theory,"
+        "kappa_total_low,kappa_total_high,"
         "area:layered@0.1,area:layered@0.1_standard_error,area:layered@0.1_error,"
-        "area:layered@0.1_theory\n"
-        "0,4,0.2,\"a\",2,0.125,,1.5,1.662,0.25,0.75,0.25\n"
-        "2,4,0.8,\"a\",4,0.125,,,3.662,0.25,0.75,0.25\n");
+        "area:layered@0.1_theory,area:layered@0.1_total_low,area:layered@0.1_total_high\n"
+        "0,4,0.2,\"a\",2,0.125,,1.5,1.755,2.245,1.662,0.25,0.75,0.25,1.172,2.902\n"
+        "2,4,0.8,\"a\",4,0.125,,,3.755,4.245,3.662,0.25,0.75,0.25,3.1719999999999997,4.902\n");
     check_format(&table, TABLE_JSON,
                  "\"columns\":[{\"name\":\"hurst\",\"type\":\"parameter\",\"pointer\":"
                  "\"/surface/hurst\",\"unit\":null},");
     check_format(&table, TABLE_JSON,
                  "\"rows\":[{\"case\":0,\"realisations\":4,\"values\":[0.2,\"a\",2,1.662],"
                  "\"standard_errors\":[null,null,0.125,0.25],\"errors\":[null,null,null,0.75],"
-                 "\"theory\":[null,null,1.5,0.25]},{\"case\":2,");
+                 "\"theory\":[null,null,1.5,0.25],\"total_low\":[null,null,1.755,1.172],"
+                 "\"total_high\":[null,null,2.245,2.902]},{\"case\":2,");
     check_format(&table, TABLE_TEXT,
-                 "case  n  hurst  shape         kappa  area:layered@0.1\n"
-                 "   0  4    0.2  a      2.00 +- 0.12      1.66 +- 0.25\n");
+                 "case  n  hurst  shape         kappa  total %  area:layered@0.1  total %\n"
+                 "   0  4    0.2  a      2.00 +- 0.12       12      1.66 +- 0.25  >75\n");
     check_format(&table, TABLE_TEXT,
                  "area:layered@0.1: y, edges at x; errors other than statistical up to ");
-    check_format(&table, TABLE_TEXT, "Errors not known: cell.");
+    check_format(&table, TABLE_TEXT, "Errors not known: cell of area:layered@0.1.\n");
     case_table_clear(&table);
 }
 
@@ -225,10 +227,12 @@ static void units_stand_beside_values(void **state) {
     in_units = true;
     struct case_table table = made("kappa", "shape=a");
     check_format(&table, TABLE_TEXT,
-                 "case  n  hurst  shape         kappa          in \xc2\xb5m\n"
-                 "   0  4    0.2  a      2.00 +- 0.12   2.00 +- 0.12\n"
-                 "   2  4    0.8  a      4.00 +- 0.12  12.00 +- 0.38\n");
-    check_format(&table, TABLE_CSV, "kappa_theory,kappa in m\n0,4,0.2,\"a\",2,0.125,,1.5,2e-06\n");
+                 "case  n  hurst  shape         kappa          in \xc2\xb5m  total %\n"
+                 "   0  4    0.2  a      2.00 +- 0.12   2.00 +- 0.12       12\n"
+                 "   2  4    0.8  a      4.00 +- 0.12  12.00 +- 0.38      6.1\n");
+    check_format(&table, TABLE_CSV,
+                 "kappa_theory,kappa in m,kappa_total_low,kappa_total_high\n"
+                 "0,4,0.2,\"a\",2,0.125,,1.5,2e-06,1.755,2.245\n");
     check_format(&table, TABLE_JSON, "\"unit\":null,\"physical_unit\":\"m\"}");
     check_format(&table, TABLE_JSON, "\"physical\":[null,null,2e-06]");
     case_table_clear(&table);

@@ -40,9 +40,10 @@ static void scalars_are_those_of_the_view(void **state) {
             built_scalar(one, "shape", 3, 0.1, NAN);
         }
         char *text = table_of(&study, NULL);
-        check_shown(text, (const char *[]){"summits (done), study 0123456789abcdef, 4 realisations",
-                                           "\ncase  hurst  ", "summit_density  theory   ratio",
-                                           "0.250 +- 0.010     0.5  0.5000\n", NULL});
+        check_shown(text,
+                    (const char *[]){"summits (done), study 0123456789abcdef, 4 realisations",
+                                     "\ncase  hurst  ", "summit_density  total %  theory   ratio",
+                                     "0.250 +- 0.010      7.8     0.5  0.5000\n", NULL});
         assert_int_equal(strstr(text, "rms_slope") == NULL, n == 0);
         assert_null(strstr(text, "dimension")); /* not swept */
         assert_null(strstr(text, "shape"));     /* nothing to compare with */
@@ -85,22 +86,27 @@ static void few_cases_have_a_table_each(void **state) {
     struct study_result study = built_study("contact", "pressed", 1);
     add_areas(&study.cases[0], "halfspace", NULL, false);
     char *text = table_of(&study, NULL);
-    check_shown(text, (const char *[]){"case 0: 4 realisations; contact area by edges at 8 points",
-                                       "\nload       halfspace  mesh %   persson\n",
-                                       "\n 0.1  0.200 +- 0.010  +10       0.1500\n",
-                                       "\n 0.2  0.300 +- 0.010  +-10      0.2500\n",
-                                       "\n 0.3  0.400 +- 0.010  +5+-2.5   0.3500\n",
-                                       "\nhalfspace: kappa 2.50 +- 0.10 (theory 1.5958)",
-                                       "\nErrors not known: cell.\n",
-                                       "\nload: p/(E* h'_rms); area: A/A0", NULL});
+    check_shown(text,
+                (const char *[]){"case 0: 4 realisations; contact area by edges at 8 points",
+                                 "\nload       halfspace  total %  mesh %   persson\n",
+                                 "\n 0.1  0.200 +- 0.010  >20      +10       0.1500\n",
+                                 "\n 0.2  0.300 +- 0.010  >17      +-10      0.2500\n",
+                                 "\n 0.3  0.400 +- 0.010  >12      +5+-2.5   0.3500\n",
+                                 "\nhalfspace: kappa 2.50 +- 0.10 (total 7.8 %, theory 1.5958)",
+                                 "\nErrors not known: cell.\n", "\nload: p/(E* h'_rms); area: A/A0",
+                                 NULL});
     assert_null(strstr(text, "model %  ")); /* of one model nothing is known */
     assert_null(strstr(text, "light_load"));
     assert_null(strstr(text, "(n of N)"));
     free(text);
     /* beside a second model, which lacks values at the last load */
     add_areas(&study.cases[0], "full", "hencky", true);
+    for (size_t a = 0; a < study.cases[0].curve_count; a++)
+        study.cases[0].curves[a].errors[ERROR_BLOCK].applies = a >= 4;
     text = table_of(&study, NULL);
-    check_shown(text, (const char *[]){"halfspace  mesh %  ", "full (hencky)  mesh %   persson",
+    check_shown(text, (const char *[]){"\nErrors not known: cell; block of full.\n", NULL});
+    check_shown(text, (const char *[]){"halfspace  total %  mesh %",
+                                       "full (hencky)  total %  mesh %   persson",
                                        "0.400 +- 0.010 (1 of 4)", "\n(n of N): only n of N",
                                        "a value at the load;", NULL});
     free(text);
@@ -139,11 +145,13 @@ static void many_cases_have_a_row_each(void **state) {
     }
     study.cases[5].realisations = 0;
     char *text = table_of(&study, NULL);
-    check_shown(
-        text, (const char *[]){"\ncase  distribution  hurst  realisations     area at 0.1     "
-                               "area at 0.2     area at 0.3         kappa",
-                               "\nErrors not known: cell.\n",
-                               "\n   4  weibull_min     0.2             4  0.200 +- 0.010", NULL});
+    check_shown(text,
+                (const char *[]){
+                    "\ncase  distribution  hurst  realisations     area at 0.1     "
+                    "area at 0.2     area at 0.3  total %\n",
+                    "\ncase  distribution  hurst  realisations         kappa  total %  erf_kappa  ",
+                    "\nErrors not known: cell.\n",
+                    "\n   4  weibull_min     0.2             4  0.200 +- 0.010", NULL});
     check_shown(text, (const char *[]){
                           "\n   5  weibull_min     0.3             0               -   ", NULL});
     free(text);
