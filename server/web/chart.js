@@ -20,9 +20,9 @@ export function colours(count, ordered) {
   });
 }
 
-function faint(colour) {
+function faint(colour, part) {
   const parts = colour.startsWith("#") ? [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16)) : colour.match(/\d+/g);
-  return `rgba(${parts.slice(0, 3).join(",")},0.18)`;
+  return `rgba(${parts.slice(0, 3).join(",")},${part})`;
 }
 
 function drawn(values, log) {
@@ -38,26 +38,48 @@ function range(low, high, log) {
   return [low >= 0 && low < 0.2 * high ? 0 : low - room, high + room];
 }
 
+/** How far total intervals may widen the y axis: by half of what the values span, and below zero only where values lie there. */
+function reach(lines, log) {
+  const values = lines.flatMap((line) => line.y).filter((y) => y !== null && (!log || y > 0));
+  const low = values.reduce((a, b) => Math.min(a, b), Infinity), high = values.reduce((a, b) => Math.max(a, b), -Infinity), half = (high - low) / 2;
+  if (!(low < high)) return [log ? 1e-300 : -Infinity, Infinity];
+  return log ? [low * Math.sqrt(low / high), high * Math.sqrt(high / low)] : [low >= 0 ? Math.max(0, low - half) : low - half, high + half];
+}
+
+/** Where the truth lies by all known errors, in words; "" where nothing is known. */
+function truth(line, i) {
+  const [low, high] = [line.totalLow?.[i], line.totalHigh?.[i]];
+  if (low === null || low === undefined) return "";
+  return `; the truth is between ${number(low)} and ${number(high)}, to 95 %${line.unknown?.length > 0 ? `, but for ${line.unknown.join(", ")}` : ""}`;
+}
+
 /**
- * Draws lines {label, x, y, low, high, error, colour, dash, theory}; low and high (or null) bound a band.
+ * Draws lines {label, x, y, low, high, totalLow, totalHigh, total, unknown, error, colour, dash, theory}: low and high (or null) bound a band, and with
+ * total totalLow and totalHigh a paler one, with dashed edges where some sources of error are unknown.
  * options: {xLabel, yLabel, xLog, yLog}. Returns {element, destroy}.
  */
 export function chart(lines, options) {
   const text = getComputedStyle(document.body).getPropertyValue("--text").trim();
   const grid = { stroke: getComputedStyle(document.body).getPropertyValue("--line").trim(), width: 1 };
+  const [least, most] = reach(lines, options.yLog);
   const tables = lines.map((line) => {
     const kept = line.x.map((x, i) => i).filter((i) => line.x[i] !== null && (!options.xLog || line.x[i] > 0)).sort((a, b) => line.x[a] - line.x[b]);
     const pick = (values) => (values ? drawn(kept.map((i) => values[i]), options.yLog) : kept.map(() => null));
-    return [kept.map((i) => line.x[i]), pick(line.y), pick(line.low), pick(line.high)];
+    const held = (values) => (line.total && values ? pick(values.map((value) => (value === null ? null : Math.max(least, Math.min(most, value))))) : pick(null));
+    return [kept.map((i) => line.x[i]), pick(line.y), pick(line.low), pick(line.high), held(line.totalLow), held(line.totalHigh)];
   });
   const series = [{ label: options.xLabel }], bands = [];
   lines.forEach((line, i) => {
-    const at = 1 + 3 * i;
+    const at = 1 + 5 * i;
     series.push({ label: line.label, stroke: line.colour, dash: line.dash ?? [], width: line.theory ? 1 : 2, spanGaps: true,
       points: { show: !line.theory && line.x.length <= 60, size: 5 } });
     for (const edge of ["low", "high"])
       series.push({ label: `${line.label}, ${edge}`, stroke: "transparent", width: 0, spanGaps: true, points: { show: false } });
-    if (line.low) bands.push({ series: [at + 2, at + 1], fill: faint(line.colour) });
+    const dashed = line.total && line.unknown?.length > 0;
+    for (const edge of ["total low", "total high"])
+      series.push({ label: `${line.label}, ${edge}`, stroke: dashed ? faint(line.colour, 0.6) : "transparent", width: dashed ? 0.7 : 0, dash: [4, 3], spanGaps: true, points: { show: false } });
+    if (line.total && line.totalLow) bands.push({ series: [at + 4, at + 3], fill: faint(line.colour, 0.09) });
+    if (line.low) bands.push({ series: [at + 2, at + 1], fill: faint(line.colour, 0.2) });
   });
   const axis = (label, size) => ({ label, stroke: text, grid, ticks: grid, font: "13px system-ui, sans-serif", labelFont: "14px system-ui, sans-serif", labelSize: 28, size });
   const place = make("div", { class: "plot" });
@@ -67,7 +89,7 @@ export function chart(lines, options) {
 
   function tell(line, i) {
     const [x, y] = [line.x[i], line.y[i]];
-    readout.textContent = `${line.label}: ${options.xLabel} = ${number(x)}, ${options.yLabel} = ${measured(y, line.error?.[i])}`;
+    readout.textContent = `${line.label}: ${options.xLabel} = ${number(x)}, ${options.yLabel} = ${measured(y, line.error?.[i])}${truth(line, i)}`;
   }
   function nearest(plot) {
     const { left, top } = plot.cursor;

@@ -29,7 +29,8 @@ function looks(all) {
 function lineOf(curve, label, colour, dash, withBand) {
   const error = curve.standard_error;
   const shifted = (sign) => curve.y.map((y, i) => (y === null || error?.[i] === null || error?.[i] === undefined ? null : y + sign * 2 * error[i]));
-  return { label, x: curve.x, y: curve.y, error, colour, dash, low: withBand && error ? shifted(-1) : null, high: withBand && error ? shifted(1) : null };
+  return { label, x: curve.x, y: curve.y, error, colour, dash, low: withBand && error ? shifted(-1) : null, high: withBand && error ? shifted(1) : null,
+    totalLow: curve.total_low ?? null, totalHigh: curve.total_high ?? null, total: withBand, unknown: curve.unknown_errors ?? [] };
 }
 
 export function showCurves(root, signal, study, contents) {
@@ -120,9 +121,10 @@ export function showCurves(root, signal, study, contents) {
 
   function drawValues(lines) {
     if (!values.open) return;
-    const heads = make("tr", {}, ["curve", "x", "y", "standard error"].map((name) => make("th", { scope: "col" }, name)));
+    const heads = make("tr", {}, ["curve", "x", "y", "standard error", "total low", "total high", "without"].map((name) => make("th", { scope: "col" }, name)));
     const rows = lines.filter((line) => !line.theory).slice(0, LISTED_MOST).flatMap((line) => line.x.map((x, i) => make("tr", {},
-      make("td", {}, line.label), make("td", { class: "number" }, number(x, 6)), make("td", { class: "number" }, number(line.y[i], 6)), make("td", { class: "number" }, number(line.error?.[i], 2)))));
+      make("td", {}, line.label), make("td", { class: "number" }, number(x, 6)), make("td", { class: "number" }, number(line.y[i], 6)), make("td", { class: "number" }, number(line.error?.[i], 2)),
+      make("td", { class: "number" }, number(line.totalLow?.[i], 6)), make("td", { class: "number" }, number(line.totalHigh?.[i], 6)), make("td", {}, line.unknown.join(", ")))));
     patch(listed, make("table", {}, make("thead", {}, heads), make("tbody", {}, rows)));
   }
 
@@ -145,7 +147,7 @@ export function showCurves(root, signal, study, contents) {
       const results = await fetched();
       if (mine !== turn || signal.aborted) return;
       const lines = linesOf(results), banded = lines.filter((line) => line.low).length <= BANDS_MOST;
-      if (!banded) for (const line of lines) line.low = line.high = null;
+      if (!banded) for (const line of lines) Object.assign(line, { low: null, high: null, total: false });
       const curve = results.flatMap((one) => one.curves ?? []).find((one) => one.quantity === state.quantity);
       shown?.destroy();
       shown = chart(lines, { xLabel: pretty(curve?.x_label || "x"), yLabel: pretty(curve?.y_label || words(state.quantity)), xLog: state.xLog, yLog: state.yLog });
@@ -157,8 +159,9 @@ export function showCurves(root, signal, study, contents) {
       values.hidden = false;
       drawValues(lines);
       const lacks = results.map(lackOf).filter(Boolean);
+      const dashed = [...new Set(lines.filter((line) => line.total).flatMap((line) => line.unknown))];
       message.textContent = lacks.length > 0 ? lacks.slice(0, LACKS_MOST).join("; ") + (lacks.length > LACKS_MOST ? `; and ${lacks.length - LACKS_MOST} more` : "")
-        : lines.length === 0 ? "Nothing is like what is chosen." : !state.band ? "" : banded ? "Bands are two standard errors wide to each side." : `No bands of more than ${BANDS_MOST} lines.`;
+        : lines.length === 0 ? "Nothing is like what is chosen." : !state.band ? "" : banded ? `Bands are two standard errors wide to each side; in pale bands lies the truth, to 95 %${dashed.length > 0 ? `, but for what is not known where edges are dashed: ${dashed.join(", ")}` : ""}.` : `No bands of more than ${BANDS_MOST} lines.`;
     } catch (error) {
       if (!signal.aborted && mine === turn) message.textContent = error.message;
     }

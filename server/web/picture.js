@@ -5,6 +5,7 @@ import { sweptOf, whereOf } from "/web/sweep.js";
 
 const AUTOMATIC = ["", "automatic"];
 const AXES = [AUTOMATIC, ["none", "linear"], ["x", "log x"], ["y", "log y"], ["xy", "log x and y"]];
+const ERRORS = [["", "total"], ["no", "standard"]];
 
 export function showPicture(root, signal, study, contents) {
   const path = `/v1/studies/${encodeURIComponent(study.id)}`;
@@ -14,10 +15,10 @@ export function showPicture(root, signal, study, contents) {
     return null;
   }
   const swept = sweptOf(contents.cases).map(({ name }) => [name, symbol(name)]);
-  const state = { quantity: first, x: "", at: "", colour: "", dash: "", panel: "", model: "", series: "", level: "", log: "" };
+  const state = { quantity: first, x: "", at: "", colour: "", dash: "", panel: "", model: "", series: "", level: "", log: "", total: "" };
   const lists = {}, loads = new Map(); // values of x, by quantity
   let turn = 0;
-  for (const [name, label] of [["quantity", "Quantity"], ["x", "over"], ["at", "at"], ["colour", "Colour"], ["dash", "Dash"], ["panel", "Panel"], ["model", "Model"], ["series", "Series"], ["level", "Level"], ["log", "Axes"]])
+  for (const [name, label] of [["quantity", "Quantity"], ["x", "over"], ["at", "at"], ["colour", "Colour"], ["dash", "Dash"], ["panel", "Panel"], ["model", "Model"], ["series", "Series"], ["level", "Level"], ["log", "Axes"], ["total", "Errors"]])
     lists[name] = chooser(label, (value) => set({ [name]: value }));
   const where = whereOf(contents.cases, () => set({}));
   const message = make("p", { role: "status" }), image = make("img", { class: "picture", alt: "" }), command = make("code");
@@ -32,7 +33,7 @@ export function showPicture(root, signal, study, contents) {
   function asked() {
     const overParameter = about() && state.x !== "";
     const parts = [["quantity", overParameter ? `${state.quantity}@${state.at}` : state.quantity], ["where", where.query()]];
-    return [...parts, ...["x", "colour", "dash", "panel", "model", "series", "level", "log"].map((name) => [name, state[name]])].filter(([, value]) => value !== "");
+    return [...parts, ...["x", "colour", "dash", "panel", "model", "series", "level", "log", "total"].map((name) => [name, state[name]])].filter(([, value]) => value !== "");
   }
   const address = () => `${path}/plot?${new URLSearchParams(asked())}`;
 
@@ -58,6 +59,7 @@ export function showPicture(root, signal, study, contents) {
     lists.series.set(values(curve?.series), state.series);
     lists.level.set(values(curve?.levels, (one) => one), state.level);
     lists.log.set(AXES, state.log);
+    lists.total.set(curve?.matrix ? [] : ERRORS, state.total);
     say(command, ["rugo plot", study.id, ...asked().map(([name, value]) => `--${name} ${value}`)].join(" "));
   }
 

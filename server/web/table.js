@@ -7,7 +7,8 @@ const PAGE = 100; // rows
 
 function notesOf(row, at) {
   const theory = row.theory?.[at], other = row.errors?.[at], law = row.law_differences?.[at];
-  return [theory !== null && theory !== undefined ? `theory ${number(theory)}` : "", other ? `errors other than statistical up to ${number(other, 2)}` : "",
+  const [low, high] = [row.total_low?.[at], row.total_high?.[at]];
+  return [low !== null && low !== undefined && low < high ? `the truth is between ${number(low)} and ${number(high)}, to 95 %, by the errors that are known` : "", theory !== null && theory !== undefined ? `theory ${number(theory)}` : "", other ? `errors other than statistical up to ${number(other, 2)}` : "",
     law !== null && law !== undefined ? `the other law of heights: ${law > 0 ? "+" : ""}${measured(law, row.law_standard_errors[at])}` : ""].filter(Boolean).join("; ");
 }
 
@@ -67,8 +68,8 @@ export function showTable(root, signal, study, contents) {
     back.disabled = first === 0;
     on.disabled = first + PAGE >= rows.length;
     say(range, `rows ${first + 1} to ${first + shown.length} of ${rows.length}`);
-    const unknown = [...new Set(table.columns.flatMap((column) => column.unknown ?? []))];
-    say(message, `${rows.length === table.rows.length ? "" : `${rows.length} of `}${table.rows.length} ${table.rows.length === 1 ? "case" : "cases"}; values ± one standard error.${unknown.length > 0 ? ` Errors not known: ${unknown.join(", ")}.` : ""}`);
+    const lacking = table.columns.filter((column) => column.unknown?.length > 0).map((column) => `${column.unknown.join(", ")} of ${words(column.name)}`);
+    say(message, `${rows.length === table.rows.length ? "" : `${rows.length} of `}${table.rows.length} ${table.rows.length === 1 ? "case" : "cases"}; values ± one standard error.${lacking.length > 0 ? ` Errors not known: ${lacking.join("; ")}.` : ""}`);
   }
 
   async function load() {

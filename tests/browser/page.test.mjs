@@ -86,12 +86,16 @@ test("curves are chosen by quantity, model, mesh and case, with values on hover 
     await page.keyboard.press(key);
   }
   await says(page, "= 0.1, ");
+  await says(page, "; the truth is between "); // by the totals of the document
+  await says(page, "in pale bands lies the truth, to 95 %");
   await choose(page, "Quantity", "mean_gap");
   await page.waitForFunction(() => document.querySelector(".chart").getAttribute("aria-label").includes("gap"));
   await page.evaluate(() => [...document.querySelectorAll("label.tick")].find((one) => one.textContent.trim() === "log x").click());
   await page.waitForSelector(".uplot canvas");
   await click(page, "Values as a table");
   await page.waitForFunction(() => document.querySelectorAll("details table tbody tr").length > 6);
+  const [y, , low, high] = await page.$eval("details table tbody tr", (row) => [...row.cells].slice(2, 6).map((cell) => Number(cell.textContent)));
+  assert.ok(low < y && y < high, "the value lies in its total interval");
 });
 
 test("a difference of cases is drawn with the error of its pairs", async (t) => {
