@@ -38,9 +38,9 @@ function range(low, high, log) {
   return [low >= 0 && low < 0.2 * high ? 0 : low - room, high + room];
 }
 
-/** How far total intervals may widen the y axis: by half of what the values span, and below zero only where values lie there. */
+/** How far the y axis follows total intervals, which go on beyond it: by half of what values and inner bands span, and below zero only where these lie there. */
 function reach(lines, log) {
-  const values = lines.flatMap((line) => line.y).filter((y) => y !== null && (!log || y > 0));
+  const values = lines.flatMap((line) => [...line.y, ...(line.low ?? []), ...(line.high ?? [])]).filter((y) => y !== null && (!log || y > 0));
   const low = values.reduce((a, b) => Math.min(a, b), Infinity), high = values.reduce((a, b) => Math.max(a, b), -Infinity), half = (high - low) / 2;
   if (!(low < high)) return [log ? 1e-300 : -Infinity, Infinity];
   return log ? [low * Math.sqrt(low / high), high * Math.sqrt(high / low)] : [low >= 0 ? Math.max(0, low - half) : low - half, high + half];
@@ -56,17 +56,17 @@ function truth(line, i) {
 /**
  * Draws lines {label, x, y, low, high, totalLow, totalHigh, total, unknown, error, colour, dash, theory}: low and high (or null) bound a band, and with
  * total totalLow and totalHigh a paler one, with dashed edges where some sources of error are unknown.
- * options: {xLabel, yLabel, xLog, yLog}. Returns {element, destroy}.
+ * options: {xLabel, yLabel, xLog, yLog, whole}; whole: the y axis goes as far as total intervals do. Returns {element, destroy}.
  */
 export function chart(lines, options) {
   const text = getComputedStyle(document.body).getPropertyValue("--text").trim();
   const grid = { stroke: getComputedStyle(document.body).getPropertyValue("--line").trim(), width: 1 };
-  const [least, most] = reach(lines, options.yLog);
+  const [least, most] = options.whole ? [-Infinity, Infinity] : reach(lines, options.yLog);
   const tables = lines.map((line) => {
     const kept = line.x.map((x, i) => i).filter((i) => line.x[i] !== null && (!options.xLog || line.x[i] > 0)).sort((a, b) => line.x[a] - line.x[b]);
     const pick = (values) => (values ? drawn(kept.map((i) => values[i]), options.yLog) : kept.map(() => null));
-    const held = (values) => (line.total && values ? pick(values.map((value) => (value === null ? null : Math.max(least, Math.min(most, value))))) : pick(null));
-    return [kept.map((i) => line.x[i]), pick(line.y), pick(line.low), pick(line.high), held(line.totalLow), held(line.totalHigh)];
+    const total = (values) => pick(line.total && values ? (options.yLog ? values.map((value) => (value === null ? null : Math.max(least, value))) : values) : null);
+    return [kept.map((i) => line.x[i]), pick(line.y), pick(line.low), pick(line.high), total(line.totalLow), total(line.totalHigh)];
   });
   const series = [{ label: options.xLabel }], bands = [];
   lines.forEach((line, i) => {
@@ -102,10 +102,11 @@ export function chart(lines, options) {
       }));
     if (best) tell(best.line, best.i);
   }
-  const scale = (log) => ({ distr: log ? 3 : 1, range: (plot, low, high) => range(low, high, log) });
+  const scale = (log, least = -Infinity, most = Infinity) => ({ distr: log ? 3 : 1,
+    range: (plot, low, high) => range(low === null || low === undefined ? low : Math.max(low, least), Math.min(high, most), log) });
   const plot = new uPlot({
     width: 600, height: HEIGHT, series, bands,
-    scales: { x: { ...scale(options.xLog), time: false }, y: scale(options.yLog) },
+    scales: { x: { ...scale(options.xLog), time: false }, y: scale(options.yLog, least, most) },
     axes: [axis(options.xLabel, 34), axis(options.yLabel, 64)],
     legend: { show: false },
     cursor: { points: { show: false }, drag: { x: true, y: true, uni: 20 } },

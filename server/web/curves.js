@@ -150,7 +150,7 @@ export function showCurves(root, signal, study, contents) {
       if (!banded) for (const line of lines) Object.assign(line, { low: null, high: null, total: false });
       const curve = results.flatMap((one) => one.curves ?? []).find((one) => one.quantity === state.quantity);
       shown?.destroy();
-      shown = chart(lines, { xLabel: pretty(curve?.x_label || "x"), yLabel: pretty(curve?.y_label || words(state.quantity)), xLog: state.xLog, yLog: state.yLog });
+      shown = chart(lines, { xLabel: pretty(curve?.x_label || "x"), yLabel: pretty(curve?.y_label || words(state.quantity)), xLog: state.xLog, yLog: state.yLog, whole: Boolean(state.difference) && !state.yLog });
       const held = figure.contains(document.activeElement);
       figure.replaceChildren(shown.element);
       if (held) shown.element.focus({ preventScroll: true });

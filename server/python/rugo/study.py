@@ -84,12 +84,14 @@ class Result:
     @functools.cached_property
     def curves(self) -> Table:
         """A row a point of each curve: case, what is swept, quantity, series ("main" where a quantity has one
-        alone), model, level, x, y, standard_error, errors by source, theories; all columns of curves.csv."""
+        alone), model, level, x, y, standard_error, errors by source, theories, total_low, total_high,
+        unknown_errors; all columns of curves.csv."""
         return _table(rows_of_csv((self.folder / "curves.csv").read_text(encoding="utf-8")))
 
     @functools.cached_property
     def scalars(self) -> Table:
-        """A row a case and scalar: case, its parameters, name, value, standard_error, theory, errors by source."""
+        """A row a case and scalar: case, its parameters, name, value, standard_error, theory, errors by source,
+        total_low, total_high and a list unknown_errors."""
         return _table(rows_of_scalars(self.document))
 
     def picture(self, quantity: str) -> Picture:

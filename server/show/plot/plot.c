@@ -270,7 +270,8 @@ static bool fit(struct plot *plot, const struct study_result *study) {
         if (plot->lines->list[n].at[CHANNEL_PANEL] < plot->panels)
             include(frame, plot, plot->lines->list[n].curve);
     if (plot->errors.total)
-        plot_errors_include(frame, plot->lines, plot->panels, plot->words->points);
+        plot_errors_include(frame, plot->lines, plot->panels,
+                            plot->words->points || plot->lines->list[0].curve->minuend != NULL);
     struct plot_axis own = frame->x;
     if (!frame_finish(frame))
         return false;

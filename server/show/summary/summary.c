@@ -504,7 +504,7 @@ static bool has_total(const struct scalar_table *plan, size_t s) {
         if (scalar == NULL || !borne)
             continue;
         const struct total total = scalar_total(scalar);
-        if (total_half_width(scalar->value, &total) > 0)
+        if (total_half_width(scalar->value, &total) > 1e-9 * fabs(scalar->value)) /* rounding */
             return true;
     }
     return false;

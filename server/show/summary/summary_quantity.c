@@ -402,6 +402,7 @@ static void put_row_heading(const struct quantity_table *words, const struct sho
             table_cell(table, "%s at %s %s", words->value, SAMPLE_NAMES[n], words->x);
         else
             table_cell(table, "%s at %.4g", words->value, x[n]);
+    table_fold(table);
     table_cell(table, "total %%");
     for (int source = 0; source < ERROR_SOURCES; source++)
         if (known[source])

@@ -114,7 +114,8 @@ static int set_physical(struct case_table *table, const struct physical_unit *un
 static void sum_errors(struct table_value *value, struct table_column *column) {
     value->error = NAN;
     value->total = total_of(value->value, value->standard_error, value->errors);
-    column->has_total = column->has_total || total_half_width(value->value, &value->total) > 0;
+    column->has_total = column->has_total || total_half_width(value->value, &value->total) >
+                                                 ROUNDING * fabs(value->value);
     for (size_t s = 0; s < ERROR_SOURCES; s++) {
         const struct scalar_error *error = &value->errors[s];
         column->unknown[s] =

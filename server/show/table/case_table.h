@@ -43,7 +43,7 @@ struct table_column {
     double x;
     const char *x_label;
     const char *theory;               /* of a curve: whose values stand beside it; NULL: none */
-    bool has_total;                   /* some value has a total interval that is not the value */
+    bool has_total;                   /* some value has a total interval, more than rounding */
     bool unknown[ERROR_SOURCES];      /* sources that bear on some row and are not known there */
     const struct table_value *values; /* one a row */
 };
