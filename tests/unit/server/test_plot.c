@@ -436,7 +436,7 @@ static void lines_stay_large(void **state) {
     for (enum plot_axes axes = AXES_LINEAR; axes < AXES_COUNT; axes++) {
         char *text = picture_of(
             &study, &(struct plot_request){.lines = {.quantity = "contact_area"}, .axes = axes});
-        double x, from, to;
+        double x = NAN, from = NAN, to = NAN;
         const char *path = strstr(text, "class=\"curve\"");
         path = path != NULL ? strstr(path, " d=\"M") : NULL;
         assert_true(path != NULL && sscanf(path, " d=\"M%lf %lfL%lf %lf", &x, &from, &x, &to) == 4);
