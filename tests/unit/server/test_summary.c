@@ -145,13 +145,11 @@ static void many_cases_have_a_row_each(void **state) {
     }
     study.cases[5].realisations = 0;
     char *text = table_of(&study, NULL);
-    check_shown(text,
-                (const char *[]){
-                    "\ncase  distribution  hurst  realisations     area at 0.1     "
-                    "area at 0.2     area at 0.3  total %\n",
-                    "\ncase  distribution  hurst  realisations         kappa  total %  erf_kappa  ",
-                    "\nErrors not known: cell.\n",
-                    "\n   4  weibull_min     0.2             4  0.200 +- 0.010", NULL});
+    check_shown(text, (const char *[]){
+                          "\ncase  distribution  hurst  realisations  ",
+                          "area at 0.1     area at 0.2     area at 0.3  total %\n",
+                          "         kappa  total %  erf_kappa  ", "\nErrors not known: cell.\n",
+                          "\n   4  weibull_min     0.2             4  0.200 +- ", NULL});
     check_shown(text, (const char *[]){
                           "\n   5  weibull_min     0.3             0               -   ", NULL});
     free(text);
