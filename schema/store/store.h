@@ -54,10 +54,12 @@ int store_probe(struct store *store, struct error *err);
 int store_submit(struct store *store, const struct study *study, const char *key,
                  char id[STUDY_ID_SIZE], bool *existing, struct error *err);
 
-/* Finds the id of the one study that `given` stands for: its id, the first digits of it, or its
- * name. ERROR_ABSENT where there is none; ERROR_INPUT, with a list of them, where there are
- * several. */
-int store_find(struct store *store, const char *given, char id[STUDY_ID_SIZE], struct error *err);
+/* Finds the id of the study that `given` stands for: its id, else its name, else the first digits
+ * of its id. Of several studies with that name it is the newest, and *others the number of the
+ * others; with others NULL they are refused. ERROR_ABSENT where there is none; ERROR_INPUT, with a
+ * list of them, where several are refused, or begin with these digits. */
+int store_find(struct store *store, const char *given, char id[STUDY_ID_SIZE], uint64_t *others,
+               struct error *err);
 
 struct study_status {
     char id[STUDY_ID_SIZE];

@@ -408,14 +408,19 @@ int store_retry(struct store *store, const char *id, uint64_t *count, struct err
 
 enum { CANDIDATES_SHOWN = 5 };
 
-/* Queries the studies with this name or these first digits, newest first. */
-static int query_candidates(struct store *store, const char *given, sqlite3_stmt **row,
-                            struct error *err) {
-    return store_query(store, row, err,
-                       "SELECT public, name, state, created FROM study WHERE (name = ?1 OR "
-                       "substr(public, 1, length(?1)) = ?1) AND id NOT IN " DELETED_STUDIES
-                       " ORDER BY id DESC",
-                       "t", given);
+/* What a text may be of a study. */
+enum known_by { KNOWN_BY_NAME, KNOWN_BY_DIGITS };
+
+/* Queries the studies with this name, or with these first digits of the id, newest first. */
+static int query_candidates(struct store *store, const char *given, enum known_by by,
+                            sqlite3_stmt **row, struct error *err) {
+#define CANDIDATES(condition)                                                                      \
+    "SELECT public, name, state, created FROM study WHERE " condition                              \
+    " AND id NOT IN " DELETED_STUDIES " ORDER BY id DESC"
+    static const char *const QUERIES[] = {CANDIDATES("name = ?1"),
+                                          CANDIDATES("substr(public, 1, length(?1)) = ?1")};
+#undef CANDIDATES
+    return store_query(store, row, err, QUERIES[by], "t", given);
 }
 
 /* Appends "ID (name, state, since)". */
@@ -427,44 +432,75 @@ static size_t append_candidate(char *text, size_t size, size_t used, sqlite3_stm
     return used + (length > 0 ? (size_t)length : 0);
 }
 
-/* Reads the candidates: the newest goes into id, and into a list with the next few. */
-static int read_candidates(struct store *store, const char *given, char id[STUDY_ID_SIZE],
-                           struct error *err) {
+/* Studies that a text may stand for. */
+struct candidates {
+    size_t count;
+    char newest[STUDY_ID_SIZE];
+    char list[110 * CANDIDATES_SHOWN]; /* the newest few */
+};
+
+static int read_candidates(struct store *store, const char *given, enum known_by by,
+                           struct candidates *out, struct error *err) {
     sqlite3_stmt *row = NULL;
-    char list[110 * CANDIDATES_SHOWN] = "", more[32] = "";
-    size_t used = 0, count = 0;
-    int status = query_candidates(store, given, &row, err);
+    size_t used = 0;
+    *out = (struct candidates){0};
+    int status = query_candidates(store, given, by, &row, err);
     if (status != 0)
         return status;
-    for (; (status = store_step(store, row, err)) == 1; count++) {
-        if (count == 0)
-            snprintf(id, STUDY_ID_SIZE, "%s", (const char *)sqlite3_column_text(row, 0));
-        if (count < CANDIDATES_SHOWN)
-            used = append_candidate(list, sizeof list, used, row);
+    for (; (status = store_step(store, row, err)) == 1; out->count++) {
+        if (out->count == 0)
+            snprintf(out->newest, STUDY_ID_SIZE, "%s", (const char *)sqlite3_column_text(row, 0));
+        if (out->count < CANDIDATES_SHOWN)
+            used = append_candidate(out->list, sizeof out->list, used, row);
     }
-    if (status != 0 || count == 1)
-        return status;
-    if (count == 0)
-        return error_set(err, ERROR_ABSENT,
-                         "there is no study \"%.40s\"; rugo status lists those there are", given);
-    if (count > CANDIDATES_SHOWN)
-        snprintf(more, sizeof more, " and %zu more", count - CANDIDATES_SHOWN);
-    return error_set(err, ERROR_INPUT, "\"%.40s\" may be each of %zu studies; name its id: %s%s",
-                     given, count, list, more);
+    return status;
 }
 
-int store_find(struct store *store, const char *given, char id[STUDY_ID_SIZE], struct error *err) {
+static int refuse_candidates(const char *given, const struct candidates *found, struct error *err) {
+    char more[32] = "";
+    if (found->count > CANDIDATES_SHOWN)
+        snprintf(more, sizeof more, " and %zu more", found->count - CANDIDATES_SHOWN);
+    return error_set(err, ERROR_INPUT, "\"%.40s\" may be each of %zu studies; name its id: %s%s",
+                     given, found->count, found->list, more);
+}
+
+/* A name goes before the first digits of an id, which may be anything's. */
+static int find_candidate(struct store *store, const char *given, char id[STUDY_ID_SIZE],
+                          uint64_t *others, struct error *err) {
+    struct candidates found;
+    int status = read_candidates(store, given, KNOWN_BY_NAME, &found, err);
+    bool named = status == 0 && found.count > 0;
+    if (status == 0 && !named)
+        status = read_candidates(store, given, KNOWN_BY_DIGITS, &found, err);
+    if (status != 0)
+        return status;
+    if (found.count == 0)
+        return error_set(err, ERROR_ABSENT,
+                         "there is no study \"%.40s\"; rugo status lists those there are", given);
+    if (found.count > 1 && !(named && others != NULL))
+        return refuse_candidates(given, &found, err);
+    if (others != NULL)
+        *others = found.count - 1;
+    snprintf(id, STUDY_ID_SIZE, "%s", found.newest);
+    return 0;
+}
+
+int store_find(struct store *store, const char *given, char id[STUDY_ID_SIZE], uint64_t *others,
+               struct error *err) {
     int64_t row;
     struct error absent = {0};
     if (*given == '\0')
         return error_set(err, ERROR_INPUT, "a study has an id and a name, and neither is empty");
     int status =
         strlen(given) < STUDY_ID_SIZE ? study_row(store, given, &row, &absent) : ERROR_ABSENT;
-    if (status == 0)
+    if (status == 0) {
         snprintf(id, STUDY_ID_SIZE, "%s", given);
+        if (others != NULL)
+            *others = 0;
+    }
     if (status != 0 && status != ERROR_ABSENT)
         *err = absent;
-    return status == ERROR_ABSENT ? read_candidates(store, given, id, err) : status;
+    return status == ERROR_ABSENT ? find_candidate(store, given, id, others, err) : status;
 }
 
 /* The failures of a study: jobs, and cases that cannot be published. */

@@ -502,6 +502,13 @@ int client_json(struct client *client, const struct request *request, cJSON **ou
     return status;
 }
 
+uint64_t client_header_number(struct client *client, const char *name) {
+    struct curl_header *header = NULL;
+    if (curl_easy_header(client->curl, name, 0, CURLH_HEADER, -1, &header) != CURLHE_OK)
+        return 0;
+    return strtoull(header->value, NULL, 10);
+}
+
 int client_download(struct client *client, const char *path, FILE *file, struct error *err) {
     struct request request = {.method = "GET", .path = path, .accept = "*/*"};
     struct reply reply;

@@ -6,6 +6,7 @@
 #include "schema/study/fault.h"
 #include "worker/link/client_trust.h"
 #include <cjson/cJSON.h>
+#include <stdint.h>
 #include <stdio.h>
 
 /* Call these once a process, from main, before and after all threads: libcurl's own set-up is not
@@ -46,6 +47,10 @@ int key_make(char key[KEY_SIZE], struct error *err);
  * where no answer came in time: it says what may have been done. */
 int client_change(struct client *client, const struct request *request, const char *doubt,
                   cJSON **out, struct error *err);
+/* Returns the number in a header of the last answer; 0 where it has none. */
+uint64_t client_header_number(struct client *client, const char *name);
+/* A study that was found by a name: how many older ones have the same one. */
+#define SAME_NAME_HEADER "Rugo-Same-Name"
 /* Writes the body to a file, as of a snapshot. */
 int client_download(struct client *client, const char *path, FILE *file, struct error *err);
 

@@ -1,6 +1,7 @@
 #include "server/command/access/access.h"
 #include "core/memory_file.h"
 #include "core/part_file.h"
+#include "core/plain_text.h"
 #include "jobs/kind.h"
 #include "schema/result/result_json.h"
 #include "schema/study/override.h"
@@ -140,16 +141,18 @@ static void escape_segment(const char *text, char *out, size_t size) {
 
 /* A server finds what fits, and its answer has the whole id. */
 static int find_remote(struct access *access, const char *given, char id[STUDY_ID_SIZE],
-                       struct error *err) {
-    char segment[3 * GIVEN_MOST + 4], path[sizeof segment + 16];
+                       uint64_t *others, struct error *err) {
+    char segment[3 * GIVEN_MOST + 4], path[sizeof segment + 32];
     cJSON *document = NULL;
     bool dots = strcmp(given, ".") == 0 || strcmp(given, "..") == 0; /* steps of a path */
     if (strlen(given) > GIVEN_MOST || strchr(given, '/') != NULL || dots)
         return error_set(err, ERROR_INPUT,
                          "a server finds no study by the name \"%.40s\"; name its id", given);
     escape_segment(given, segment, sizeof segment);
-    snprintf(path, sizeof path, "/v1/studies/%s", segment);
+    snprintf(path, sizeof path, "/v1/studies/%s%s", segment, others == NULL ? "?unique=true" : "");
     int status = ask(access, "GET", path, NULL, &document, err);
+    if (status == 0 && others != NULL)
+        *others = client_header_number(access->client, SAME_NAME_HEADER);
     const char *found = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(document, "id"));
     if (status == 0 && (found == NULL || !is_study_id(found)))
         status = error_set(err, ERROR_SYSTEM, "the server's answer has no id");
@@ -159,16 +162,29 @@ static int find_remote(struct access *access, const char *given, char id[STUDY_I
     return status;
 }
 
-int access_find(struct access *access, const char *given, char id[STUDY_ID_SIZE],
+static int find(struct access *access, const char *given, char id[STUDY_ID_SIZE], uint64_t *others,
                 struct error *err) {
     if (access->client == NULL)
-        return store_find(access->store, given, id, err);
+        return store_find(access->store, given, id, others, err);
     if (*given == '\0')
         return error_set(err, ERROR_INPUT, "a study has an id and a name, and neither is empty");
     if (strlen(given) + 1 != STUDY_ID_SIZE || !is_study_id(given))
-        return find_remote(access, given, id, err);
+        return find_remote(access, given, id, others, err);
     snprintf(id, STUDY_ID_SIZE, "%s", given);
     return 0;
+}
+
+int access_find(struct access *access, const char *command, const char *given,
+                char id[STUDY_ID_SIZE], struct error *err) {
+    uint64_t others = 0;
+    int status = find(access, given, id, command != NULL ? &others : NULL, err);
+    if (status == 0 && others > 0) {
+        fprintf(stderr, "rugo %s: %llu studies are named \"", command,
+                (unsigned long long)others + 1);
+        text_print_plain(stderr, given);
+        fprintf(stderr, "\"; this is the newest, %s\n", id);
+    }
+    return status;
 }
 
 int access_status(struct access *access, const char *id, cJSON **out, struct error *err) {

@@ -59,9 +59,11 @@ int access_open(struct access **out, const struct access_options *options, enum 
                 struct error *err);
 void access_close(struct access **access);
 
-/* The id of the study that `given` stands for (store_find); the functions below take ids alone. */
-int access_find(struct access *access, const char *given, char id[STUDY_ID_SIZE],
-                struct error *err);
+/* Finds the id of the study that `given` stands for (store_find); the functions below take ids
+ * alone. Of several studies with that name it is the newest, and the command prints to standard
+ * error which one that is; with command NULL they are refused. */
+int access_find(struct access *access, const char *command, const char *given,
+                char id[STUDY_ID_SIZE], struct error *err);
 
 /* What is submitted; all borrowed. */
 struct submission {

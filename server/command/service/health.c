@@ -23,7 +23,7 @@ static int show(const cJSON *document, const char *id, const void *options, stru
 }
 
 static int run(const void *values, const char *const *arguments) {
-    static const struct question QUESTION = {"health", ACCESS_READ, ask, show};
+    static const struct question QUESTION = {"health", ACCESS_READ, false, ask, show};
     const struct options *options = values;
     struct options own = *options;
     (void)arguments;

@@ -2,7 +2,7 @@
 #include "server/command/study/question.h"
 
 static int run(const void *options, const char *const *arguments) {
-    static const struct change_question CHANGE = {"cancel", access_cancel};
+    static const struct change_question CHANGE = {"cancel", true, access_cancel};
     return change_answer(&CHANGE, options, arguments[0]);
 }
 

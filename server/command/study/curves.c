@@ -71,7 +71,7 @@ static int run(const void *values, const char *const *arguments) {
     if (status == 0)
         status = access_open(&access, &options->place, ACCESS_READ, &err);
     if (status == 0)
-        status = access_find(access, arguments[0], id, &err);
+        status = access_find(access, "curves", arguments[0], id, &err);
     if (status == 0)
         status = ask(access, id, options, &study, &err);
     if (status == 0)

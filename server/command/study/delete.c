@@ -16,7 +16,7 @@ static int ask(struct access *access, const char *id, const void *options, cJSON
 }
 
 static int run(const void *values, const char *const *arguments) {
-    static const struct question QUESTION = {"delete", ACCESS_WRITE, ask, show};
+    static const struct question QUESTION = {"delete", ACCESS_WRITE, true, ask, show};
     const struct change_options *options = values;
     return question_answer(&QUESTION, &options->place, arguments[0], options);
 }

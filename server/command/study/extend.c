@@ -19,7 +19,7 @@ static int ask(struct access *access, const char *id, const void *values, cJSON 
 }
 
 static int run(const void *values, const char *const *arguments) {
-    static const struct question QUESTION = {"extend", ACCESS_WRITE, ask, show_progress};
+    static const struct question QUESTION = {"extend", ACCESS_WRITE, false, ask, show_progress};
     const struct options *options = values;
     if (options->realisations == 0)
         return usage_error("extend", "--realisations N is missing");

@@ -163,7 +163,7 @@ static int run(const void *values, const char *const *arguments) {
     }
     int status = access_open(&access, &options->place, ACCESS_READ, &err);
     if (status == 0)
-        status = access_find(access, arguments[0], id, &err);
+        status = access_find(access, "plot", arguments[0], id, &err);
     if (status == 0)
         status = show(access, id, options, &err);
     access_close(&access);

@@ -12,7 +12,7 @@ int question_answer(const struct question *question, const struct access_options
         return EXIT_USAGE;
     int status = access_open(&access, place, question->mode, &err);
     if (status == 0 && given != NULL)
-        status = access_find(access, given, id, &err);
+        status = access_find(access, question->alone ? NULL : question->command, given, id, &err);
     const char *study = given != NULL ? id : NULL;
     if (status == 0)
         status = question->ask(access, study, options, &document, &err);
@@ -39,6 +39,10 @@ static int ask_change(struct access *access, const char *id, const void *change,
 
 int change_answer(const struct change_question *change, const struct change_options *options,
                   const char *id) {
-    const struct question question = {change->command, ACCESS_WRITE, ask_change, show_progress};
+    const struct question question = {.command = change->command,
+                                      .mode = ACCESS_WRITE,
+                                      .alone = change->alone,
+                                      .ask = ask_change,
+                                      .show = show_progress};
     return question_answer(&question, &options->place, id, change);
 }

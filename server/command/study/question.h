@@ -9,6 +9,7 @@
 struct question {
     const char *command;
     enum access_mode mode;
+    bool alone; /* several studies of one name are refused: the newest need not be what is meant */
     int (*ask)(struct access *access, const char *id, const void *options, cJSON **out,
                struct error *err);
     int (*show)(const cJSON *document, const char *id, const void *options, struct error *err);
@@ -21,6 +22,7 @@ int question_answer(const struct question *question, const struct access_options
  * access. */
 struct change_question {
     const char *command;
+    bool alone; /* as above */
     int (*make)(struct access *access, const char *id, cJSON **progress, struct error *err);
 };
 struct change_options {

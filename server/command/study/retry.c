@@ -3,7 +3,7 @@
 #include "server/command/study/question.h"
 
 static int run(const void *options, const char *const *arguments) {
-    static const struct change_question CHANGE = {"retry", access_retry};
+    static const struct change_question CHANGE = {"retry", false, access_retry};
     return change_answer(&CHANGE, options, arguments[0]);
 }
 

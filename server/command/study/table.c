@@ -30,7 +30,7 @@ static int run(const void *values, const char *const *arguments) {
         return EXIT_USAGE;
     int status = access_open(&access, &options->place, ACCESS_READ, &err);
     if (status == 0)
-        status = access_find(access, arguments[0], id, &err);
+        status = access_find(access, "table", arguments[0], id, &err);
     if (status == 0)
         status = access_table(access, id, &request, options->format, stdout, &err);
     if (status == 0)

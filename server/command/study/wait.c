@@ -61,7 +61,7 @@ static int show(const cJSON *progress, const char *id, const void *options, stru
 }
 
 static int run(const void *values, const char *const *arguments) {
-    static const struct question QUESTION = {"wait", ACCESS_READ, ask, show};
+    static const struct question QUESTION = {"wait", ACCESS_READ, false, ask, show};
     const struct options *options = values;
     return question_answer(&QUESTION, &options->place, arguments[0], options);
 }

@@ -65,6 +65,17 @@ bool query_number(struct exchange *exchange, const char *name, int64_t least, in
     return !answered(exchange, &faults);
 }
 
+bool query_true(struct exchange *exchange, const char *name, const char *purpose) {
+    const char *text = exchange_query(exchange, name);
+    struct fault_list faults = {0};
+    char pointer[32];
+    if (text == NULL || strcmp(text, "true") == 0)
+        return true;
+    snprintf(pointer, sizeof pointer, "?%.20s", name);
+    fault_add(&faults, pointer, "%s is true, %s, or left out", pointer, purpose);
+    return !answered(exchange, &faults);
+}
+
 bool check_body(struct exchange *exchange) {
     if (exchange->body == NULL)
         answer_problem(exchange, 400, "a JSON body is needed", NULL);

@@ -1,5 +1,6 @@
 /* Who may ask for what, and who answers. */
 #include "server/http/route/route.h"
+#include "worker/link/client.h"
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -10,7 +11,7 @@
 static const struct route ROUTES[] = {
     {"POST", "/v1/studies", ROLE_SUBMIT, handle_study_create, {NULL}},
     {"GET", "/v1/studies", ROLE_READ, handle_study_list, {"limit", "after"}},
-    {"GET", "/v1/studies/*", ROLE_READ, handle_study, {NULL}},
+    {"GET", "/v1/studies/*", ROLE_READ, handle_study, {"unique"}},
     {"DELETE", "/v1/studies/*", ROLE_SUBMIT, handle_study_cancel, {"results"}},
     {"GET", "/v1/studies/*/study", ROLE_READ, handle_document, {NULL}},
     {"POST", "/v1/studies/*/retry", ROLE_SUBMIT, handle_study_retry, {NULL}},
@@ -316,13 +317,20 @@ void route_refuse_early(struct exchange *exchange) {
         (void)characterise_enter(exchange);
 }
 
-/* Finds the study that a path names; false after an answer that there is none, or several. */
-static bool find_study(struct exchange *exchange, const char *given, char id[STUDY_ID_SIZE]) {
+/* Whether several studies of one name are refused: what is lost must not be another's. */
+static bool asks_for_one(const struct exchange *exchange) {
+    return strcmp(exchange->method, "DELETE") == 0 || exchange_query(exchange, "unique") != NULL;
+}
+
+/* Finds the study that a path names; false after an answer that there is none, or several. *others
+ * is the number of older ones that have its name, where the path names it by that. */
+static bool find_study(struct exchange *exchange, const char *given, char id[STUDY_ID_SIZE],
+                       uint64_t *others) {
     struct store *reader;
     struct error err = {0};
     int status = exchange_reader(exchange, &reader, &err);
     if (status == 0)
-        status = store_find(reader, given, id, &err);
+        status = store_find(reader, given, id, asks_for_one(exchange) ? NULL : others, &err);
     service_give_back(exchange->service, reader);
     if (status != 0)
         answer_error(exchange, &err);
@@ -334,8 +342,14 @@ void route_answer(struct exchange *exchange) {
     char given[SEGMENT_SIZE] = "", id[STUDY_ID_SIZE] = "";
     const struct route *route = find_route(exchange, given);
     bool study = strncmp(route->pattern, STUDIES, sizeof STUDIES - 1) == 0;
+    uint64_t others = 0;
     if (!study)
         route->handler(exchange, given);
-    else if (find_study(exchange, given, id))
+    else if (find_study(exchange, given, id, &others))
         route->handler(exchange, id);
+    if (others > 0) {
+        char count[24];
+        snprintf(count, sizeof count, "%llu", (unsigned long long)others);
+        answer_header(exchange, SAME_NAME_HEADER, count);
+    }
 }

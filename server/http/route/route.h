@@ -44,6 +44,8 @@ cJSON *body_json(struct exchange *exchange);
 /* Returns whether the query holds nothing but these names (the rest NULL), each once and with a
  * value; false after a 422. */
 bool query_check(struct exchange *exchange, const char *const names[QUERY_NAMES_MOST]);
+/* A switch of the query, true or left out; false after a 422, which says what it is for. */
+bool query_true(struct exchange *exchange, const char *name, const char *purpose);
 /* A whole number of the query: left alone where it is not there. False after a 422. */
 bool query_number(struct exchange *exchange, const char *name, int64_t least, int64_t most,
                   int64_t *value);

@@ -205,13 +205,8 @@ static void answer_change(struct exchange *exchange, struct study_change change)
 /* With results, the study itself goes; the publisher takes its rows away. */
 void handle_study_cancel(struct exchange *exchange, const char *id) {
     const char *results = exchange_query(exchange, "results");
-    if (results != NULL && strcmp(results, "true") != 0) {
-        struct fault_list faults = {0};
-        fault_add(&faults, "?results", "?results is true, to delete the study, or left out");
-        answer_problem(exchange, 422, "the query is not valid", &faults);
-        fault_list_clear(&faults);
+    if (!query_true(exchange, "results", "to delete the study"))
         return;
-    }
     if (results != NULL) {
         answer_change(exchange, (struct study_change){.id = id, .api = api_delete});
         publisher_wake(exchange->service->publisher);
@@ -290,6 +285,8 @@ static void answer_question(struct exchange *exchange, const char *id,
 }
 
 void handle_study(struct exchange *exchange, const char *id) {
+    if (!query_true(exchange, "unique", "to refuse a name that several studies have"))
+        return;
     answer_question(exchange, id, api_status);
 }
 

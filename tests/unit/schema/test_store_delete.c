@@ -114,7 +114,7 @@ static void a_study_goes_with_its_space(void **state) {
     run(store, NULL, gone);
     assert_int_equal(store_delete(store, gone, NULL), 0);
     assert_int_equal(store_status(store, gone, &now, NULL), ERROR_ABSENT);
-    assert_int_equal(store_find(store, gone, again, NULL), ERROR_ABSENT);
+    assert_int_equal(store_find(store, gone, again, NULL, NULL), ERROR_ABSENT);
     assert_int_equal(store_delete(store, gone, NULL), ERROR_ABSENT);
     struct study_status *list = NULL;
     size_t count = 0;
