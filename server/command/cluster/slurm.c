@@ -22,7 +22,8 @@ enum {
 };
 
 struct options {
-    const char *folder, *database, *listen, *out, *inside;
+    const char *folder, *database, *listen, *inside;
+    struct result_folder out;
     const char **sets;
     unsigned nodes, lease_s;
     bool print;
@@ -33,8 +34,9 @@ static const struct option_row OPTIONS[] = {
     {"nodes", 0, OPTION_COUNT, 1, 100000, AT(nodes), "N", "1", "pilots, one on a node each"},
     PILOT_ROWS(struct options),
     {"set", 0, OPTION_LIST, 0, 0, AT(sets), "PATH=VALUE", NULL, SET_HELP},
-    {"out", 0, OPTION_TEXT, 0, 0, AT(out), "DIR", NULL,
-     "write curves.json, curves.csv and an SVG a quantity"},
+    {"out", 0, OPTION_TEXT, 0, 0, AT(out.path), "DIR", NULL,
+     "write study.json, curves.json, curves.csv and an SVG a quantity"},
+    REPLACE_ROW(AT(out.replace)),
     {"dir", 0, OPTION_TEXT, 0, 0, AT(folder), "DIR", "rugo-slurm",
      "work folder, which the nodes see too: script, logs, secrets"},
     {"db", 0, OPTION_TEXT, 0, 0, AT(database), "FILE", NULL,
@@ -206,12 +208,19 @@ static int find_database(struct slurm_run *run, struct error *err) {
                : error_set(err, ERROR_INPUT, "--db %.200s...: too long", given);
 }
 
+static int submit(struct slurm_run *run, const char *file, struct error *err) {
+    const struct local_submission submission = {.database = run->database,
+                                                .file = file,
+                                                .overrides = run->options->sets,
+                                                .folder = run->options->out};
+    return local_study_submit(&run->store, &submission, run->id, &run->faults, err);
+}
+
 static int perform(struct slurm_run *run, const char *file, struct error *err) {
     struct study_status now = {0};
     struct publish_counts counts = {0};
     store_close(&run->store);
-    int status = local_study_submit(&run->store, run->database, file, run->options->sets, run->id,
-                                    &run->faults, err);
+    int status = submit(run, file, err);
     if (status == 0)
         status = store_status(run->store, run->id, &now, err);
     if (status == 0 && now.jobs_waiting + now.jobs_running > 0)
@@ -230,7 +239,7 @@ static int perform(struct slurm_run *run, const char *file, struct error *err) {
 
 static int prepare(struct slurm_run *run, struct error *err) {
     const struct options *options = run->options;
-    int status = options->out != NULL ? output_prepare(options->out, err) : 0;
+    int status = options->out.path != NULL ? output_prepare(options->out.path, err) : 0;
     if (status == 0)
         status = slurm_folder_open(&run->folder, options->folder, err);
     if (status == 0)
@@ -251,15 +260,13 @@ static int perform_inside(struct slurm_run *run, const char *file, struct error 
     if (status == 0 && options->print)
         return pilots_print(inside.script, err);
     if (status == 0) /* what is wrong with the study is to be reported now */
-        status = local_study_submit(&run->store, run->database, file, options->sets, run->id,
-                                    &run->faults, err);
+        status = submit(run, file, err);
     store_close(&run->store);
     slurm_folder_close(&run->folder);
     if (status == 0)
         status = inside_follow(&inside, err);
     if (status == 0)
-        status = local_study_submit(&run->store, run->database, file, options->sets, run->id,
-                                    &run->faults, err);
+        status = submit(run, file, err);
     if (status == 0)
         status = store_status(run->store, run->id, &now, err);
     if (status == 0 && now.jobs_waiting + now.jobs_running > 0)

@@ -2,6 +2,7 @@
 #include "schema/result/csv.h"
 #include "schema/result/result_json.h"
 #include "server/command/access/access.h"
+#include "server/command/study/result_folder.h"
 #include "server/show/output.h"
 #include "server/show/summary/summary.h"
 #include <stdio.h>
@@ -11,7 +12,8 @@ struct options {
     struct access_options place;
     int64_t case_number; /* -1: all */
     int64_t difference[2];
-    const char *quantity, *folder;
+    const char *quantity;
+    struct result_folder folder;
     int format;
 };
 enum { FORMAT_JSON, FORMAT_CSV, FORMAT_TABLE };
@@ -23,15 +25,16 @@ static const struct option_row OPTIONS[] = {
     {"difference", 0, OPTION_PAIR, 0, 0, AT(difference), "A B", NULL,
      "case A less case B, by pairs of realisations where they share their random numbers"},
     {"format", 0, OPTION_CHOICE, 0, 0, AT(format), "json|csv|table", "json", "what to print"},
-    {"out", 0, OPTION_TEXT, 0, 0, AT(folder), "DIR", NULL,
-     "write curves.json, curves.csv and an SVG a quantity instead"},
+    {"out", 0, OPTION_TEXT, 0, 0, AT(folder.path), "DIR", NULL,
+     "write study.json, curves.json, curves.csv and an SVG a quantity instead"},
+    REPLACE_ROW(AT(folder.replace)),
     {0}};
 
 static int show(const struct study_result *study, const struct options *options,
                 struct error *err) {
     bool done = true;
-    if (options->folder != NULL)
-        return output_write(study, options->folder, err);
+    if (options->folder.path != NULL)
+        return output_write(study, options->folder.path, err);
     if (options->format == FORMAT_CSV)
         done = csv_print(stdout, study);
     else if (options->format == FORMAT_TABLE && options->difference[0] >= 0)
@@ -41,6 +44,21 @@ static int show(const struct study_result *study, const struct options *options,
     else
         done = study_print(stdout, study) && putchar('\n') != EOF;
     return done ? output_flush(err) : error_memory(err, 0, "curves");
+}
+
+/* Sees whose results the folder holds, and makes it this study's. */
+static int take_folder(struct access *access, const char *id, const struct result_folder *folder,
+                       struct error *err) {
+    cJSON *document = NULL;
+    if (folder->path == NULL)
+        return 0;
+    int status = access_document(access, id, &document, err);
+    if (status == 0)
+        status = result_folder_check(folder, id, document, err);
+    if (status == 0)
+        status = result_folder_take(folder, id, document, err);
+    cJSON_Delete(document);
+    return status;
 }
 
 static int ask(struct access *access, const char *id, const struct options *options,
@@ -67,13 +85,15 @@ static int run(const void *values, const char *const *arguments) {
         return EXIT_USAGE;
     if (options->difference[0] >= 0 && options->case_number >= 0)
         return usage_error("curves", "--difference and --case exclude each other");
-    int status = options->folder != NULL ? output_prepare(options->folder, &err) : 0;
+    int status = options->folder.path != NULL ? output_prepare(options->folder.path, &err) : 0;
     if (status == 0)
         status = access_open(&access, &options->place, ACCESS_READ, &err);
     if (status == 0)
         status = access_find(access, "curves", arguments[0], id, &err);
     if (status == 0)
         status = ask(access, id, options, &study, &err);
+    if (status == 0)
+        status = take_folder(access, id, &options->folder, &err);
     if (status == 0)
         status = show(&study, options, &err);
     for (size_t c = 0; c < study.case_count && status == 0; c++)

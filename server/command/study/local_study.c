@@ -9,21 +9,48 @@
 #include <stdlib.h>
 #include <string.h>
 
-int local_study_submit(struct store **store, const char *database, const char *file,
-                       const char *const *overrides, char id[STUDY_ID_SIZE],
-                       struct fault_list *faults, struct error *err) {
+/* Checks whose results the folder holds. */
+static int check_folder(struct store *store, const struct result_folder *folder, const char *id,
+                        struct error *err) {
+    cJSON *document = NULL;
+    if (folder->path == NULL)
+        return 0;
+    int status = store_document(store, id, &document, err);
+    if (status == 0)
+        status = result_folder_check(folder, id, document, err);
+    cJSON_Delete(document);
+    return status;
+}
+
+/* Queues a study, but not where its folder is another's. */
+static int queue(struct store *store, const struct study *study, const char *key,
+                 const struct result_folder *folder, char id[STUDY_ID_SIZE], struct error *err) {
+    bool existing = false;
+    int status = store_begin(store, err);
+    if (status != 0)
+        return status;
+    status = store_submit(store, study, key, id, &existing, err);
+    if (status == 0)
+        status = check_folder(store, folder, id, err);
+    if (status == 0)
+        return store_commit(store, err);
+    store_abandon(store);
+    return status;
+}
+
+int local_study_submit(struct store **store, const struct local_submission *submission,
+                       char id[STUDY_ID_SIZE], struct fault_list *faults, struct error *err) {
     char *key = NULL;
     struct study *study = NULL;
-    bool existing = false;
-    int status = study_file_read(&study, file, overrides, faults, err);
+    int status = study_file_read(&study, submission->file, submission->overrides, faults, err);
     if (status == 0 && asprintf(&key, "run %s", study->source) < 0) {
         key = NULL;
         status = error_memory(err, strlen(study->source), "a study's key");
     }
     if (status == 0)
-        status = store_open(store, database, NULL, err);
+        status = store_open(store, submission->database, NULL, err);
     if (status == 0)
-        status = store_submit(*store, study, key, id, &existing, err);
+        status = queue(*store, study, key, &submission->folder, id, err);
     study_destroy(&study);
     free(key);
     return status;
@@ -90,10 +117,20 @@ static struct result_filter filter_of(const struct outcome *outcome, const char 
     const struct job_kind *found = kind_find(kind);
     const struct result_view *view = found != NULL ? found->view : NULL;
     const char *quantity = view != NULL && view->table != NULL ? view->table->quantity : NULL;
-    if (outcome->folder != NULL)
+    if (outcome->folder.path != NULL)
         return (struct result_filter){.case_number = -1, .complete = true};
     return (struct result_filter){.case_number = -1,
                                   .part = {.quantity = quantity, .scalars_only = quantity == NULL}};
+}
+
+static int write_folder(const struct outcome *outcome, const struct study_result *study,
+                        struct error *err) {
+    cJSON *document = NULL;
+    int status = store_document(outcome->store, outcome->id, &document, err);
+    if (status == 0)
+        status = result_folder_take(&outcome->folder, outcome->id, document, err);
+    cJSON_Delete(document);
+    return status == 0 ? output_write(study, outcome->folder.path, err) : status;
 }
 
 static int show_results(const struct outcome *outcome, const char *kind, struct error *err) {
@@ -103,8 +140,8 @@ static int show_results(const struct outcome *outcome, const char *kind, struct 
     int status = aggregate_study(outcome->store, outcome->id, &filter, &study, err);
     if (status == 0)
         status = aggregate_report(outcome->store, outcome->id, &report, err);
-    if (status == 0 && outcome->folder != NULL)
-        status = output_write(&study, outcome->folder, err);
+    if (status == 0 && outcome->folder.path != NULL)
+        status = write_folder(outcome, &study, err);
     if (status == 0) {
         summary_of_curves(&study, &report, stdout);
         status = output_flush(err);

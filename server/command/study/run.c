@@ -16,7 +16,8 @@
 enum { LEASE_MS = 20000, REPORT_MS = 1000 /* for the bar */ };
 
 struct options {
-    const char *database, *folder;
+    const char *database;
+    struct result_folder folder;
     const char **sets;
     unsigned threads;
     int log_level;
@@ -27,14 +28,15 @@ static const struct option_row OPTIONS[] = {
     {"workers", 0, OPTION_COUNT, 0, WORKERS_MOST, AT(threads), "N", "0",
      "threads; 0: as many processors as are allotted"},
     {"set", 0, OPTION_LIST, 0, 0, AT(sets), "PATH=VALUE", NULL, SET_HELP},
-    {"out", 0, OPTION_TEXT, 0, 0, AT(folder), "DIR", NULL,
-     "write curves.json, curves.csv, an SVG a quantity, and nodes/ of what /contact/keep names"},
+    {"out", 0, OPTION_TEXT, 0, 0, AT(folder.path), "DIR", NULL,
+     "write study.json, curves.json, curves.csv, an SVG a quantity, and nodes/ of what "
+     "/contact/keep names"},
+    REPLACE_ROW(AT(folder.replace)),
     {"log-level", 0, OPTION_CHOICE, 0, 0, AT(log_level), LOG_LEVELS, "warning", LOG_LEVEL_HELP},
     {0}};
 
 struct run {
-    const char *file, *database, *folder;
-    const char *const *sets;
+    struct local_submission submission;
     unsigned threads;
     struct store *store;
     char id[STUDY_ID_SIZE];
@@ -46,7 +48,7 @@ static int work(struct run *run, struct error *err) {
     struct study_progress progress = {
         .store = run->store, .study = run->id, .bar = {.command = "run"}};
     struct worker_options options = {
-        .source = {.database = run->database,
+        .source = {.database = run->submission.database,
                    .study = run->id,
                    .lease_ms = LEASE_MS,
                    .report_ms = REPORT_MS},
@@ -68,10 +70,10 @@ static int work(struct run *run, struct error *err) {
 static int perform(struct run *run, struct error *err) {
     struct study_status now = {0};
     struct publish_counts counts = {0};
-    int status = run->folder != NULL ? output_prepare(run->folder, err) : 0;
+    const char *folder = run->submission.folder.path;
+    int status = folder != NULL ? output_prepare(folder, err) : 0;
     if (status == 0)
-        status = local_study_submit(&run->store, run->database, run->file, run->sets, run->id,
-                                    &run->faults, err);
+        status = local_study_submit(&run->store, &run->submission, run->id, &run->faults, err);
     if (status == 0)
         status = store_status(run->store, run->id, &now, err);
     do { /* publishing may queue a round of a case that asks for an error */
@@ -88,28 +90,27 @@ static int perform(struct run *run, struct error *err) {
         return status;
     const struct outcome outcome = {.command = "run",
                                     .store = run->store,
-                                    .database = run->database,
+                                    .database = run->submission.database,
                                     .id = run->id,
-                                    .folder = run->folder,
+                                    .folder = run->submission.folder,
                                     .published = &counts};
     status = local_study_present(&outcome, err);
-    return status == 0 && run->folder != NULL
-               ? kept_nodes_write(run->store, run->id, run->folder, err)
-               : status;
+    return status == 0 && folder != NULL ? kept_nodes_write(run->store, run->id, folder, err)
+                                         : status;
 }
 
 static int run_study(const void *values, const char *const *arguments) {
     const struct options *options = values;
-    struct run run = {.file = arguments[0],
-                      .database = options->database,
-                      .folder = options->folder,
-                      .sets = options->sets,
+    struct run run = {.submission = {.file = arguments[0],
+                                     .database = options->database,
+                                     .overrides = options->sets,
+                                     .folder = options->folder},
                       .threads = options->threads > 0 ? options->threads : allotment_threads()};
     struct error err = {0};
     signals_catch();
     log_set_least((enum log_level)options->log_level);
     int status = perform(&run, &err);
-    int result = command_end("run", status, run.file, &run.faults, &err);
+    int result = command_end("run", status, arguments[0], &run.faults, &err);
     store_close(&run.store);
     fault_list_clear(&run.faults);
     return result;

@@ -1,10 +1,12 @@
 /* `rugo theory`: what theory expects of the surfaces of a study; makes none. */
 #include "jobs/kind.h"
 #include "jobs/statistics/statistics_expectation.h"
+#include "schema/json/json.h"
 #include "schema/program.h"
 #include "schema/result/csv.h"
 #include "schema/result/result_json.h"
 #include "server/command/command.h"
+#include "server/command/study/result_folder.h"
 #include "server/show/output.h"
 #include "server/show/plot/picture.h"
 #include "server/show/summary/summary.h"
@@ -14,7 +16,8 @@
 
 struct options {
     const char **sets;
-    const char *quantity, *folder;
+    const char *quantity;
+    struct result_folder folder;
     int format;
 };
 enum { FORMAT_TEXT, FORMAT_JSON, FORMAT_CSV, FORMAT_SVG };
@@ -26,8 +29,9 @@ static const struct option_row OPTIONS[] = {
      "this quantity only; summit_joint_pdf is made only if named here"},
     {"format", 0, OPTION_CHOICE, 0, 0, AT(format), "text|json|csv|svg", "text",
      "what to print; svg: a picture of --quantity (summit_height_pdf)"},
-    {"out", 0, OPTION_TEXT, 0, 0, AT(folder), "DIR", NULL,
-     "write curves.json, curves.csv and an SVG a quantity instead"},
+    {"out", 0, OPTION_TEXT, 0, 0, AT(folder.path), "DIR", NULL,
+     "write study.json, curves.json, curves.csv and an SVG a quantity instead"},
+    REPLACE_ROW(AT(folder.replace)),
     {0}};
 
 static const char JOINT[] = "summit_joint_pdf";
@@ -52,7 +56,7 @@ static int expect(const struct study *study, const char *quantity, struct study_
                   struct error *err) {
     bool joint = quantity != NULL && strcmp(quantity, JOINT) == 0;
     int status = 0;
-    out->id = strdup("theory");
+    out->id = strdup(FOLDER_OF_THEORY);
     out->state = strdup("expected");
     out->name = strdup(study->name);
     out->kind = strdup("statistics");
@@ -72,12 +76,24 @@ static int expect(const struct study *study, const char *quantity, struct study_
     return status;
 }
 
+static int write_folder(const struct study *study, const struct study_result *result,
+                        const struct result_folder *folder, struct error *err) {
+    cJSON *document = NULL;
+    int status = output_prepare(folder->path, err);
+    if (status == 0)
+        status = json_parse(study->source, strlen(study->source), NULL, &document, err);
+    if (status == 0)
+        status = result_folder_check(folder, FOLDER_OF_THEORY, document, err);
+    if (status == 0)
+        status = result_folder_take(folder, FOLDER_OF_THEORY, document, err);
+    cJSON_Delete(document);
+    return status == 0 ? output_write(result, folder->path, err) : status;
+}
+
 static int show(const struct study_result *study, const struct options *options,
                 struct error *err) {
     bool done = true;
     int status = 0;
-    if (options->folder != NULL)
-        return output_write(study, options->folder, err);
     if (options->format == FORMAT_CSV)
         done = csv_print(stdout, study);
     else if (options->format == FORMAT_JSON)
@@ -104,7 +120,8 @@ static int run(const void *values, const char *const *arguments) {
     if (status == 0)
         status = expect(study, options->quantity, &result, &err);
     if (status == 0)
-        status = show(&result, options, &err);
+        status = options->folder.path != NULL ? write_folder(study, &result, &options->folder, &err)
+                                              : show(&result, options, &err);
     study_result_clear(&result);
     study_destroy(&study);
     int answer = command_end("theory", status, file != NULL ? file : "--set", &faults, &err);
