@@ -87,6 +87,16 @@ static int refuse_without_mesh(struct error *err) {
                                                : "a model with a mesh");
 }
 
+static int refuse_model(const struct contact_case *one_case, const char *model, struct error *err) {
+    char names[120] = "";
+    for (size_t m = 0; m < one_case->model_count; m++) {
+        size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, "%s%s", m > 0 ? ", " : "",
+                 contact_model_name(one_case->models[m]));
+    }
+    return error_set(err, ERROR_INPUT, "the case has no model %.40s; it has %s", model, names);
+}
+
 /* Finds the model that is asked for. */
 static int find_model(const struct contact_case *one_case, const struct steps_order *order,
                       size_t *out, struct error *err) {
@@ -94,7 +104,7 @@ static int find_model(const struct contact_case *one_case, const struct steps_or
     while (m < one_case->model_count && !is_named(order, one_case->models[m]))
         m++;
     if (m == one_case->model_count && order->model != NULL)
-        return error_set(err, ERROR_INPUT, "the case has no model %.40s", order->model);
+        return refuse_model(one_case, order->model, err);
     *out = m < one_case->model_count ? m : contact_case_complete(one_case);
     return order->meshed && one_case->models[*out]->block_of == NULL ? refuse_without_mesh(err) : 0;
 }

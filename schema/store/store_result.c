@@ -19,6 +19,20 @@ int case_damaged(const char *study, uint64_t case_number, struct error *err) {
                      (unsigned long long)case_number, study);
 }
 
+/* Says which cases there are. */
+static int refuse_case(struct store *store, int64_t row, const char *study, uint64_t case_number,
+                       struct error *err) {
+    int64_t count = 0;
+    int status = store_integer(
+        store, &count, err, "SELECT count(*) FROM study_case WHERE study_id = ? AND parent IS NULL",
+        "i", row);
+    return status != 0 ? status
+                       : error_set(err, ERROR_ABSENT,
+                                   "study %s has no case %llu; it has %lld, from "
+                                   "0 on",
+                                   study, (unsigned long long)case_number, (long long)count);
+}
+
 int store_case(struct store *store, const char *study, uint64_t case_number, struct case_info *out,
                struct error *err) {
     int64_t row = 0;
@@ -35,8 +49,7 @@ int store_case(struct store *store, const char *study, uint64_t case_number, str
     if (status == 0)
         status = store_step(store, found, err);
     if (status == 0)
-        return error_set(err, ERROR_ABSENT, "study %s has no case %llu", study,
-                         (unsigned long long)case_number);
+        return refuse_case(store, row, study, case_number, err);
     if (status < 0)
         return status;
     struct case_info info = {
@@ -183,8 +196,7 @@ int store_cost(struct store *store, const char *study, uint64_t case_number, str
     if (status == 0)
         status = store_step(store, row, err);
     if (status == 0)
-        return error_set(err, ERROR_ABSENT, "study %s has no case %llu", study,
-                         (unsigned long long)case_number);
+        return refuse_case(store, id, study, case_number, err);
     if (status < 0)
         return status;
     *out = (struct case_cost){case_number,

@@ -1,4 +1,5 @@
 /* Studies: progress, cancellation, retry. */
+#include "schema/near_name.h"
 #include "schema/store/store_internal.h"
 #include <math.h>
 #include <stdio.h>
@@ -464,6 +465,31 @@ static int refuse_candidates(const char *given, const struct candidates *found, 
                      given, found->count, found->list, more);
 }
 
+/* A study's name that is near to what was given, of the newest ones. */
+static int refuse_absent(struct store *store, const char *given, struct error *err) {
+    sqlite3_stmt *row = NULL;
+    struct near_name near = {.typed = given};
+    char hint[NEAR_HINT_SIZE] = "", name[sizeof hint];
+    int status = store_query(store, &row, err,
+                             "SELECT name FROM study WHERE id NOT IN " DELETED_STUDIES
+                             " ORDER BY id DESC LIMIT 1000",
+                             "");
+    if (status != 0)
+        return status;
+    while ((status = store_step(store, row, err)) == 1) {
+        const size_t before = near.name != NULL ? near.distance : SIZE_MAX;
+        snprintf(name, sizeof name, "%s", (const char *)sqlite3_column_text(row, 0));
+        near_name_see(&near, name);
+        if (near.name != NULL && near.distance < before)
+            near_name_hint(&near, hint);
+    }
+    return status != 0
+               ? status
+               : error_set(err, ERROR_ABSENT,
+                           "there is no study \"%.40s\"%s; rugo status lists those there are",
+                           given, hint);
+}
+
 /* A name goes before the first digits of an id, which may be anything's. */
 static int find_candidate(struct store *store, const char *given, char id[STUDY_ID_SIZE],
                           uint64_t *others, struct error *err) {
@@ -475,8 +501,7 @@ static int find_candidate(struct store *store, const char *given, char id[STUDY_
     if (status != 0)
         return status;
     if (found.count == 0)
-        return error_set(err, ERROR_ABSENT,
-                         "there is no study \"%.40s\"; rugo status lists those there are", given);
+        return refuse_absent(store, given, err);
     if (found.count > 1 && !(named && others != NULL))
         return refuse_candidates(given, &found, err);
     if (others != NULL)

@@ -36,6 +36,10 @@ int override_apply(cJSON *document, const char *text, struct error *err) {
     const char *equals = strchr(text, '=');
     if (equals == NULL || equals == text)
         return error_set(err, ERROR_INPUT, "\"%.100s\" is not PATH=VALUE", text);
+    if (equals[1] == '\0')
+        return error_set(err, ERROR_INPUT,
+                         "\"%.100s\" has no value behind the =; an empty text is written \"\"",
+                         text);
     char *path = strndup(text, (size_t)(equals - text));
     if (path == NULL)
         return error_memory(err, strlen(text), "a path");

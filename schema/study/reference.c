@@ -1,4 +1,5 @@
 #include "schema/study/reference.h"
+#include "schema/near_name.h"
 #include "schema/study/common.h"
 #include "schema/study/value.h"
 #include <math.h>
@@ -291,6 +292,31 @@ static bool is_known(const struct reference *reference, const char *path) {
     return false;
 }
 
+static void see_path(struct near_name *near, const char *typed, const char *path) {
+    struct near_name last = {.typed = typed};
+    near_name_see(&last, strrchr(path, '/') + 1);
+    if (last.name == NULL || (near->name != NULL && near->distance <= last.distance))
+        return;
+    near->name = path;
+    near->distance = last.distance;
+}
+
+/* Names the parameter whose last name is nearest. */
+static int refuse_path(const struct reference *reference, const char *path, struct error *err) {
+    const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
+    const char *typed = slash != NULL ? slash + 1 : dot != NULL ? dot + 1 : path;
+    struct near_name near = {.typed = typed};
+    const struct parameter *row;
+    char hint[NEAR_HINT_SIZE];
+    for (size_t p = 0; p < COMMON_PARAMETERS.count; p++)
+        see_path(&near, typed, COMMON_PARAMETERS.rows[p].path);
+    for (size_t k = 0; reference->kinds[k] != NULL; k++)
+        for (size_t p = 0; (row = parameter_row(reference->kinds[k]->tables, p)) != NULL; p++)
+            see_path(&near, typed, row->path);
+    return error_set(err, ERROR_INPUT, "a study has no parameter \"%.100s\"%s", path,
+                     near_name_hint(&near, hint));
+}
+
 int reference_print(FILE *file, const struct study_kind *const *kinds, const char *path,
                     struct error *err) {
     struct reference reference;
@@ -303,7 +329,7 @@ int reference_print(FILE *file, const struct study_kind *const *kinds, const cha
     if (is_known(&reference, below))
         write_tables(file, &reference, below, print_table);
     else
-        status = error_set(err, ERROR_INPUT, "a study has no parameter \"%.100s\"", path);
+        status = refuse_path(&reference, path, err);
     free(reference.names);
     return status;
 }

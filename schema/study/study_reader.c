@@ -1,4 +1,5 @@
 #include "schema/study/study_reader.h"
+#include "schema/near_name.h"
 #include "schema/study/common.h"
 #include "schema/study/override.h"
 #include "schema/study/sweep.h"
@@ -14,27 +15,6 @@ static const double JOB_REALISATIONS = 1000, JOB_BYTES = 4e6;
 static const double SHARE_SECONDS = 0.1; /* jobs as short as this are not divided among workers */
 
 /* --- names --- */
-
-/* Returns the edits between two names (Levenshtein 1966), by which a misspelt name is
- * recognised. */
-static size_t name_distance(const char *a, const char *b) {
-    size_t row[64], length = strlen(b);
-    if (length >= 64)
-        return 64;
-    for (size_t j = 0; j <= length; j++)
-        row[j] = j;
-    for (size_t i = 1; *a != '\0'; a++, i++) {
-        size_t diagonal = row[0];
-        row[0] = i;
-        for (size_t j = 1; j <= length; j++) {
-            size_t change = diagonal + (*a != b[j - 1]);
-            diagonal = row[j];
-            size_t shift = (row[j] < row[j - 1] ? row[j] : row[j - 1]) + 1;
-            row[j] = change < shift ? change : shift;
-        }
-    }
-    return row[length];
-}
 
 /* Returns the path of a row of every study, or of the kind; NULL behind the last. */
 static const char *known_path(const struct study_kind *kind, size_t index) {
@@ -61,24 +41,58 @@ static enum pointer_kind kind_of_pointer(const struct study_kind *kind, const ch
     return POINTER_UNKNOWN;
 }
 
-/* Writes "; did you mean ...?" where a name at the same level is similar. */
+/* Copies the name of an object's member out of a path; false where the path leads elsewhere. */
+static bool member_of_path(const char *path, const char *prefix, char member[POINTER_SIZE]) {
+    size_t length = strlen(prefix);
+    if (strncmp(path, prefix, length) != 0 || path[length] != '/')
+        return false;
+    snprintf(member, POINTER_SIZE, "%.*s", (int)strcspn(path + length + 1, "/"), path + length + 1);
+    return true;
+}
+
+/* Appends the names that an object may have, as many as there is room for. */
+static void list_members(const struct study_kind *kind, const char *prefix, char *text,
+                         size_t size) {
+    char member[POINTER_SIZE], last[POINTER_SIZE] = "";
+    const char *path;
+    size_t used = (size_t)snprintf(text, size, "; allowed: ");
+    bool first = true;
+    for (size_t i = 0; (path = known_path(kind, i)) != NULL; i++) {
+        if (!member_of_path(path, prefix, member) || strcmp(member, last) == 0)
+            continue;
+        if (used + strlen(member) + sizeof ", ..." > size) {
+            snprintf(text + used, size - used, ", ...");
+            return;
+        }
+        used += (size_t)snprintf(text + used, size - used, "%s%s", first ? "" : ", ", member);
+        snprintf(last, sizeof last, "%s", member);
+        first = false;
+    }
+}
+
+/* Writes "; did you mean ...?" where a name at the same level is similar, or elsewhere the same;
+ * else the names of the level. */
 static void suggestion(const struct study_kind *kind, const char *prefix, const char *name,
                        char *text, size_t size) {
-    size_t best = strlen(name) / 3 + 1, length = strlen(prefix);
-    const char *path;
-    *text = 0;
+    struct near_name near = {.typed = name};
+    const char *path, *elsewhere = NULL;
+    char sibling[POINTER_SIZE];
+    list_members(kind, prefix, text, size);
     for (size_t i = 0; (path = known_path(kind, i)) != NULL; i++) {
-        if (strncmp(path, prefix, length) != 0 || path[length] != '/')
+        if (elsewhere == NULL && strcmp(strrchr(path, '/') + 1, name) == 0)
+            elsewhere = path;
+        if (!member_of_path(path, prefix, sibling))
             continue;
-        char sibling[POINTER_SIZE];
-        snprintf(sibling, sizeof sibling, "%.*s", (int)strcspn(path + length + 1, "/"),
-                 path + length + 1);
-        size_t distance = name_distance(name, sibling);
-        if (distance <= best) {
-            best = distance;
-            snprintf(text, size, "; did you mean \"%.60s\"?", sibling);
-        }
+        size_t before = near.distance;
+        bool found = near.name != NULL;
+        near_name_see(&near, sibling);
+        if (near.name == NULL || (found && near.distance == before))
+            continue;
+        near.name = path; /* for the sibling, whose text is overwritten */
+        snprintf(text, size, "; did you mean \"%.60s\"?", sibling);
     }
+    if (near.name == NULL && elsewhere != NULL)
+        snprintf(text, size, "; did you mean \"%.60s\"?", elsewhere);
 }
 
 /* Returns whether a member stands for a file that was not read: the file's name, or an object
@@ -111,7 +125,7 @@ static void check_inside(const struct study_kind *kind, const cJSON *member, con
 static void check_names(const struct study_kind *kind, const cJSON *object, const char *prefix,
                         struct fault_list *faults) {
     for (const cJSON *member = object->child; member != NULL; member = member->next) {
-        char pointer[POINTER_SIZE], hint[96];
+        char pointer[POINTER_SIZE], hint[200];
         snprintf(pointer, sizeof pointer, "%s/%s", prefix, member->string);
         /* a slash in a name would make the pointer of another parameter */
         bool whole = strchr(member->string, '/') == NULL;

@@ -2,6 +2,7 @@
  */
 #include "server/command/commands.h"
 #include "jobs/kind.h"
+#include "schema/near_name.h"
 #include "schema/study/reference.h"
 #include "server/command/command.h"
 #include <string.h>
@@ -33,12 +34,10 @@ const struct command *command_find_words(const char *first, const char *second, 
 }
 
 const char *command_near(const char *typed) {
-    const char *near = NULL;
-    size_t best = 3;
+    struct near_name near = {.typed = typed};
     for (size_t c = 0; COMMANDS[c] != NULL; c++)
-        if (name_is_nearer(typed, COMMANDS[c]->name, &best))
-            near = COMMANDS[c]->name;
-    return near;
+        near_name_see(&near, COMMANDS[c]->name);
+    return near.name;
 }
 
 /* --- help --- */
@@ -220,10 +219,14 @@ static int help_topic(const char *name) {
             TOPICS[t].print(stdout);
             return EXIT_DONE;
         }
-    const char *near = command_near(name);
-    return usage_error("help", "there is no command or topic \"%.40s\"%s%s%s", name,
-                       near != NULL ? " (did you mean " : "", near != NULL ? near : "",
-                       near != NULL ? "?)" : "");
+    char hint[NEAR_HINT_SIZE];
+    struct near_name near = {.typed = name};
+    for (size_t t = 0; t < TOPIC_COUNT; t++)
+        near_name_see(&near, TOPICS[t].name);
+    for (size_t c = 0; COMMANDS[c] != NULL; c++)
+        near_name_see(&near, COMMANDS[c]->name);
+    return usage_error("help", "there is no command or topic \"%.40s\"%s", name,
+                       near_name_hint(&near, hint));
 }
 
 static int run(const void *values, const char *const *arguments) {

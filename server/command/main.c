@@ -35,7 +35,7 @@ static int run_command(const struct command *command, int argc, char **argv) {
     }
     argv[0] = (char *)command->name; /* for messages: both words of two */
     int result = options_parse(argc, argv, command->options, options, command->least, command->most,
-                               arguments);
+                               command->arguments, arguments);
     if (result == 0 && client_global_init(&err) != 0)
         result = command_fail(command->name, &err);
     else if (result == 0) {

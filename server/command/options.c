@@ -1,5 +1,6 @@
 #include "server/command/options.h"
 #include "jobs/contact/model/model.h"
+#include "schema/near_name.h"
 #include "server/command/exit_status.h"
 #include <ctype.h>
 #include <errno.h>
@@ -222,47 +223,14 @@ void options_clear(const struct option_row *rows, void *values) {
 
 /* --- names --- */
 
-static size_t least_of(size_t a, size_t b) {
-    return a < b ? a : b;
-}
-
-/* The edit distance of two names (Damerau 1964, swaps of neighbours), by rows of its table. */
-static size_t distance(const char *a, const char *b) {
-    enum { LONGEST = 31 };
-    size_t n = strnlen(a, LONGEST), m = strnlen(b, LONGEST), rows[3][LONGEST + 1];
-    for (size_t j = 0; j <= m; j++)
-        rows[0][j] = j;
-    for (size_t i = 1; i <= n; i++) {
-        size_t *row = rows[i % 3], *above = rows[(i - 1) % 3];
-        row[0] = i;
-        for (size_t j = 1; j <= m; j++) {
-            row[j] =
-                least_of(above[j - 1] + (a[i - 1] != b[j - 1]), least_of(above[j], row[j - 1]) + 1);
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-                row[j] = least_of(row[j], rows[(i - 2) % 3][j - 2] + 1);
-        }
-    }
-    return rows[n % 3][m];
-}
-
-bool name_is_nearer(const char *typed, const char *name, size_t *best) {
-    size_t far = strlen(typed) > 2 && strstr(name, typed) != NULL ? 1 : distance(typed, name);
-    if (far >= *best || (far > 1 && 3 * far > strlen(typed)))
-        return false;
-    *best = far;
-    return true;
-}
-
 static int unknown_option(const char *command, const struct option_row *rows, const char *given) {
-    const char *near = NULL;
     char typed[64];
-    size_t best = 3;
+    struct near_name near = {.typed = typed + 2};
     snprintf(typed, sizeof typed, "%.*s", (int)strcspn(given, "="), given);
     for (; rows->name != NULL && strncmp(typed, "--", 2) == 0; rows++)
-        if (name_is_nearer(typed + 2, rows->name, &best))
-            near = rows->name;
-    if (near != NULL)
-        return usage_error(command, "unknown option %.60s (did you mean --%s?)", typed, near);
+        near_name_see(&near, rows->name);
+    if (near.name != NULL)
+        return usage_error(command, "unknown option %.60s (did you mean --%s?)", typed, near.name);
     return usage_error(command, "unknown option %.60s", typed);
 }
 
@@ -302,11 +270,13 @@ static int refused(char **argv, const struct option_row *rows) {
 
 /* --- the command line --- */
 
-static int take_arguments(int argc, char **argv, int least, int most, const char **arguments) {
+static int take_arguments(int argc, char **argv, int least, int most, const char *names,
+                          const char **arguments) {
     int count = argc - optind;
     if (count < least)
-        return usage_error(argv[0], "%s",
-                           least == 1 ? "an argument is missing" : "arguments are missing");
+        return usage_error(argv[0], "%s: rugo %s %s",
+                           least == 1 ? "an argument is missing" : "arguments are missing", argv[0],
+                           names);
     if (count > most)
         return usage_error(argv[0], "unexpected argument %.60s", argv[optind + most]);
     for (int i = 0; i < most; i++)
@@ -324,7 +294,7 @@ static int take_option(int argc, char **argv, const struct option_row *row, void
 }
 
 int options_parse(int argc, char **argv, const struct option_row *rows, void *values, int least,
-                  int most, const char **arguments) {
+                  int most, const char *named, const char **arguments) {
     struct option names[ROWS_MOST + 1];
     char letters[2 * ROWS_MOST + 2];
     int status = take_defaults(argc, argv[0], rows, values);
@@ -338,5 +308,5 @@ int options_parse(int argc, char **argv, const struct option_row *rows, void *va
             status = usage_error(argv[0], "%.60s needs a value", argv[optind - 1]);
         else
             status = take_option(argc, argv, find_row(rows, code), values);
-    return status != 0 ? status : take_arguments(argc, argv, least, most, arguments);
+    return status != 0 ? status : take_arguments(argc, argv, least, most, named, arguments);
 }

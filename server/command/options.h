@@ -33,10 +33,11 @@ struct option_row {
 void option_argument(const struct option_row *row, char *text, size_t size);
 
 /* Defaults, then what argv gives, into *values (zeros at first). What is left of argv, at least
- * `least` and at most `most` arguments, goes into arguments[], NULL where absent. 0, or an exit
- * status after a word on standard error; options_clear is due in both cases. */
+ * `least` and at most `most` arguments, goes into arguments[], NULL where absent;
+ * `named` is what help calls them. 0, or an exit status after a word on standard error;
+ * options_clear is due in both cases. */
 int options_parse(int argc, char **argv, const struct option_row *rows, void *values, int least,
-                  int most, const char **arguments);
+                  int most, const char *named, const char **arguments);
 void options_clear(const struct option_row *rows, void *values);
 
 /* "rugo COMMAND: text; see rugo COMMAND --help" on standard error; EXIT_USAGE. */
@@ -45,9 +46,5 @@ __attribute__((format(printf, 2, 3))) int usage_error(const char *command, const
 /* Finds the models of a text of their names with commas between, each once; false where it is not
  * that. positions: in CONTACT_MODELS. */
 bool models_find(const char *text, int positions[CONTACT_MODELS_MOST], size_t *count);
-
-/* Returns whether `name` is nearer than *best to what was typed (letters changed, left out, put in
- * or swapped): *best, 3 at first, becomes its distance. What is typed whole in `name` is near. */
-bool name_is_nearer(const char *typed, const char *name, size_t *best);
 
 #endif

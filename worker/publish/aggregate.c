@@ -3,6 +3,7 @@
 #include "jobs/merger.h"
 #include "jobs/realisations.h"
 #include "jobs/units.h"
+#include "schema/near_name.h"
 #include "schema/result/result_json.h"
 #include "schema/store/store.h"
 #include "schema/study/sweep.h"
@@ -325,20 +326,18 @@ static bool has_quantity(const struct case_result *result, const char *quantity)
     return result_curve(result, quantity) != NULL;
 }
 
-/* Sets an error that names the quantities there are. Curves of one quantity follow each other. */
-static int quantity_absent(const struct case_result *result, const char *quantity,
-                           struct error *err) {
-    char names[256] = "";
-    const char *last = "";
+int quantity_absent(const struct case_result *result, const char *quantity, struct error *err) {
+    char names[256] = "", hint[NEAR_HINT_SIZE];
+    struct near_name near = {.typed = quantity};
     for (size_t a = 0; a < result->curve_count; a++) {
         const char *name = result->curves[a].quantity;
         size_t length = strlen(names);
-        if (strcmp(name, last) != 0)
+        if (&result->curves[a] == result_curve(result, name)) /* the first of it */
             snprintf(names + length, sizeof names - length, "%s%s", length > 0 ? ", " : "", name);
-        last = name;
+        near_name_see(&near, name);
     }
-    return error_set(err, ERROR_INPUT, "no quantity '%.64s' in this study; it has %s", quantity,
-                     names[0] != '\0' ? names : "none");
+    return error_set(err, ERROR_INPUT, "no quantity '%.64s' in this study%s; it has %s", quantity,
+                     near_name_hint(&near, hint), names[0] != '\0' ? names : "none");
 }
 
 /* Refuses a quantity that the case does not have. Reads all curves, to name those that it has. */

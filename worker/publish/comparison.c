@@ -50,10 +50,9 @@ static int read_case(struct store *store, const struct aggregate *aggregate, uin
     if (status == 0)
         units_set(&out->result);
     out->result.case_number = case_number;
+    if (status == 0 && quantity != NULL && result_curve(&out->result, quantity) == NULL)
+        status = quantity_absent(&out->result, quantity, err);
     result_keep(&out->result, quantity, false);
-    if (status == 0 && quantity != NULL && out->result.curve_count == 0)
-        status = error_set(err, ERROR_INPUT, "case %llu has no quantity '%.64s'",
-                           (unsigned long long)case_number, quantity);
     case_info_clear(&info);
     return status;
 }

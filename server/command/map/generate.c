@@ -59,6 +59,12 @@ static bool writes_surface(const struct generate_order *order) {
            order->output != NULL;
 }
 
+/* A name without an ending is npy; a folder has none. */
+static bool has_ending(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return strchr(slash != NULL ? slash + 1 : path, '.') != NULL;
+}
+
 /* Chooses the format asked for, or that of the output's name, or npy; returns 0 or EXIT_USAGE. */
 static int choose_format(struct generate_order *order) {
     const char *name = order->options->format;
@@ -71,6 +77,12 @@ static int choose_format(struct generate_order *order) {
             return usage_error("generate", "--format %.40s is not npy, csv or xyz", name);
     } else if (order->output != NULL)
         order->format = height_map_format_of(order->output);
+    if (order->format == HEIGHT_MAP_FORMATS && order->output != NULL && has_ending(order->output))
+        return usage_error(
+            "generate",
+            "-o %.200s: allowed are files that end in .npy, .csv or .xyz, or --format; "
+            "--picture FILE.svg or FILE.png draws the surface",
+            order->output);
     if (order->format == HEIGHT_MAP_FORMATS)
         order->format = HEIGHT_MAP_NPY;
     if (writes_surface(order) && order->output == NULL && order->format == HEIGHT_MAP_NPY &&

@@ -10,6 +10,7 @@
 #include "server/show/output.h"
 #include "server/show/plot/picture.h"
 #include "server/show/summary/summary.h"
+#include "worker/publish/aggregate.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -70,6 +71,8 @@ static int expect(const struct study *study, const char *quantity, struct study_
         status = statistics_expectation(study->cases[c].parameters, joint, one, err);
         one->case_number = c;
         out->case_count++;
+        if (status == 0 && quantity != NULL && result_curve(one, quantity) == NULL)
+            status = quantity_absent(one, quantity, err);
         if (status == 0 && quantity != NULL)
             result_keep(one, quantity, false);
     }

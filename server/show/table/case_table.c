@@ -1,5 +1,6 @@
 #include "server/show/table/case_table.h"
 #include "jobs/kind.h"
+#include "schema/near_name.h"
 #include "schema/result/result.h"
 #include "schema/result/swept.h"
 #include "schema/study/parameter.h"
@@ -140,18 +141,29 @@ static struct table_value value_of(const struct scalar *scalar, struct table_col
     return value;
 }
 
+/* Appends a name, or once "..." where there is no room for it. */
+static void list_name(char *names, size_t size, const char *name) {
+    size_t used = strlen(names);
+    bool full = used >= 3 && strcmp(names + used - 3, "...") == 0;
+    if (used + strlen(name) + sizeof ", , ..." < size)
+        snprintf(names + used, size - used, "%s%s", used > 0 ? ", " : "", name);
+    else if (!full)
+        snprintf(names + used, size - used, "%s...", used > 0 ? ", " : "");
+}
+
 static int refuse_scalar(const struct case_table *table, const char *name, struct error *err) {
-    char names[320] = "";
+    char names[240] = "", hint[NEAR_HINT_SIZE];
+    struct near_name near = {.typed = name};
     for (size_t c = 0; c < table->study.case_count && *names == '\0'; c++)
         for (size_t s = 0; s < table->study.cases[c].scalar_count; s++) {
-            size_t used = strlen(names);
-            snprintf(names + used, sizeof names - used, "%s%s", used > 0 ? ", " : "",
-                     table->study.cases[c].scalars[s].name);
+            const char *scalar = table->study.cases[c].scalars[s].name;
+            list_name(names, sizeof names, scalar);
+            near_name_see(&near, scalar);
         }
     return error_set(err, ERROR_INPUT,
-                     "columns: no case has a scalar \"%.60s\"; a value of a curve is named as "
+                     "columns: no case has a scalar \"%.60s\"%s; a value of a curve is named as "
                      "QUANTITY@X, scalars are: %s",
-                     name, *names != '\0' ? names : "none yet");
+                     name, near_name_hint(&near, hint), *names != '\0' ? names : "none yet");
 }
 
 /* A scalar that the view names, but no case has, is left out (optional). */
@@ -450,7 +462,8 @@ static int read_wish(struct table_wish *wish, const char *text, size_t size, str
     char *end;
     *wish = (struct table_wish){.x = NAN};
     if (size == 0 || size >= sizeof wish->text)
-        return error_set(err, ERROR_INPUT, "columns: \"%.*s\" is no name",
+        return error_set(err, ERROR_INPUT,
+                         "columns: \"%.*s\" is no name; names stand with commas between",
                          (int)(size > 60 ? 60 : size), text);
     memcpy(wish->text, text, size);
     char *at = strchr(wish->text, '@');
@@ -567,6 +580,23 @@ static bool fits(const struct result_parameter *value, const char *wanted) {
            fabs(value->number - number) <= ROUNDING * fabs(value->number);
 }
 
+/* Names the parameter that is nearest, and what the study sweeps. */
+static int refuse_parameter(const struct case_table *table, const char *name, struct error *err) {
+    char names[240] = "", hint[NEAR_HINT_SIZE];
+    struct near_name near = {.typed = name};
+    const cJSON *swept;
+    cJSON_ArrayForEach(swept, table->study.swept) if (cJSON_IsString(swept)) {
+        near_name_see(&near, last_name(swept->valuestring));
+        list_name(names, sizeof names, last_name(swept->valuestring));
+    }
+    for (size_t c = 0; c < table->study.case_count; c++)
+        for (size_t p = 0; p < table->study.cases[c].parameter_count; p++)
+            near_name_see(&near, last_name(table->study.cases[c].parameters[p].pointer));
+    return error_set(err, ERROR_INPUT,
+                     "where: \"%.60s\" is no parameter of the study's cases%s; it sweeps %s", name,
+                     near_name_hint(&near, hint), *names != '\0' ? names : "none");
+}
+
 static int read_condition(struct conditions *all, const struct case_table *table, const char *text,
                           size_t size, struct error *err) {
     char name[TABLE_NAME_SIZE];
@@ -574,7 +604,10 @@ static int read_condition(struct conditions *all, const struct case_table *table
     size_t length = equals != NULL ? (size_t)(equals - text) : 0;
     int shown = (int)(size > 60 ? 60 : size);
     if (length == 0 || size >= sizeof name)
-        return error_set(err, ERROR_INPUT, "where: \"%.*s\" is not NAME=VALUE", shown, text);
+        return error_set(err, ERROR_INPUT,
+                         "where: \"%.*s\" is not NAME=VALUE, as in hurst=0.8; several values are "
+                         "hurst=0.2,hurst=0.8",
+                         shown, text);
     if (all->count == CONDITIONS_MOST)
         return error_set(err, ERROR_INPUT, "where: more than %d conditions", CONDITIONS_MOST);
     struct condition *one = &all->list[all->count++];
@@ -582,8 +615,7 @@ static int read_condition(struct conditions *all, const struct case_table *table
     snprintf(one->value, sizeof one->value, "%.*s", (int)(size - length - 1), equals + 1);
     one->pointer = find_pointer(table, name);
     if (one->pointer == NULL)
-        return error_set(err, ERROR_INPUT, "where: \"%.60s\" is no parameter of the study's cases",
-                         name);
+        return refuse_parameter(table, name, err);
     return 0;
 }
 

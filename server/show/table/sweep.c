@@ -1,4 +1,5 @@
 #include "server/show/table/sweep.h"
+#include "schema/near_name.h"
 #include "server/show/table/shown_cases.h"
 #include <math.h>
 #include <stdlib.h>
@@ -38,6 +39,23 @@ static size_t count_numbers(const struct case_table *table, const char *pointer)
     return count;
 }
 
+/* Names the numbers that differ between the cases. */
+static int refuse_x(const struct case_table *table, const char *name, struct error *err) {
+    char names[240] = "", hint[NEAR_HINT_SIZE];
+    struct near_name near = {.typed = name};
+    const struct case_result *first = table->row_count > 0 ? table->rows[0] : NULL;
+    for (size_t p = 0; first != NULL && p < first->parameter_count; p++) {
+        const char *pointer = first->parameters[p].pointer, *last = last_name(pointer);
+        size_t used = strlen(names);
+        near_name_see(&near, last);
+        if (count_numbers(table, pointer) > 1)
+            snprintf(names + used, sizeof names - used, "%s%s", used > 0 ? ", " : "", last);
+    }
+    return error_set(err, ERROR_INPUT,
+                     "x: \"%.60s\" is no number of the study's cases%s; it sweeps %s", name,
+                     near_name_hint(&near, hint), *names != '\0' ? names : "none");
+}
+
 /* Chooses the parameter of this name, or of all the one of most numbers. */
 static int choose_x(struct sweep *sweep, const char *name, struct error *err) {
     const struct case_table *table = sweep->table;
@@ -56,10 +74,10 @@ static int choose_x(struct sweep *sweep, const char *name, struct error *err) {
         }
     if (sweep->x != NULL)
         return 0;
-    return name != NULL
-               ? error_set(err, ERROR_INPUT, "x: \"%.60s\" is no number of the study's cases", name)
-               : error_set(err, ERROR_INPUT,
-                           "x: the study sweeps no number; name one of its cases");
+    return name != NULL ? refuse_x(table, name, err)
+                        : error_set(err, ERROR_INPUT,
+                                    "x: the study sweeps no number to draw values over; rugo table "
+                                    "prints them");
 }
 
 /* --- lines --- */

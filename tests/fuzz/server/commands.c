@@ -259,7 +259,7 @@ static void run(const struct command *command, struct drawn_line *line, const ch
     stdout = output.file;
     stderr = said.file;
     out->status = options_parse(line->count, line->words, command->options, options, command->least,
-                                command->most, arguments);
+                                command->most, command->arguments, arguments);
     out->ran = out->status != EXIT_DONE || !takes_long(command, options, file);
     if (out->status == EXIT_DONE && out->ran)
         out->status = command->run(options, arguments);

@@ -42,8 +42,8 @@ __attribute__((constructor)) static void be_command(int argc, char **argv) {
     void *options = calloc(1, one->options_size);
     MUST(options != NULL);
     gsl_set_error_handler_off();
-    int status =
-        options_parse(argc - 1, argv + 1, one->options, options, one->least, one->most, arguments);
+    int status = options_parse(argc - 1, argv + 1, one->options, options, one->least, one->most,
+                               one->arguments, arguments);
     if (status == 0)
         status = one->run(options, arguments);
     fflush(stdout);

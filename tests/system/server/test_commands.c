@@ -46,6 +46,12 @@ static const struct {
     {"$RUGO run absent.json", 2, "absent.json: No such file"},
     {"$RUGO run broken.json", 2, "line 1, column 9"},
     {"$RUGO run --set nothing one.json", 2, "\"nothing\" is not PATH=VALUE"},
+    {"$RUGO run --set surface/hurst= one.json", 2, "has no value behind the ="},
+    {"$RUGO run --set hurst=0.5 one.json", 2, "did you mean \"/surface/hurst\"?"},
+    {"$RUGO generate one.json -o map.png", 2, "--picture FILE.svg or FILE.png draws the surface"},
+    {"$RUGO table", 2, "an argument is missing: rugo table ID"},
+    {"$RUGO help stdy", 2, "did you mean study?"},
+    {"$RUGO help study hurst", 2, "did you mean /surface/hurst?"},
     {"$RUGO check wrong.json", 2, "/surface/hurst/1: 1.4 is not in (0, 1]"},
     {"$RUGO check wrong.json", 2, "/surface/colour: unknown name"},
     {"$RUGO check --format xml one.json", 2, "--format xml is not text or json"},
@@ -295,7 +301,9 @@ static void theory_needs_no_surface(void **state) {
     assert_int_equal(
         run_shell("$RUGO theory --set surface/hurst=2 --set surface/wavelength_ratio=8"), 2);
     assert_true(contains("shell.err", "/surface/hurst"));
-    assert_int_equal(run_shell("$RUGO theory one.json --format svg --quantity none"), 1);
+    assert_int_equal(run_shell("$RUGO theory one.json --format svg --quantity none"), 2);
+    assert_int_equal(run_shell("$RUGO theory one.json --quantity psdd"), 2);
+    assert_true(contains("shell.err", "no quantity 'psdd' in this study (did you mean psd?)"));
 }
 
 int main(void) {

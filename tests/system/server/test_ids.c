@@ -80,7 +80,8 @@ static void a_study_has_several_names(void **state) {
     check_both("status", NAME, 0, "2 studies are named \"rough and smooth: 100 %\"; this is");
     check_both("curves", NAME, 0, second);
     check_both("status", first, 0, first);
-    check_both("status", "nobody", 1, "there is no study \"nobody\"");
+    check_both("status", "nobody", 1, "there is no study \"nobody\"; rugo status lists");
+    check_both("status", "oen", 1, "there is no study \"oen\" (did you mean one?)");
     check_both("status", "0123456789abcdef", 1, "there is no study");
     check_both("status", "", 2, "neither is empty");
 }

@@ -109,7 +109,7 @@ static void faults_are_told(void **state) {
     struct error err = {0};
     struct steps_order order = {.z = open.z, .model = "full"};
     assert_int_equal(contact_press_steps(&open.one_case, &order, &sink, &err), ERROR_INPUT);
-    assert_string_equal(err.text, "the case has no model full");
+    assert_string_equal(err.text, "the case has no model full; it has halfspace, layered");
     order = (struct steps_order){.z = open.z, .meshed = true};
     assert_int_equal(contact_press_steps(&open.one_case, &order, &sink, &err), ERROR_INPUT);
     assert_string_equal(err.text, "--mesh needs \"full\" among /contact/model");

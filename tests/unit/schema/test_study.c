@@ -57,8 +57,11 @@ static void faults_are_told_with_pointer_and_range(void **state) {
         {BOX(",\"colour\":\"blue\""), "/box/colour", "\"blue\" is not one of \"red\", \"green\""},
         {BOX(",\"colour\":1"), "/box/colour", "1 is not one of \"red\", \"green\""},
         {BOX(",\"color\":\"red\""), "/box/color", "unknown name; did you mean \"colour\"?"},
-        {BOX(",\"weight\":1"), "/box/weight", "unknown name"},
-        {WIDE("\"box/colour\":\"red\""), "/box/colour", "unknown name"},
+        {BOX(",\"weight\":1"), "/box/weight", "unknown name; allowed: width, count, colour"},
+        {WIDE("\"box/colour\":\"red\""), "/box/colour",
+         "unknown name; allowed: name, kind, seed, random, realisations, priority, box, bins, "
+         "shapes, depth, "
+         "seconds"},
         {STUDY("\"box\":{\"width\":1},\"bin\":[0,1]"), "/bin",
          "unknown name; did you mean \"bins\"?"},
         {STUDY("\"box\":{\"width\":1},\"bins\":[1]"), "/bins",

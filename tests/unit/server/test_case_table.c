@@ -169,7 +169,8 @@ static void what_there_is_not_is_told(void **state) {
         const char *columns, *where, *text;
     } FAULTS[] = {
         {"kapa", NULL,
-         "no case has a scalar \"kapa\"; a value of a curve is named as QUANTITY@X, "
+         "no case has a scalar \"kapa\" (did you mean kappa?); a value of a curve is named as "
+         "QUANTITY@X, "
          "scalars are: kappa"},
         {"area@0.07", NULL, "area has no value at 0.07; it is known at 0.03, 0.06, 0.1"},
         {"gap@0.1", NULL, "no quantity 'gap'"},
@@ -178,7 +179,7 @@ static void what_there_is_not_is_told(void **state) {
         {"area:edges", NULL, "neither a scalar nor QUANTITY@X"},
         {"kappa,", NULL, "is no name"},
         {NULL, "hurst", "\"hurst\" is not NAME=VALUE"},
-        {NULL, "H=1", "\"H\" is no parameter"},
+        {NULL, "H=1", "\"H\" is no parameter of the study's cases (did you mean hurst?)"},
         {NULL, "hurst=0.5", "no case has /surface/hurst = 0.5; there is 0.2, 0.8"},
         {NULL, "hurst=0.5x", "no case has /surface/hurst = 0.5x"},
     };

@@ -44,7 +44,7 @@ static int parse(const char *line, struct values *values, const char **argument,
     assert_non_null(file);
     assert_true(standard_error >= 0 && dup2(fileno(file), STDERR_FILENO) >= 0);
     *values = (struct values){0};
-    int status = options_parse(argc, argv, ROWS, values, 0, 1, argument);
+    int status = options_parse(argc, argv, ROWS, values, 0, 1, "[FILE]", argument);
     assert_true(dup2(standard_error, STDERR_FILENO) >= 0);
     close(standard_error);
     rewind(file);
@@ -182,7 +182,7 @@ static void tables_of_the_commands_are_sound(void **state) {
         const char *arguments[ARGUMENTS_MOST];
         assert_non_null(values);
         assert_int_equal(
-            options_parse(1, argv, command->options, values, 0, command->most, arguments), 0);
+            options_parse(1, argv, command->options, values, 0, command->most, "", arguments), 0);
         options_clear(command->options, values);
         free(values);
     }

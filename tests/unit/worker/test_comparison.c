@@ -74,7 +74,8 @@ static void what_cannot_be_is_refused(void **state) {
         const char *text;
     } WRONG[] = {{1, 1, NULL, ERROR_INPUT, "case 1 less itself is nothing"},
                  {1, 2, NULL, ERROR_ABSENT, "has no case 2"},
-                 {0, 1, "colour", ERROR_INPUT, "case 0 has no quantity 'colour'"},
+                 {0, 1, "colour", ERROR_INPUT,
+                  "no quantity 'colour' in this study; it has summit_height_pdf"},
                  {0, 1, "summit_joint_pdf", ERROR_INPUT, "summit_joint_pdf is a matrix"}};
     struct fixture fixture;
     struct study_result study = {0};
