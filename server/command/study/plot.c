@@ -1,6 +1,6 @@
 /* `rugo plot`: one picture of a study's results, or of a map in a file, as SVG or PNG. */
 #include "core/memory_file.h"
-#include "server/command/access/access.h"
+#include "server/command/access/access_source.h"
 #include "server/command/map/map_file.h"
 #include "server/command/output_file.h"
 #include "server/show/plot/picture.h"
@@ -54,28 +54,10 @@ static const struct option_row OPTIONS[] = {
      "of curves: case A less case B"},
     {0}};
 
-/* What a picture is drawn from: a study behind an access. */
-struct origin {
-    struct access *access;
-    const char *id;
-};
-
-static int results(const void *context, const struct result_filter *filter,
-                   struct study_result *out, struct error *err) {
-    const struct origin *origin = context;
-    return access_results(origin->access, origin->id, filter, out, err);
-}
-
-static int difference(const void *context, const struct comparison *comparison,
-                      struct study_result *out, struct error *err) {
-    const struct origin *origin = context;
-    return access_difference(origin->access, origin->id, comparison, out, err);
-}
-
 static int draw(struct access *access, const char *id, const struct options *options, FILE *file,
                 struct error *err) {
-    struct origin origin = {access, id};
-    const struct picture_source source = {&origin, results, difference};
+    const struct access_origin origin = {access, id};
+    const struct picture_source source = access_source(&origin);
     const struct comparison comparison = {.minuend = (uint64_t)options->difference[0],
                                           .subtrahend = (uint64_t)options->difference[1],
                                           .quantity = options->quantity};
