@@ -310,7 +310,7 @@ nightly: all
 	$(MAKE) lint
 	RUGO_EFFORT=4 $(MAKE) unit validation
 	RUGO_EFFORT=4 $(MAKE) faults
-	$(MAKE) check-documents check-install check-python check-units check-openapi check-figures check-results tour
+	$(MAKE) check-documents check-install check-python check-units check-openapi check-contract check-figures check-results tour
 	-@tests/install-deps "" "slurmctld slurmd slurm-client munge" munged slurmctld slurmd sbatch
 	$(MAKE) slurm-test
 	$(MAKE) check-static
@@ -404,6 +404,11 @@ slurm-test: all
 check-openapi: all
 	@tests/lint-openapi $(abspath $(BUILD)/rugo)
 .PHONY: check-openapi
+
+# Whether the service keeps to that description, by schemathesis from PyPI, half a minute; skipped where there is none.
+check-contract: all
+	@tests/check-contract $(abspath $(BUILD)/rugo)
+.PHONY: check-contract
 
 # Each archive needs nothing but those of the layers below it: linked whole, it leaves no symbol open.
 define WHOLE

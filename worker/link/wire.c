@@ -65,6 +65,8 @@ static int read_kinds(const cJSON *kinds, const char **out, struct error *err) {
     return 0;
 }
 
+enum { HOST_MOST = 255 };
+
 int wire_claim_read(const cJSON *value, struct wire_claim *out, struct error *err) {
     if (!cJSON_IsObject(value))
         return error_set(err, ERROR_INPUT, "a claim must be an object");
@@ -76,9 +78,10 @@ int wire_claim_read(const cJSON *value, struct wire_claim *out, struct error *er
     if (status == 0 && !worker_name_is_plain(claim.worker))
         status = field_fault("worker", "a text without control characters", err);
     const cJSON *host = field_at(value, "host");
-    if (status == 0 && host != NULL && !cJSON_IsString(host))
-        status = field_fault("host", "a string", err);
-    claim.host = host != NULL ? cJSON_GetStringValue(host) : "";
+    const char *host_name = host != NULL ? cJSON_GetStringValue(host) : "";
+    if (status == 0 && (host_name == NULL || strlen(host_name) > HOST_MOST))
+        status = field_fault("host", "a string of at most 255 bytes", err);
+    claim.host = host_name;
     if (status == 0 && !worker_name_is_plain(claim.host))
         status = field_fault("host", "a text without control characters", err);
     if (status == 0 && field_at(value, "program") != NULL)

@@ -179,6 +179,21 @@ static void claim_crosses(void **state) {
     cJSON_Delete(value);
 }
 
+/* Names of peers are shown and stored: 255 bytes of each are taken. */
+static void names_of_hosts_are_bounded(void **state) {
+    (void)state;
+    for (size_t length = 255; length <= 256; length++) {
+        char host[257] = "";
+        struct wire_claim got;
+        struct error err = {0};
+        memset(host, 'h', length);
+        const struct claim claim = {.worker = "w", .host = host};
+        cJSON *value = cross(wire_claim(&claim));
+        assert_int_equal(wire_claim_read(value, &got, &err), length == 255 ? 0 : ERROR_INPUT);
+        cJSON_Delete(value);
+    }
+}
+
 static void claims_are_bounded(void **state) {
     (void)state;
     struct wire_claim got;
@@ -365,6 +380,7 @@ int main(void) {
         cmocka_unit_test(malformed_jobs_are_refused),
         cmocka_unit_test(more_jobs_than_room_are_refused),
         cmocka_unit_test(claim_crosses),
+        cmocka_unit_test(names_of_hosts_are_bounded),
         cmocka_unit_test(claims_are_bounded),
         cmocka_unit_test(result_crosses_bit_for_bit),
         cmocka_unit_test(malformed_results_are_refused),
