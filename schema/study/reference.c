@@ -326,7 +326,7 @@ int reference_print(FILE *file, const struct study_kind *const *kinds, const cha
         return status;
     if (path != NULL)
         path_read(path, below, sizeof below);
-    if (is_known(&reference, below))
+    if (path == NULL || is_known(&reference, below))
         write_tables(file, &reference, below, print_table);
     else
         status = refuse_path(&reference, path, err);

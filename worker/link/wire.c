@@ -65,7 +65,17 @@ static int read_kinds(const cJSON *kinds, const char **out, struct error *err) {
     return 0;
 }
 
-enum { HOST_MOST = 255 };
+/* "" where it is absent. */
+static int read_host(const cJSON *host, const char **out, struct error *err) {
+    enum { HOST_MOST = 255 };
+    const char *name = host != NULL ? cJSON_GetStringValue(host) : "";
+    if (name == NULL || strlen(name) > HOST_MOST)
+        return field_fault("host", "a string of at most 255 bytes", err);
+    if (!worker_name_is_plain(name))
+        return field_fault("host", "a text without control characters", err);
+    *out = name;
+    return 0;
+}
 
 int wire_claim_read(const cJSON *value, struct wire_claim *out, struct error *err) {
     if (!cJSON_IsObject(value))
@@ -77,13 +87,8 @@ int wire_claim_read(const cJSON *value, struct wire_claim *out, struct error *er
     int status = field_text(value, "worker", 256, &claim.worker, err);
     if (status == 0 && !worker_name_is_plain(claim.worker))
         status = field_fault("worker", "a text without control characters", err);
-    const cJSON *host = field_at(value, "host");
-    const char *host_name = host != NULL ? cJSON_GetStringValue(host) : "";
-    if (status == 0 && (host_name == NULL || strlen(host_name) > HOST_MOST))
-        status = field_fault("host", "a string of at most 255 bytes", err);
-    claim.host = host_name;
-    if (status == 0 && !worker_name_is_plain(claim.host))
-        status = field_fault("host", "a text without control characters", err);
+    if (status == 0)
+        status = read_host(field_at(value, "host"), &claim.host, err);
     if (status == 0 && field_at(value, "program") != NULL)
         status = field_text(value, "program", PROGRAM_SIZE, &claim.program, err);
     if (status == 0 && claim.program != NULL && !worker_name_is_plain(claim.program))
