@@ -252,9 +252,13 @@ class Server:
         answer = json.loads(self.change("POST", "/v1/studies", key, body=text.encode("utf-8")))
         return Study(self, answer["id"])
 
-    def study(self, name):
-        """The study with this id, these first digits of an id, or this name."""
-        return Study(self, self.json("GET", "/v1/studies/" + urllib.parse.quote(name, safe=""))["id"])
+    def study(self, name, unique=False):
+        """The study with this id, else the newest of this name, else that with these first digits of its id. unique:
+        a name that several studies have is refused, with their ids, as it is for cancel and delete of what a name
+        found."""
+        path = "/v1/studies/" + urllib.parse.quote(name, safe="")
+        status = self.json("GET", path, query={"unique": "true" if unique else None})
+        return Study(self, status["id"], found_by=name)
 
     def studies(self):
         """The progress of all studies, oldest first, as dicts."""
@@ -296,9 +300,6 @@ class Server:
         return path
 
 
-Client = Server
-
-
 def _no_answer(url, error):
     """A RugoError of a request without an answer; what was refused before it was sent is not lost."""
     reason = getattr(error, "reason", error)
@@ -323,11 +324,17 @@ def _problem(error):
 class Study:
     """A study of a service."""
 
-    def __init__(self, server, id):
-        self.server, self.id = server, id
+    def __init__(self, server, id, found_by=None):
+        self.server, self.id, self._found_by = server, id, found_by
 
     def __repr__(self):
         return f"Study({self.id})"
+
+    def _require_unique(self):
+        """Refuses to lose one of several studies of the name by which this one was found."""
+        if self._found_by is not None:
+            self.server.study(self._found_by, unique=True)
+            self._found_by = None
 
     def _path(self, rest=""):
         return f"/v1/studies/{self.id}{rest}"
@@ -415,6 +422,8 @@ class Study:
         return self
 
     def cancel(self):
+        """Cancels the study, which has not ended."""
+        self._require_unique()
         try:
             self.server.change("DELETE", self._path())
         except RugoError as error:
@@ -428,6 +437,7 @@ class Study:
 
     def delete(self):
         """Deletes the study, which has ended, with its results."""
+        self._require_unique()
         try:
             self.server.change("DELETE", self._path(), query={"results": "true"})
         except RugoError as error:

@@ -61,6 +61,13 @@ def studies_are_found_and_changed(server, study):
     assert server.study(study.id[:9]).id == study.id
     assert server.study("again").id == server.studies()[-1]["id"]
     refused(lambda: server.study("no / such"), 404)
+    second = server.submit(STUDY).wait(timeout=300)
+    newest = server.study(STUDY["name"])
+    assert newest.id == second.id != study.id
+    refused(newest.delete, 409, study.id)
+    refused(lambda: server.study(STUDY["name"], unique=True), 409, second.id)
+    server.study(second.id).delete()
+    assert server.study(STUDY["name"]).id == study.id
     assert study.id in [row["id"] for row in server.studies()]
     assert study.extend(10).wait(timeout=300).status()["realisations"]["done"] == 20
     assert study.retry().status()["state"] == "done"
@@ -123,7 +130,7 @@ def tokens_are_read_as_commands_do():
     path.unlink()
 
 
-assert pathlib.Path(rugo.__file__).name == "rugo.py" and rugo.Client is rugo.Server
+assert pathlib.Path(rugo.__file__).name == "rugo.py"
 os.chdir(FOLDER)
 here = rugo.Server(URL)
 one = a_study_from_submission_to_tables(here)
