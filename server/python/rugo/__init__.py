@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import typing
 
-from .client import Client, Rows, RugoError, Server, Study
+from .client import Rows, RugoError, Server, Study
 from .study import Result, generate, run
 
 if typing.TYPE_CHECKING:
@@ -25,7 +25,7 @@ if typing.TYPE_CHECKING:
 
 _LIBRARY = ("LibraryError", "choices", "library_version")
 _MAPS = ("Pressed", "characterise", "detrend", "press", "psd", "summits", "surface")
-__all__ = ["Client", "Result", "Rows", "RugoError", "Server", "Study", "generate", "run", *_LIBRARY, *_MAPS]
+__all__ = ["Result", "Rows", "RugoError", "Server", "Study", "generate", "run", *_LIBRARY, *_MAPS]
 
 
 def __getattr__(name):

@@ -32,7 +32,7 @@ import urllib.error
 import urllib.parse
 import urllib.request
 
-__all__ = ["Client", "Server", "Study", "Rows", "RugoError"]
+__all__ = ["Server", "Study", "Rows", "RugoError"]
 
 CSV_CASES_MOST = 64  # of one answer; each case of a larger study is asked for by itself
 MAIN_SERIES = "main"  # in rows, of a curve that is the only one of its quantity: pandas drops rows without a name

@@ -149,7 +149,7 @@ static void documents_keep_units(void **state) {
     free(text);
     text = printed(&again, csv_print);
     assert_non_null(strstr(text, ",x_physical,x_unit,x2_physical,x2_unit,y_physical,y_unit,"
-                                 "standard_error_physical\n"));
+                                 "standard_error_physical,total_low,total_high,unknown_errors\n"));
     assert_non_null(strstr(text, ",1000000000,Pa,,,")); /* the load 0.1 */
     free(text);
     cJSON_SetNumberHelper(
