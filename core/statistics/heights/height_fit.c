@@ -20,7 +20,8 @@ static const double STRAY = 0.01;
 static const double CLEARLY = 4;
 /* Number of independent heights where it is not known. */
 static const double INDEPENDENT_AT_LEAST = 100;
-enum { SHAPES_TRIED = 40, NARROWINGS = 60 };
+/* The last section is 1e-7 of the logarithm of a shape; a minimum is not known much better. */
+enum { SHAPES_TRIED = 20, NARROWINGS = 34 };
 
 /* A tilt that is taken out of an open map is partly random, and its error blurs the distribution.
  * Eight equally frequent offsets, of mean square 1, represent it. */

@@ -27,6 +27,11 @@ static cJSON *solve_length(const struct scene *scene, int length, const char *co
     return solve(study, realisations * effort());
 }
 
+static bool same_reference(const struct scene *a, const struct scene *b) {
+    return a->dimension == b->dimension && strcmp(a->heights, b->heights) == 0 &&
+           a->shape == b->shape && a->reference == b->reference && a->control == b->control;
+}
+
 struct coverage {
     int points, covered, within; /* within: sizes that are less than three times the
                                   * truth, or 3 % of the value */
@@ -69,11 +74,15 @@ static void errors_of_cells_cover(void **state) {
         {"stiffness", ""},         {"patch_count", "wave"},
         {"patch_mean_area", ""}};
     struct coverage coverage = {0};
+    cJSON *true_ones = NULL;
     for (size_t s = 0; s < sizeof SCENES / sizeof *SCENES; s++) {
         const struct scene *scene = &SCENES[s];
         cJSON *told = solve_length(scene, scene->length, "", scene->realisations);
-        cJSON *true_ones =
-            solve_length(scene, scene->reference, "\"cell_error\": \"none\",", scene->control);
+        if (s == 0 || !same_reference(scene, scene - 1)) {
+            cJSON_Delete(true_ones);
+            true_ones =
+                solve_length(scene, scene->reference, "\"cell_error\": \"none\",", scene->control);
+        }
         for (size_t a = 0; a < sizeof CURVES / sizeof *CURVES; a++) {
             double patches = pow((double)scene->reference / scene->length, scene->dimension);
             bool share = strcmp(CURVES[a][0], "patch_mean_area") == 0;
@@ -82,8 +91,8 @@ static void errors_of_cells_cover(void **state) {
                         share ? patches : 1, &coverage);
         }
         cJSON_Delete(told);
-        cJSON_Delete(true_ones);
     }
+    cJSON_Delete(true_ones);
     print_message("%d of %d covered, %d closely\n", coverage.covered, coverage.points,
                   coverage.within);
     assert_true(coverage.points > 400);
