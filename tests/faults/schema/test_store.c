@@ -8,6 +8,7 @@
 #include "tests/support/failing/each_allocation.h"
 #include "tests/support/failing/failing_allocator.h"
 #include "tests/support/fake_kind.h"
+#include "tests/support/store_files.h"
 #include <sqlite3.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -263,16 +264,18 @@ static void a_batch_keeps_no_part_of_a_change(void **state) {
     (void)state;
     enum { SOME = 10, ALLOCATIONS_MOST = 4000 };
     uint64_t failures = 0;
+    struct error err = {0};
     bool reached = false;
-    for (uint64_t n = 0; n < ALLOCATIONS_MOST && !reached; n += 5) {
+    assert_int_equal(open_and_close((char[]){"empty.db"}, &err), 0);
+    for (uint64_t n = 0; n < ALLOCATIONS_MOST && !reached; n += SOME) {
         struct store_life batch = {.study = life.study};
         struct claimed_job jobs[4] = {0};
         char id[STUDY_ID_SIZE];
         struct claim claim = {.worker = "w", .host = "h", .study = id, .count = 4};
         struct damage damage = {0};
-        struct error err = {0};
         size_t count = 0;
         bool existing = false;
+        copy_file("empty.db", "batch.db");
         assert_int_equal(store_open(&batch.store, "batch.db", &(struct store_options){0}, &err), 0);
         assert_int_equal(store_submit(batch.store, batch.study, NULL, id, &existing, &err), 0);
         assert_int_equal(store_claim(batch.store, &claim, jobs, &count, &err), 0);
@@ -290,9 +293,7 @@ static void a_batch_keeps_no_part_of_a_change(void **state) {
         assert_int_equal(verify(&damage, &err), 0);
         assert_int_equal(damage.flaws, 0);
         store_close(&batch.store);
-        unlink("batch.db");
-        unlink("batch.db-wal");
-        unlink("batch.db-shm");
+        remove_store("batch.db");
     }
     assert_true(reached && failures > 10);
 }

@@ -5,6 +5,7 @@
 
 #include "tests/support/effort.h"
 #include "tests/support/process.h"
+#include "tests/support/store_files.h"
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -39,14 +40,6 @@ static uint64_t allocations(const char *path) {
     return count;
 }
 
-static void remove_store(const char *store) {
-    char path[80];
-    for (size_t a = 0; store != NULL && a < 3; a++) {
-        snprintf(path, sizeof path, "%s%s", store, (const char *[]){"", "-wal", "-shm"}[a]);
-        unlink(path);
-    }
-}
-
 /* The part of stdout that is the same every time; the caller frees. */
 static char *told(const struct program *program) {
     char name[80];
@@ -77,7 +70,8 @@ static void fail_at(const struct program *program, uint64_t n, uint64_t most,
     char when[80], name[80];
     snprintf(when, sizeof when, "%" PRIu64 " allocations from %" PRIu64 " failed", most, n);
     snprintf(name, sizeof name, "%s.err", program->name);
-    remove_store(program->store);
+    if (program->store != NULL)
+        remove_store(program->store);
     int status = run_failing(program, n, most);
     char *text = slurp(name);
     if (status >= SANITIZER || (status != 0 && *text == 0))
@@ -95,7 +89,8 @@ static void fail_at(const struct program *program, uint64_t n, uint64_t most,
 }
 
 static void each_failure(const struct program *program) {
-    remove_store(program->store);
+    if (program->store != NULL)
+        remove_store(program->store);
     if (run_failing(program, 0, 0) != 0)
         fail_msg("%s does not succeed", program->name);
     uint64_t total = allocations("allocations"), failed = 0;

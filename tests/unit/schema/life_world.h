@@ -7,6 +7,7 @@
 #include "tests/support/check.h"
 #include "tests/support/life_model.h"
 #include "tests/support/seed.h"
+#include "tests/support/store_files.h"
 #include <sqlite3.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -69,16 +70,6 @@ static inline void expect(const struct world *world, const char *what, int found
 
 static inline int64_t world_clock(void *context) {
     return ((struct world *)context)->now_ms;
-}
-
-static inline void copy_file(const char *from, const char *to) {
-    static char bytes[1 << 16];
-    FILE *in = fopen(from, "rb"), *out = fopen(to, "wb");
-    assert_true(in != NULL && out != NULL);
-    for (size_t n; (n = fread(bytes, 1, sizeof bytes, in)) > 0;)
-        assert_int_equal(fwrite(bytes, 1, n, out), n);
-    fclose(in);
-    fclose(out);
 }
 
 static inline void open_handle(struct world *world, int h) {

@@ -5,6 +5,7 @@
 #include "schema/result/bytes.h"
 #include "schema/result/curve_bytes.h"
 #include "tests/support/seed.h"
+#include "tests/support/store_files.h"
 #include "tests/support/sql.h"
 #include "tests/unit/worker/small_study.h"
 #include "worker/publish/aggregate.h"
@@ -29,26 +30,6 @@ static inline void make_whole(const char *path, char id[STUDY_ID_SIZE]) {
     memcpy(id, fixture.study, STUDY_ID_SIZE);
     store_close(&fixture.store);
     assert_int_equal(rename(fixture.database, path), 0);
-}
-
-static inline void copy_file(const char *from, const char *to) {
-    FILE *in = fopen(from, "rb"), *out = fopen(to, "wb");
-    char buffer[65536];
-    assert_non_null(in);
-    assert_non_null(out);
-    for (size_t got; (got = fread(buffer, 1, sizeof buffer, in)) > 0;)
-        assert_int_equal(fwrite(buffer, 1, got, out), got);
-    fclose(in);
-    assert_int_equal(fclose(out), 0);
-}
-
-static inline void remove_store(const char *path) {
-    static const char *const SUFFIXES[] = {"", "-wal", "-shm", "-journal"};
-    for (size_t s = 0; s < sizeof SUFFIXES / sizeof *SUFFIXES; s++) {
-        char name[256];
-        snprintf(name, sizeof name, "%s%s", path, SUFFIXES[s]);
-        remove(name);
-    }
 }
 
 /* Flips a bit of the file anywhere, and says which. */
