@@ -2,10 +2,10 @@
 -- their theory, with ".grid" what the theory of the grid is over that, with ".law" their law difference in percent. Points of curves
 -- are quantity:series:model@x, those of contact on the finest level.
 CREATE TEMP VIEW v AS
-SELECT "case" AS k, name AS n, value AS v, standard_error AS e FROM case_scalars
-UNION ALL SELECT "case", name || '.theory', value / theory, standard_error / theory FROM case_scalars
-UNION ALL SELECT "case", name || '.grid', grid_theory / theory, 0 FROM case_scalars
-UNION ALL SELECT "case", name || '.law', 100 * law_difference / value, 100 * law_standard_error / abs(value) FROM case_scalars
+SELECT "case" AS k, scalar AS n, value AS v, standard_error AS e FROM case_scalars
+UNION ALL SELECT "case", scalar || '.theory', value / theory, standard_error / theory FROM case_scalars
+UNION ALL SELECT "case", scalar || '.grid', grid_theory / theory, 0 FROM case_scalars
+UNION ALL SELECT "case", scalar || '.law', 100 * law_difference / value, 100 * law_standard_error / abs(value) FROM case_scalars
 UNION ALL SELECT p."case", quantity || ':' || ifnull(series, '') || ':' || ifnull(model, '') || '@' || round(x, 6), y, standard_error
           FROM curve_points p WHERE level IS NULL OR level = (SELECT max(level) FROM curve_points q WHERE q."case" = p."case");
 -- Also d(c, x, s): the standard deviation of the contact area by edges of one realisation, in percent.

@@ -108,15 +108,11 @@ static void print_units(FILE *file, const struct curve *curve, double x, double 
 /* Prints the columns of the total interval of a value. */
 static void print_total(FILE *file, const struct curve *curve, size_t n) {
     const struct total total = curve_total(curve, n);
-    bool first = true;
+    char names[TOTAL_NAMES_SIZE];
+    total_unknown_names(&total, names);
     print_field(file, total.low);
     print_field(file, total.high);
-    fputc(',', file);
-    for (size_t s = 0; s < ERROR_SOURCES; s++)
-        if (total.unknown[s]) {
-            fprintf(file, "%s%s", first ? "" : " ", ERROR_SOURCE_ROWS[s].name);
-            first = false;
-        }
+    fprintf(file, ",%s", names);
 }
 
 /* Prints value number `n` of the curve: a point, or an occupied cell of a matrix. */

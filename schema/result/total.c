@@ -1,5 +1,6 @@
 #include "schema/result/total.h"
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 struct total total_of(double value, double standard_error,
@@ -37,6 +38,15 @@ bool total_is_partial(const struct total *total) {
     for (size_t s = 0; s < ERROR_SOURCES; s++)
         partial = partial || total->unknown[s];
     return partial;
+}
+
+void total_unknown_names(const struct total *total, char names[TOTAL_NAMES_SIZE]) {
+    size_t length = 0;
+    names[0] = '\0';
+    for (size_t s = 0; s < ERROR_SOURCES && length < TOTAL_NAMES_SIZE; s++)
+        if (total->unknown[s])
+            length += (size_t)snprintf(names + length, TOTAL_NAMES_SIZE - length, "%s%s",
+                                       length > 0 ? " " : "", ERROR_SOURCE_ROWS[s].name);
 }
 
 static double at_or_nan(const double *numbers, size_t at) {

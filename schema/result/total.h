@@ -25,6 +25,9 @@
 /* Half the width of an interval of 95 %, in standard errors. */
 #define TOTAL_DEVIATIONS 1.96
 
+/* Of the names of all sources with spaces between. */
+enum { TOTAL_NAMES_SIZE = 160 };
+
 /* In the units of the value. NaN: the value is not known, or neither is its standard error nor any
  * source. */
 struct total {
@@ -46,6 +49,8 @@ struct total curve_total(const struct curve *curve, size_t at);
 double total_half_width(double value, const struct total *total);
 /* Returns whether some source that bears on the value is not in the interval. */
 bool total_is_partial(const struct total *total);
+/* Writes the names of the sources that are not in the interval, with spaces between. */
+void total_unknown_names(const struct total *total, char names[TOTAL_NAMES_SIZE]);
 /* Finds the sources that are not known at some point that has a value, or nowhere. */
 void curve_unknown(const struct curve *curve, bool unknown[ERROR_SOURCES]);
 

@@ -3,6 +3,7 @@
 #include "core/memory_file.h"
 #include "schema/result/curve_bytes.h"
 #include "schema/result/result_json.h"
+#include "schema/result/total.h"
 #include "schema/store/store_internal.h"
 #include "schema/store/store_seal.h"
 #include <math.h>
@@ -23,16 +24,26 @@ static int run_bound(struct store *store, sqlite3_stmt *statement, struct error 
     return status < 0 ? status : 0;
 }
 
+/* Writes the names of the sources that a total leaves out, and returns them; NULL: none. */
+static const char *names_or_null(const struct total *total, char names[TOTAL_NAMES_SIZE]) {
+    total_unknown_names(total, names);
+    return names[0] != '\0' ? names : NULL;
+}
+
 static int insert_scalar(const struct target *target, const struct scalar *scalar,
                          struct error *err) {
+    const struct total total = scalar_total(scalar);
+    char names[TOTAL_NAMES_SIZE];
     sqlite3_stmt *statement = NULL;
     int status = store_query(target->store, &statement, err,
                              "INSERT INTO scalar (study_id, case_number, name, value, "
                              "standard_error, theory, grid_theory, law_difference, "
-                             "law_standard_error) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
-                             "iitdddddd", target->study, target->case_number, scalar->name,
+                             "law_standard_error, total_low, total_high, unknown_errors) "
+                             "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                             "iitddddddddt", target->study, target->case_number, scalar->name,
                              scalar->value, scalar->standard_error, scalar->theory, scalar->grid,
-                             scalar->law_difference, scalar->law_standard_error);
+                             scalar->law_difference, scalar->law_standard_error, total.low,
+                             total.high, names_or_null(&total, names));
     if (status == 0)
         status = run_bound(target->store, statement, err);
     for (size_t s = 0; s < ERROR_SOURCES && status == 0; s++)
@@ -49,18 +60,22 @@ static int insert_scalar(const struct target *target, const struct scalar *scala
 /* Inserts a point. SQLite turns NaN into NULL; x2 is NaN but for a matrix. */
 static int insert_point(struct store *store, int64_t curve, size_t number, double x, double x2,
                         const struct curve *from, struct error *err) {
+    const struct total total = curve_total(from, number);
+    char names[TOTAL_NAMES_SIZE];
     sqlite3_stmt *statement = NULL;
     bool has_valueless = from->valueless != NULL && from->columns == 0;
     bool has_law = from->law_difference != NULL;
     int status = store_query(store, &statement, err,
                              "INSERT INTO point (curve_id, number, x, x2, y, standard_error, "
-                             "valueless, law_difference, law_standard_error) VALUES (?, ?, ?, ?, "
-                             "?, ?, ?, ?, ?)",
-                             "iiddddddd", curve, (int64_t)number, x, x2, from->y[number],
+                             "valueless, law_difference, law_standard_error, total_low, "
+                             "total_high, unknown_errors) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+                             "?)",
+                             "iidddddddddt", curve, (int64_t)number, x, x2, from->y[number],
                              from->standard_error[number],
                              has_valueless ? from->valueless[number] : (double)NAN,
                              has_law ? from->law_difference[number] : (double)NAN,
-                             has_law ? from->law_standard_error[number] : (double)NAN);
+                             has_law ? from->law_standard_error[number] : (double)NAN, total.low,
+                             total.high, names_or_null(&total, names));
     return status != 0 ? status : run_bound(store, statement, err);
 }
 

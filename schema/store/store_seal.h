@@ -27,29 +27,33 @@ int seal_functions(struct store *store, struct error *err);
 /* That of the curves of case ?2 of study ?1. */
 #define CURVES_SEAL                                                                                \
     "(SELECT seals_of(quantity, id) FROM curve WHERE study_id = ?1 AND case_number = ?2)"
-/* A last value with that of the other law where there is one, so that rows of older programs keep
- * their checksum. */
+/* A last value with that of the other law, and with totals, where there are any, so that rows of
+ * older programs keep their checksum. */
 #define WITH_LAW(last)                                                                             \
     "iif(law_difference IS NULL, " last ", seal_of(" last ", law_difference, law_standard_error))"
+#define WITH_TOTAL(last)                                                                           \
+    "iif(total_low IS NULL AND unknown_errors IS NULL, " last ", seal_of(" last                    \
+    ", total_low, total_high, unknown_errors))"
 #define OF_CURVE "FROM curve c JOIN "
 #define OF_CASE " ON r.curve_id = c.id WHERE c.study_id = ?1 AND c.case_number = ?2), "
 #define ROWS_SEAL                                                                                  \
-    "seal_of((SELECT seals_of(name, value, standard_error, theory, " WITH_LAW(                     \
-        "grid_theory") ") FROM scalar WHERE study_id = ?1 AND case_number = ?2), (SELECT "         \
-                       "seals_of(name, source, value, bound, "                                     \
-                       "standard_error) FROM scalar_error WHERE study_id = ?1 AND case_number = "  \
-                       "?2), "                                                                     \
-                       "(SELECT seals_of(r.curve_id, r.number, x, x2, y, standard_error, "         \
-                       "discretisation_error, "                                                    \
-                       "model_error, " WITH_LAW(                                                   \
-                           "valueless") ") " OF_CURVE "point r" OF_CASE                            \
-                                        "(SELECT seals_of(r.curve_id, r.number, source, value, "   \
-                                        "standard_error, bound) " OF_CURVE "point_error r" OF_CASE \
-                                        "(SELECT seals_of(r.curve_id, r.number, y) " OF_CURVE      \
-                                        "point_realisations r" OF_CASE                             \
-                                        "(SELECT seals_of(id, quantity, series, model, "           \
-                                        "kinematics, level, pressure, data) FROM "                 \
-                                        "curve WHERE study_id = ?1 AND case_number = ?2))"
+    "seal_of((SELECT seals_of(name, value, standard_error, theory, " WITH_TOTAL(WITH_LAW(          \
+        "grid_theory")) ") FROM scalar WHERE study_id = ?1 AND case_number = ?2), (SELECT "        \
+                        "seals_of(name, source, value, bound, "                                    \
+                        "standard_error) FROM scalar_error WHERE study_id = ?1 AND case_number = " \
+                        "?2), "                                                                    \
+                        "(SELECT seals_of(r.curve_id, r.number, x, x2, y, standard_error, "        \
+                        "discretisation_error, "                                                   \
+                        "model_error, " WITH_TOTAL(WITH_LAW(                                       \
+                            "valueless")) ") " OF_CURVE "point r" OF_CASE                          \
+                                          "(SELECT seals_of(r.curve_id, r.number, source, value, " \
+                                          "standard_error, bound) " OF_CURVE                       \
+                                          "point_error r" OF_CASE                                  \
+                                          "(SELECT seals_of(r.curve_id, r.number, y) " OF_CURVE    \
+                                          "point_realisations r" OF_CASE                           \
+                                          "(SELECT seals_of(id, quantity, series, model, "         \
+                                          "kinematics, level, pressure, data) FROM "               \
+                                          "curve WHERE study_id = ?1 AND case_number = ?2))"
 
 /* Returns the checksum of a block as it is stored; texts as block_text has them. */
 int64_t block_seal(const struct block_result *result, const char *names, const char *scalars);

@@ -177,11 +177,11 @@ static inline bool coverage_run_and_read(const char *text, const struct coverage
         return false;
     bool done = sqlite3_open("coverage.db", &db) == SQLITE_OK && read(db, choice, out);
     out->reached =
-        coverage_number(db, "SELECT value FROM case_scalars WHERE name = 'error_reached'");
-    out->work = coverage_number(db, "SELECT value FROM case_scalars WHERE name = 'work'");
+        coverage_number(db, "SELECT value FROM case_scalars WHERE scalar = 'error_reached'");
+    out->work = coverage_number(db, "SELECT value FROM case_scalars WHERE scalar = 'work'");
     out->plain_work =
-        coverage_number(db, "SELECT value FROM case_scalars WHERE name = 'plain_work'");
-    out->length = coverage_number(db, "SELECT value FROM case_scalars WHERE name = 'length_ratio'");
+        coverage_number(db, "SELECT value FROM case_scalars WHERE scalar = 'plain_work'");
+    out->length = coverage_number(db, "SELECT value FROM case_scalars WHERE scalar = 'length_ratio'");
     out->cpu_seconds = coverage_number(db, "SELECT sum(cpu_seconds) FROM study_progress");
     sqlite3_close(db);
     return done;

@@ -149,8 +149,8 @@ static inline void check_realisations(const struct world *world, sqlite3 *db, in
                     put(text, "%d %" PRId64 " %.0f\n", c, r, value_of(job, r - job->first));
             }
     check_rows(world, db, s,
-               "SELECT printf('%d %d %d', \"case\", realisation, cast(scalars ->> 'a' AS INTEGER)) "
-               "FROM realisation_scalars WHERE study = ? ORDER BY \"case\", realisation",
+               "SELECT printf('%d %d %d', \"case\", realisation, cast(value AS INTEGER)) FROM "
+               "realisation_scalars WHERE study = ? AND scalar = 'a' ORDER BY \"case\", realisation",
                text);
 }
 

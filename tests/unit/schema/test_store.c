@@ -417,10 +417,11 @@ static void results_and_views(void **state) {
     check_text("copy.db", "SELECT state || percent FROM study_progress", "running100.0");
     check_text("copy.db",
                "SELECT count(*) || max(realisation) FROM realisation_scalars WHERE \"case\" = 1",
-               "2019");
+               "4019");
     check_text("copy.db",
-               "SELECT scalars FROM realisation_scalars WHERE \"case\" = 0 AND realisation = 1",
-               "{\"a\":0.6666666666666666,\"b\":null}");
+               "SELECT group_concat(scalar || coalesce(value, 'none')) FROM realisation_scalars "
+               "WHERE \"case\" = 0 AND realisation = 1",
+               "a0.666666666666667,bnone");
     check_text("copy.db",
                "SELECT group_concat(x || ':' || y) FROM curve_points WHERE quantity = 'q'",
                "0.1:3.0");
@@ -443,20 +444,39 @@ static void results_and_views(void **state) {
                "0.1discretisation-0.5:0.75,2.0discretisation1.0:0.0,0.1discretisation0.25:0.125,2."
                "0discretisation0.5:0.0,2.0model-2.0:none");
     check_text("copy.db",
-               "SELECT name || source || value || bound || standard_error FROM scalar_errors",
+               "SELECT scalar || source || value || bound || standard_error FROM scalar_errors",
                "m0model-0.50.250.125");
     check_text("copy.db", "SELECT \"case\" || realisation || note FROM case_notes", "07why");
-    check_text(
-        "copy.db",
-        "SELECT group_concat(name || value || coalesce(standard_error, 'none')) FROM case_scalars",
-        "alpha5.0none,m01.00.5");
+    check_text("copy.db",
+               "SELECT group_concat(scalar || value || coalesce(standard_error, 'none')) FROM "
+               "case_scalars",
+               "alpha5.0none,m01.00.5");
+    /* 1.96 standard errors, and all that the model's error of -0.5 +- 0.25 comes to */
+    check_text("copy.db",
+               "SELECT group_concat(coalesce(round(total_low, 9), 'none') || ' ' || "
+               "coalesce(round(total_high, 9), 'none') || coalesce(unknown_errors, '')) FROM "
+               "case_scalars",
+               "none none,0.02 2.73cell");
+    check_text("copy.db",
+               "SELECT count(*) > 2 AND max(abs(total_low - (y - 1.96 * coalesce(standard_error, "
+               "0) - max(0, known)))) < 1e-12 FROM (SELECT *, (SELECT total(value + "
+               "coalesce(bound, 0)) FROM curve_errors e WHERE e.\"case\" = p.\"case\" AND "
+               "e.quantity = p.quantity AND e.series IS p.series AND e.x = p.x AND e.model IS "
+               "p.model AND e.level IS p.level) AS known FROM curve_points p) WHERE total_low "
+               "IS NOT NULL",
+               "1");
+    check_text("copy.db",
+               "SELECT name || \"case\" || state || (parameters ->> '$.box.width') || ' ' || "
+               "(scalars ->> 'm0') FROM case_table WHERE \"case\" = 0",
+               "n0published0.5 1.0");
     check_text("copy.db",
                "SELECT count(*) || group_concat(DISTINCT worker || host || attempts) FROM job_log",
                "4where1");
-    check_text("copy.db",
-               "SELECT group_concat(\"case\" || name || '=' || value) FROM case_parameters WHERE "
-               "name = '/box/width'",
-               "0/box/width=0.5,1/box/width=1");
+    check_text(
+        "copy.db",
+        "SELECT group_concat(\"case\" || parameter || '=' || value) FROM case_parameters WHERE "
+        "parameter = '/box/width'",
+        "0/box/width=0.5,1/box/width=1");
     check_text("copy.db", "SELECT host || program || jobs || (first <= last) FROM study_runs",
                "here0.0.1+c0ffee41");
     check_text("copy.db", "SELECT seed || program FROM study_progress",

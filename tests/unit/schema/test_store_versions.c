@@ -54,7 +54,8 @@ static void released_migrations_are_frozen(void **state) {
                   {"schema/store/migrations/012.sql", 0x13877ee471321076u},
                   {"schema/store/migrations/013.sql", 0x2fdb199e1e71779fu},
                   {"schema/store/migrations/014.sql", 0x883758ebd0e18cd7u},
-                  {"schema/store/migrations/015.sql", 0x2325eccfabc89770u}};
+                  {"schema/store/migrations/015.sql", 0x2325eccfabc89770u},
+                  {"schema/store/migrations/016.sql", 0xf8c22b61193d5927u}};
     for (size_t f = 0; f < sizeof FROZEN / sizeof *FROZEN; f++) {
         size_t size = 0;
         char *text = read_source(FROZEN[f].name, &size);

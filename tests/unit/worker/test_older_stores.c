@@ -112,11 +112,11 @@ static void check_study(const char *path, const struct study_status *about, int 
     /* Fits are of areas by edges, and were once over the loads of each realisation's own; and
      * values at the last load were means of scalars, other than now in their last digits. */
     check_same_rows(path, about->id, &fresh, from,
-                    "name, printf('%.4g', value), printf('%.4g', standard_error), theory) FROM "
+                    "scalar, printf('%.4g', value), printf('%.4g', standard_error), theory) FROM "
                     "case_scalars",
-                    " AND name NOT LIKE '%kappa%' AND name NOT LIKE 'power_law%' AND name NOT LIKE "
-                    "'erf_%' AND name NOT "
-                    "LIKE '%_last' AND name NOT IN ('iterations', 'violation') ORDER BY 1");
+                    " AND scalar NOT LIKE '%kappa%' AND scalar NOT LIKE 'power_law%' AND scalar NOT LIKE "
+                    "'erf_%' AND scalar NOT "
+                    "LIKE '%_last' AND scalar NOT IN ('iterations', 'violation') ORDER BY 1");
     check_same_rows(path, about->id, &fresh, 0, "state, realisations_done) FROM case_progress",
                     " ORDER BY 1");
     fixture_close(&fresh);
