@@ -23,19 +23,24 @@ function colour(share) {
   return STOPS[below].map((a, k) => a + part * (STOPS[below + 1][k] - a));
 }
 
-/** Draws a map of rows x columns; of gaps and pressures what is 0 is transparent. */
+const UNITS = { height: "", gap: "", pressure: " E* h′" };
+const BLANK = { gap: "contact", pressure: "no contact" }; // what a value of 0 is, which has no colour
+
+/** Draws a map of rows x columns; gaps and pressures of 0 are white, and the scale is that of the others. */
 function mapOf({ shape, values }, field) {
-  const [rows, columns] = shape;
+  const [rows, columns] = shape, isBlank = (value) => field in BLANK && value === 0;
   let low = Infinity, high = -Infinity;
   for (const value of values) {
+    if (isBlank(value)) continue;
     if (value < low) low = value;
     if (value > high) high = value;
   }
+  if (low > high) low = high = 0;
   const canvas = make("canvas", { width: columns, height: rows, role: "img", "aria-label": `${field} of ${rows} by ${columns} points, from ${number(low)} to ${number(high)}` });
   const context = canvas.getContext("2d"), image = context.createImageData(columns, rows);
   for (let i = 0; i < values.length; i++) {
     const [r, g, b] = colour(high > low ? (values[i] - low) / (high - low) : 0);
-    image.data.set([r, g, b, field !== "height" && values[i] === 0 ? 0 : 255], 4 * i);
+    image.data.set(isBlank(values[i]) ? [255, 255, 255, 255] : [r, g, b, 255], 4 * i);
   }
   context.putImageData(image, 0, 0);
   canvas.className = "map";
@@ -44,7 +49,7 @@ function mapOf({ shape, values }, field) {
   const line = scale.getContext("2d").createImageData(256, 1);
   for (let i = 0; i < 256; i++) line.data.set([...colour(i / 255), 255], 4 * i);
   scale.getContext("2d").putImageData(line, 0, 0);
-  return make("figure", {}, canvas, make("figcaption", {}, `${field} from `, number(low), " ", scale, " to ", number(high)));
+  return make("figure", {}, canvas, make("figcaption", {}, `${field} from `, number(low), " ", scale, " to ", number(high), UNITS[field], field in BLANK ? [", ", make("span", { class: "blank" }), ` ${BLANK[field]}`] : ""));
 }
 
 export function showRealisation(root, signal, study, contents) {

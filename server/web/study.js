@@ -6,9 +6,10 @@ import { showCurves } from "/web/curves.js";
 import { showPicture } from "/web/picture.js";
 import { CASES_FIRST } from "/web/sweep.js";
 import { showTable } from "/web/table.js";
+import { showJobs } from "/web/jobs.js";
 import { showRealisation } from "/web/realisation.js";
 
-const PARTS = [["curves", "Curves"], ["picture", "Pictures"], ["table", "Table"], ["report", "Speed and error"], ["realisation", "Realisations"], ["document", "Document"]];
+const PARTS = [["curves", "Curves"], ["picture", "Pictures"], ["table", "Table"], ["report", "Speed and error"], ["realisation", "Realisations"], ["jobs", "Jobs"], ["document", "Document"]];
 
 const NOTED_MOST = 50, FAILURES_MOST = 50; // cases with notes, and failures, that are listed
 
@@ -27,7 +28,13 @@ function reachedOf({ scalars }) {
   const value = (name) => scalars?.[name]?.value;
   if (!value("error_reached") || !value("error_asked")) return null;
   const parts = PARTS_OF_ERROR.map(([key, name]) => [value(key) ?? 0, name]).filter(([error]) => error > 0).sort((a, b) => b[0] - a[0]);
-  return `asked ${percent(value("error_asked"))}, reached ${percent(value("error_reached"))}: ${parts.map(([error, name]) => `${name} ${percent(error)}`).join(", ")}`;
+  const cost = value("work") > 0 && value("plain_work") > 0 ? `; ${number(value("work") / value("plain_work"), 2)} times the work of plain sampling` : "";
+  return `asked ${percent(value("error_asked"))}, reached ${percent(value("error_reached"))}: ${parts.map(([error, name]) => `${name} ${percent(error)}`).join(", ")}${cost}`;
+}
+
+/** The error that a study asks for, beside the largest of its cases so far. */
+function targetText(asked, reached) {
+  return [asked ? `asked ${percent(asked)}` : "", reached ? `reached ${percent(reached)}` : asked ? "none known yet" : ""].filter(Boolean).join(", ");
 }
 
 /** The report's picture, where cost and error are known, and its notes. */
@@ -61,12 +68,12 @@ function line(study) {
   return study.starts_in === null ? `${study.place}` : `${study.place}, starts in ${duration(study.starts_in)}`;
 }
 
-function factsOf(study) {
+function factsOf(study, asked) {
   const { done, total, failed } = study.realisations, live = isLive(study);
   return [["State", make("span", { class: stateClass(study) }, stateText(study))], ["Position in line", line(study)], ["Kind", study.kind],
     ["Owner", study.owner], ["Priority", study.priority || null], ["Seed", study.seed], ["Cases", study.cases],
     ["Realisations", `${done} / ${total}${failed ? `, ${failed} failed` : ""}`], ["CPU time", duration(study.cpu_seconds)], ["Workers", live ? study.workers : null],
-    ["Time left", live ? duration(study.seconds_left) : null], ["Error reached", study.error_reached ? `${(100 * study.error_reached).toPrecision(3)} %` : null],
+    ["Time left", live ? duration(study.seconds_left) : null], ["Error", targetText(asked, study.error_reached)],
     ["Created", time(study.created)], ["Finished", study.finished ? time(study.finished) : null], ["Program", study.program], ["Id", make("code", {}, study.id)],
     ["Why there are no values", study.valueless_note]]
     .filter(([, value]) => value !== null && value !== undefined && value !== "");
@@ -77,7 +84,7 @@ function headOf(id, refresh) {
   const path = `/v1/studies/${encodeURIComponent(id)}`;
   const title = make("h1"), progress = bar(0, ""), facts = make("dl", { class: "facts" }), message = make("span", { class: "actions-message", role: "alert" });
   const count = make("summary"), list = make("ul"), failures = make("details", { open: true, hidden: true }, count, list);
-  let study;
+  let study, asked = null; // asked: the error
 
   const called = () => `study “${study.name}”`;
   const asks = (question, action) => async () => {
@@ -111,7 +118,7 @@ function headOf(id, refresh) {
     say(title, study.name);
     patch(progress, bar(share(study), `progress of ${study.name}`));
     progress.hidden = !isLive(study);
-    each(facts, factsOf(study), ([name]) => name, ([name, value]) => make("div", {}, make("dt", {}, name), make("dd", {}, value)));
+    each(facts, factsOf(study, asked), ([name]) => name, ([name, value]) => make("div", {}, make("dt", {}, name), make("dd", {}, value)));
     for (const [button, isShown] of buttons) button.hidden = !isShown(study);
     const failed = study.failures ?? [];
     failures.hidden = failed.length === 0;
@@ -120,6 +127,10 @@ function headOf(id, refresh) {
   }
   const actions = make("div", { class: "tools" }, buttons.map(([button]) => button), make("a", { class: "button", href: `#/new/${encodeURIComponent(id)}` }, "Copy as a new study"), message);
   const element = make("div", {}, title, actions, progress, facts, failures); // what grows is below the buttons: they do not move under the pointer
+  getJson(`${path}/study`).then((document) => {
+    asked = document.target?.error ?? null;
+    if (study) update(study);
+  }, () => {}); // the facts then lack what was asked for
   return { element, update };
 }
 
@@ -136,7 +147,7 @@ export async function showStudy(root, signal, id, part) {
     head.update(study);
     follow();
     if (before === next.revision) return;
-    if (contents && contents.curves.length === 0) fill();
+    if (contents && contents.curves.length === 0 && part !== "jobs") fill();
     else if (redraw) redrawLast();
   }
 
@@ -157,7 +168,7 @@ export async function showStudy(root, signal, id, part) {
     try {
       contents = await getJson(`${path}/contents`, { signal });
       body.replaceChildren();
-      redraw = ({ picture: showPicture, table: showTable, realisation: showRealisation }[part] ?? showCurves)(body, signal, study, contents);
+      redraw = ({ picture: showPicture, table: showTable, realisation: showRealisation, jobs: showJobs }[part] ?? showCurves)(body, signal, study, contents);
     } catch (error) {
       if (!signal.aborted) body.replaceChildren(make("p", { role: "alert" }, error.message));
     }

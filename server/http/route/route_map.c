@@ -149,10 +149,20 @@ static int find_case(struct exchange *exchange, const struct map_question *quest
     return status;
 }
 
-static int write_map(const struct map_question *question, const struct grid *grid, const double *z,
+/* Leaves out of a picture what is 0: pressures where nothing touches, gaps where something does. */
+static void blank_zeros(size_t points, double *z) {
+    for (size_t i = 0; i < points; i++)
+        if (z[i] == 0)
+            z[i] = NAN;
+}
+
+/* Of a picture of gaps or pressures, z is changed. */
+static int write_map(const struct map_question *question, const struct grid *grid, double *z,
                      struct memory_file *out, struct error *err) {
     if (!memory_file_open(out))
         return error_memory(err, 0, "a map");
+    if (question->png && question->field != MAP_HEIGHT)
+        blank_zeros(grid_points(grid), z);
     return question->png ? map_png(out->file, grid, z, err)
                          : height_map_write(out->file, HEIGHT_MAP_NPY, grid, z, err);
 }

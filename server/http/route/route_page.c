@@ -12,6 +12,7 @@
     ASSET("elements.js", "text/javascript; charset=utf-8", server_web_elements_js)                 \
     ASSET("new.js", "text/javascript; charset=utf-8", server_web_new_js)                           \
     ASSET("picture.js", "text/javascript; charset=utf-8", server_web_picture_js)                   \
+    ASSET("jobs.js", "text/javascript; charset=utf-8", server_web_jobs_js)                         \
     ASSET("realisation.js", "text/javascript; charset=utf-8", server_web_realisation_js)           \
     ASSET("session.js", "text/javascript; charset=utf-8", server_web_session_js)                   \
     ASSET("studies.js", "text/javascript; charset=utf-8", server_web_studies_js)                   \

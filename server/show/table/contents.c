@@ -127,8 +127,9 @@ static int document_of(const struct study_result *study, const struct case_resul
     cJSON *document = cJSON_CreateObject();
     bool complete = document != NULL && field_put_text(document, "study", study->id) &&
                     field_put_text(document, "name", study->name) &&
-                    field_put_text(document, "kind", study->kind) && put_cases(document, study) &&
-                    put_results(document, first);
+                    field_put_text(document, "kind", study->kind) &&
+                    field_put(document, "provenance", cJSON_Duplicate(study->provenance, true)) &&
+                    put_cases(document, study) && put_results(document, first);
     *out = fields_finish(document, complete);
     return *out != NULL ? 0 : error_memory(err, 0, "the contents of a study");
 }

@@ -6,7 +6,7 @@
 #include "worker/publish/aggregate.h"
 #include <cjson/cJSON.h>
 
-/* {study, name, kind, cases: [{case, swept: {pointer: value}, realisations}], curves: [{quantity,
+/* {study, name, kind, provenance, cases: [{case, swept: {pointer: value}, realisations}], curves: [{quantity,
  * matrix, series, models, levels, x_label, y_label}], scalars: [names]}, the caller's to delete.
  * Curves and scalars are those of the first case that has any. ERROR_ABSENT for an unknown study.
  */

@@ -111,12 +111,13 @@ static void check_study(const char *path, const struct study_status *about, int 
                     "IN ('contact_pressure_pdf', 'stiffness', 'iterations', 'work') ORDER BY 1");
     /* Fits are of areas by edges, and were once over the loads of each realisation's own; and
      * values at the last load were means of scalars, other than now in their last digits. */
-    check_same_rows(path, about->id, &fresh, from,
-                    "scalar, printf('%.4g', value), printf('%.4g', standard_error), theory) FROM "
-                    "case_scalars",
-                    " AND scalar NOT LIKE '%kappa%' AND scalar NOT LIKE 'power_law%' AND scalar NOT LIKE "
-                    "'erf_%' AND scalar NOT "
-                    "LIKE '%_last' AND scalar NOT IN ('iterations', 'violation') ORDER BY 1");
+    check_same_rows(
+        path, about->id, &fresh, from,
+        "scalar, printf('%.4g', value), printf('%.4g', standard_error), theory) FROM "
+        "case_scalars",
+        " AND scalar NOT LIKE '%kappa%' AND scalar NOT LIKE 'power_law%' AND scalar NOT LIKE "
+        "'erf_%' AND scalar NOT "
+        "LIKE '%_last' AND scalar NOT IN ('iterations', 'violation') ORDER BY 1");
     check_same_rows(path, about->id, &fresh, 0, "state, realisations_done) FROM case_progress",
                     " ORDER BY 1");
     fixture_close(&fresh);
