@@ -181,7 +181,8 @@ static inline bool coverage_run_and_read(const char *text, const struct coverage
     out->work = coverage_number(db, "SELECT value FROM case_scalars WHERE scalar = 'work'");
     out->plain_work =
         coverage_number(db, "SELECT value FROM case_scalars WHERE scalar = 'plain_work'");
-    out->length = coverage_number(db, "SELECT value FROM case_scalars WHERE scalar = 'length_ratio'");
+    out->length =
+        coverage_number(db, "SELECT value FROM case_scalars WHERE scalar = 'length_ratio'");
     out->cpu_seconds = coverage_number(db, "SELECT sum(cpu_seconds) FROM study_progress");
     sqlite3_close(db);
     return done;

@@ -148,10 +148,11 @@ static inline void check_realisations(const struct world *world, sqlite3 *db, in
                     job->first <= r && r < job->first + job->count)
                     put(text, "%d %" PRId64 " %.0f\n", c, r, value_of(job, r - job->first));
             }
-    check_rows(world, db, s,
-               "SELECT printf('%d %d %d', \"case\", realisation, cast(value AS INTEGER)) FROM "
-               "realisation_scalars WHERE study = ? AND scalar = 'a' ORDER BY \"case\", realisation",
-               text);
+    check_rows(
+        world, db, s,
+        "SELECT printf('%d %d %d', \"case\", realisation, cast(value AS INTEGER)) FROM "
+        "realisation_scalars WHERE study = ? AND scalar = 'a' ORDER BY \"case\", realisation",
+        text);
 }
 
 static inline void check_views(const struct world *world) {
