@@ -262,6 +262,7 @@ int store_publish_points(struct store *store, const char *study, uint64_t case_n
 struct published_part {
     const char *quantity; /* curves of this quantity alone; NULL: of all */
     bool scalars_only;    /* without any curves */
+    bool curves_only;     /* scalars and notes may be left out */
 };
 int store_published(struct store *store, const char *study, uint64_t case_number, uint64_t revision,
                     const struct published_part *part, struct case_result *out, bool *found,

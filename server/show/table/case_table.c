@@ -339,7 +339,7 @@ static int refuse_place(const struct curve *curve, const struct table_wish *wish
 /* Reads the curves of a quantity, of all cases, unless they are at hand. */
 static int read_curves(struct table_maker *maker, const char *quantity, struct error *err) {
     const struct result_filter filter = {
-        .case_number = -1, .part = {.quantity = quantity}, .complete = true};
+        .case_number = -1, .part = {.quantity = quantity, .curves_only = true}, .complete = true};
     for (size_t c = 0; c < maker->curves.case_count; c++)
         if (result_curve(&maker->curves.cases[c], quantity) != NULL)
             return 0;

@@ -393,7 +393,8 @@ static void results_and_views(void **state) {
     struct case_info info;
     assert_int_equal(store_case(store, id, 0, &info, NULL), 0);
     struct case_result sample, again = {0};
-    const struct published_part all = {0}, areas = {.quantity = "area"};
+    const struct published_part all = {0}, areas = {.quantity = "area"},
+                                curves = {.curves_only = true};
     bool found = false;
     sample_result(&sample);
     assert_int_equal(store_publish(store, id, 0, info.revision, &sample, NULL), 0);
@@ -404,6 +405,10 @@ static void results_and_views(void **state) {
     result_clear(&again);
     assert_int_equal(store_published(store, id, 0, info.revision, &areas, &again, &found, NULL), 0);
     assert_true(found && again.curve_count == 1 && again.curves[0].level == 8);
+    result_clear(&again);
+    assert_int_equal(store_published(store, id, 0, info.revision, &curves, &again, &found, NULL),
+                     0);
+    assert_true(found && again.curve_count == 3);
     result_clear(&again);
     assert_int_equal(store_published(store, id, 0, info.revision + 1, &all, &again, &found, NULL),
                      0);
