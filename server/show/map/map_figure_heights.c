@@ -45,7 +45,7 @@ static bool find_law(const struct figure_page *page, struct fitted_law *out) {
     const char *fitted = named_text(page->figure->found, "height_fit", "distribution");
     if (fitted == NULL || !map_height_law_find(&out->law, page->figure->measured))
         return false;
-    plot_spaced(fitted, name, sizeof name);
+    plot_in_words(fitted, name, sizeof name);
     snprintf(out->label, sizeof out->label, "%s fit", name);
     return true;
 }

@@ -99,7 +99,7 @@ static bool write_value(const struct figure_page *page, const struct table_row *
     double value = value_of(page, row, ""), error = value_of(page, row, "_error");
     double low = value_of(page, row, "_low"), high = value_of(page, row, "_high");
     if (text != NULL)
-        plot_spaced(text, out, TEXT_SIZE);
+        plot_in_words(text, out, TEXT_SIZE);
     else if (row->other != NULL)
         return write_range(page, row, value, out);
     else if (isfinite(value) && isfinite(low) && isfinite(high))

@@ -106,7 +106,7 @@ static void plot_theories_name(const struct plot_lines *lines, struct legend *le
         bool shared = true;
         for (size_t panel = 0; panel < lines->channels[CHANNEL_PANEL].count && shared; panel++)
             shared = is_shared(lines, panel, names[t], &first);
-        plot_spaced(names[t], name, sizeof name);
+        plot_in_words(names[t], name, sizeof name);
         snprintf(label, sizeof label, "%s%s%s",
                  strncmp(name, "theory", 6) == 0 ? "" : "theory: ", name,
                  shared ? "" : ", of each");
@@ -464,16 +464,31 @@ static const char *series_shown(const struct study_result *study, const char *se
     return name != NULL ? name : series;
 }
 
-/* Names the quantity, the series that was asked for, and the case where it is one of several, or
- * the two of a difference. */
-static void make_subject(const struct study_result *study, const struct lines_request *request,
-                         char subject[PLOT_LABEL_SIZE]) {
+/* Returns the load that all lines are at; NaN where there are several, or none. */
+static double shared_load(const struct plot_lines *lines) {
+    double load = lines->list[0].curve->pressure;
+    for (size_t n = 1; n < lines->count; n++)
+        if (!(lines->list[n].curve->pressure == load))
+            return (double)NAN;
+    return load;
+}
+
+/* Names the quantity, the series that was asked for, the load where all have one, and the case
+ * where it is one of several, or the two of a difference. */
+static void make_subject(const struct study_result *study, const struct plot_lines *lines,
+                         const struct lines_request *request, char subject[PLOT_LABEL_SIZE]) {
+    char quantity[61], series_words[61];
+    double load = shared_load(lines);
     const struct case_result *one = &study->cases[0];
     unsigned long long number = one->case_number, less = one->less;
     bool other = request->series != NULL && strcmp(request->series, request->quantity) != 0;
     const char *series = other ? series_shown(study, request->series) : NULL;
-    int used = snprintf(subject, PLOT_LABEL_SIZE, "%.60s%s%.60s", request->quantity,
-                        series != NULL ? ", " : "", series != NULL ? series : "");
+    plot_in_words(request->quantity, quantity, sizeof quantity);
+    plot_in_words(series != NULL ? series : "", series_words, sizeof series_words);
+    int used = snprintf(subject, PLOT_LABEL_SIZE, "%s%s%s", quantity, series != NULL ? ", " : "",
+                        series_words);
+    if (!isnan(load))
+        used += snprintf(subject + used, PLOT_LABEL_SIZE - (size_t)used, " at load %.4g", load);
     if (one->difference)
         snprintf(subject + used, PLOT_LABEL_SIZE - (size_t)used, ", case %llu less case %llu",
                  number, less);
@@ -489,7 +504,7 @@ int plot_quantity(const struct study_result *study, const struct plot_request *r
     if (status != 0)
         return status;
     const struct curve *first = lines.list[0].curve;
-    make_subject(study, &request->lines, subject);
+    make_subject(study, &lines, &request->lines, subject);
     const struct plot_words words = {.subject = subject, .x = first->x_label, .y = first->y_label};
     status = plot_lines_draw(&lines, study, request, &words, file, err);
     plot_lines_clear(&lines);

@@ -333,11 +333,11 @@ void channel_label(const struct plot_lines *lines, enum plot_channel_type channe
         const char *series =
             is_attribute(factor, "series") ? shown_series(lines, channel, v) : NULL;
         if (series != NULL)
-            snprintf(text, sizeof text, "%s", series);
+            plot_in_words(series, text, sizeof text);
         else if (value.text != NULL && *value.text != '\0')
-            plot_spaced(value.text, text, sizeof text);
+            plot_in_words(value.text, text, sizeof text);
         else if (is_attribute(factor, "series") && value.text != NULL)
-            plot_spaced(lines->list[own->lines[v]].curve->quantity, text, sizeof text);
+            plot_in_words(lines->list[own->lines[v]].curve->quantity, text, sizeof text);
         else if (value.text != NULL || isnan(value.number))
             snprintf(text, sizeof text, "no %.60s", factor_name(factor));
         else if (is_attribute(factor, "pressure"))

@@ -184,8 +184,11 @@ int plot_cost(const struct study_report *report, FILE *file, struct error *err) 
     for (size_t c = 0; c < report->case_count; c++) {
         const struct curve_report *main = report->cases[c].main;
         series_add_case(&list, &report->cases[c]);
-        if (*subject == '\0' && main != NULL)
-            snprintf(subject, sizeof subject, "error of %.60s by cost", main->place.quantity);
+        if (*subject == '\0' && main != NULL) {
+            char quantity[61];
+            plot_in_words(main->place.quantity, quantity, sizeof quantity);
+            snprintf(subject, sizeof subject, "error of %s by cost", quantity);
+        }
     }
     size_t count = choose_laws(&list, laws);
     const struct case_report *worst = worst_of(report);

@@ -155,13 +155,14 @@ static struct heat_scale scale_of(const struct density *density) {
 
 static void draw_theories(struct density *density, const struct heat_scale *scale) {
     for (size_t t = 0; t < density->curve->theory_count; t++) {
-        char style[96], label[PLOT_LABEL_SIZE];
+        char style[96], label[PLOT_LABEL_SIZE], name[81];
         struct heat_cells cells = cells_of(density, 1 + t);
         if (theory_of(density, t) == NULL)
             continue;
         snprintf(style, sizeof style, "class=\"theory\" stroke=\"%s\" stroke-linecap=\"round\"",
                  STROKES[t % STROKE_COUNT]);
-        snprintf(label, sizeof label, "theory: %.80s", density->curve->theories[t].name);
+        plot_in_words(density->curve->theories[t].name, name, sizeof name);
+        snprintf(label, sizeof label, "theory: %s", name);
         heat_contours(&density->pen, &cells, scale, style);
         pen_legend(&density->pen, label, style);
     }
@@ -178,10 +179,13 @@ static void note_case(struct plot_pen *pen, const struct study_result *study,
         const struct result_parameter *value = result_parameter(one, shown.varied[n]);
         if (value == NULL)
             continue;
+        char name[61], word[61];
+        plot_in_words(last_name(value->pointer), name, sizeof name);
+        plot_in_words(value->text != NULL ? value->text : "", word, sizeof word);
         if (value->text != NULL)
-            snprintf(text, sizeof text, "%.60s: %.60s", last_name(value->pointer), value->text);
+            snprintf(text, sizeof text, "%s: %s", name, word);
         else
-            snprintf(text, sizeof text, "%.60s: %.5g", last_name(value->pointer), value->number);
+            snprintf(text, sizeof text, "%s: %.5g", name, value->number);
         pen_note(pen, text);
     }
     shown_clear(&shown);
@@ -202,10 +206,11 @@ static void draw(struct density *density, const struct study_result *study,
     const struct curve *curve = density->curve;
     const struct heat_scale scale = scale_of(density);
     struct heat_cells cells = cells_of(density, 0);
-    char subject[PLOT_LABEL_SIZE];
+    char subject[PLOT_LABEL_SIZE], quantity[41];
     bool serial = curve->series != NULL && *curve->series != '\0';
-    snprintf(subject, sizeof subject, "%.40s%s%.16s, case %llu", curve->quantity,
-             serial ? ", " : "", serial ? curve->series : "", (unsigned long long)one->case_number);
+    plot_in_words(curve->quantity, quantity, sizeof quantity);
+    snprintf(subject, sizeof subject, "%s%s%.16s, case %llu", quantity, serial ? ", " : "",
+             serial ? curve->series : "", (unsigned long long)one->case_number);
     frame_set(&pen->frame, cells.x, cells.y, false);
     pen_head(pen, PEN_WIDTH);
     pen_study(pen, study);

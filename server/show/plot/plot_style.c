@@ -154,7 +154,7 @@ static void add_only(struct legend *legend, const struct plot_lines *lines, enum
     else if (line->one->difference)
         snprintf(label, sizeof label, "case %llu less case %llu", number, less);
     else if (line->curve->series != NULL && *line->curve->series != '\0')
-        plot_spaced(line->curve->series, label, sizeof label);
+        plot_in_words(line->curve->series, label, sizeof label);
     else if (line->curve->model != NULL)
         snprintf(label, sizeof label, "%s",
                  model_text(line->curve->model, line->curve->kinematics, model, sizeof model));

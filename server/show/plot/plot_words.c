@@ -5,6 +5,7 @@
 #include "server/show/table/shown_cases.h"
 #include <ctype.h>
 #include <string.h>
+#include <strings.h>
 
 static const struct sign {
     const char *name, *text;
@@ -139,11 +140,26 @@ const char *plot_unit(const char *kind, const char *pointer) {
     return row != NULL ? row->unit : NULL;
 }
 
-void plot_spaced(const char *name, char *out, size_t size) {
+/* Sets the capitals of a word of so many letters, where it has any. */
+static void capitals_set(char *word, size_t length) {
+    static const char *const WORDS[] = {
+        "ACF", "Archard", "BGT",     "CDF", "GW",      "Gaussian",   "McCool",   "Nayak",
+        "PDF", "PSD",     "Persson", "RMS", "Weibull", "Williamson", "Greenwood"};
+    for (size_t w = 0; w < sizeof WORDS / sizeof *WORDS; w++)
+        if (strlen(WORDS[w]) == length && strncasecmp(WORDS[w], word, length) == 0)
+            memcpy(word, WORDS[w], length);
+}
+
+void plot_in_words(const char *name, char *out, size_t size) {
     snprintf(out, size, "%s", name);
-    for (; *out != '\0'; out++)
+    while (*out != '\0') {
+        size_t length = strcspn(out, "_ ");
+        capitals_set(out, length);
+        out += length;
         if (*out == '_')
             *out = ' ';
+        out += *out != '\0';
+    }
 }
 
 size_t plot_letters(const char *label) {

@@ -17,8 +17,9 @@ void svg_label(FILE *file, const char *label);
 const char *plot_symbol(const char *kind, const char *pointer);
 /* Returns the unit of such a parameter, or NULL. */
 const char *plot_unit(const char *kind, const char *pointer);
-/* Writes "summit density" of "summit_density". */
-void plot_spaced(const char *name, char *out, size_t size);
+/* Writes "summit density" of "summit_density", with the capitals of people and of abbreviations:
+ * "Persson light load", "height PDF". */
+void plot_in_words(const char *name, char *out, size_t size);
 /* Returns about how wide a label is, in letters. */
 size_t plot_letters(const char *label);
 

@@ -235,13 +235,28 @@ static void label_y(const struct case_table *table, const char *name, char label
         snprintf(label, LABEL_SIZE, "%.60s at %.60s = %.6g", column->unit, column->x_label,
                  column->x);
     else
-        plot_spaced(name, label, LABEL_SIZE);
+        plot_in_words(name, label, LABEL_SIZE);
 }
 
 static void label_x(const struct sweep *sweep, char label[LABEL_SIZE]) {
     const char *kind = sweep->table->study.kind, *unit = plot_unit(kind, sweep->x);
     snprintf(label, LABEL_SIZE, "%.60s%s%.40s%s", plot_symbol(kind, sweep->x),
              unit != NULL ? " (" : "", unit != NULL ? unit : "", unit != NULL ? ")" : "");
+}
+
+/* Writes "contact area (edges) over shape": the words of a column without its x, which the axis
+ * has, and the parameter. */
+static void make_subject(const struct sweep *sweep, const char *name, char subject[LABEL_SIZE]) {
+    size_t quantity = strcspn(name, ":@"), words = strcspn(name, "@");
+    bool chosen = words > quantity;
+    char text[LABEL_SIZE], shown[91], over[61];
+    snprintf(text, sizeof text, "%.*s%s%.*s%s", (int)quantity, name, chosen ? " (" : "",
+             chosen ? (int)(words - quantity - 1) : 0, name + quantity + chosen, chosen ? ")" : "");
+    for (char *at = text; (at = strchr(at, ':')) != NULL;)
+        *at = ' ';
+    plot_in_words(text, shown, sizeof shown);
+    plot_in_words(last_name(sweep->x), over, sizeof over);
+    snprintf(subject, LABEL_SIZE, "%s over %s", shown, over);
 }
 
 static int draw(struct sweep *sweep, const char *name, const struct plot_request *request,
@@ -258,7 +273,7 @@ static int draw(struct sweep *sweep, const char *name, const struct plot_request
         return status;
     label_x(sweep, x);
     label_y(sweep->table, name, y);
-    snprintf(subject, sizeof subject, "%.80s over %.60s", name, last_name(sweep->x));
+    make_subject(sweep, name, subject);
     if (sweep->left_out > 0)
         snprintf(left_out, sizeof left_out, "without a value: %zu %s", sweep->left_out,
                  sweep->left_out == 1 ? "case" : "cases");

@@ -46,11 +46,11 @@ static void plots_are_the_same_near_and_far(void **state) {
     static const struct {
         const char *query, *options[8], *word;
     } PLOTS[] = {
-        {"quantity=summit_density", {"--quantity", "summit_density"}, "summit_density over hurst"},
-        {"quantity=psd&case=1", {"--quantity", "psd", "--case", "1"}, "two: psd"},
+        {"quantity=summit_density", {"--quantity", "summit_density"}, "summit density over hurst"},
+        {"quantity=psd&case=1", {"--quantity", "psd", "--case", "1"}, "two: PSD"},
         {"quantity=summit_joint_pdf&case=1",
          {"--quantity", "summit_joint_pdf", "--case", "1"},
-         "summit_joint_pdf, case 1"},
+         "summit joint PDF, case 1"},
         {"quantity=summit_joint_pdf", {"--quantity", "summit_joint_pdf"}, "class=\"heat\""},
         {"quantity=psd&where=hurst=0.8&width=85",
          {"--quantity", "psd", "--where", "hurst=0.8", "--width", "85"},

@@ -242,7 +242,7 @@ static void a_picture_names_what_it_draws(void **state) {
         assert_int_equal(count_of(text, "class=\"bar\""), 4); /* a known error a finest curve */
         assert_int_equal(count_of(text, "class=\"mark\""), 4 * 2 + 4); /* finest; legend */
         assert_int_equal(count_of(text, "class=\"theory\""), 2); /* shared: once, and its legend */
-        assert_int_equal(count_of(text, ">theory: persson<"), 1);
+        assert_int_equal(count_of(text, ">theory: Persson<"), 1);
         assert_int_equal(count_of(text, ">level 12<"), 1);
         assert_int_equal(count_of(text, ">nodes<"), 1);
         assert_int_equal(count_of(text, "shown: without brackets"), 1);
@@ -256,7 +256,7 @@ static void a_picture_names_what_it_draws(void **state) {
     study.cases[0].curves[0].theories[0].y = (const double[]){0.15, 0.25};
     char *text = picture_of(&study, &AREA);
     assert_int_equal(count_of(text, "class=\"theory\""), 3);
-    assert_int_equal(count_of(text, "theory: persson, of each"), 1);
+    assert_int_equal(count_of(text, "theory: Persson, of each"), 1);
     free(text);
     study_result_clear(&study);
 }
@@ -326,7 +326,7 @@ static void many_cases_are_panels(void **state) {
     assert_int_equal(count_of(text, "<g class=\"panel\">"), 2);
     assert_int_equal(count_of(text, "class=\"curve\""), 20 + 5 + 2);
     assert_int_equal(count_of(text, ">H = 0.3<"), 1);
-    assert_int_equal(count_of(text, ">weibull min<"), 1);
+    assert_int_equal(count_of(text, ">Weibull min<"), 1);
     assert_int_equal(count_of(text, "</tspan> 16</text>"), 1); /* of a panel alone */
     assert_int_equal(count_of(text, "class=\"end\">0.2</text>"), 1);
     assert_int_equal(count_of(text, "class=\"middle\">0.2</text>"), 2);
@@ -375,7 +375,7 @@ static void differences_have_bands(void **state) {
         curve->minuend = curve->subtrahend = curve->y;
     }
     char *text = picture_of(&study, &AREA);
-    assert_int_equal(count_of(text, "contact_area, case 2 less case 0"), 2);
+    assert_int_equal(count_of(text, "contact area, case 2 less case 0"), 2);
     assert_int_equal(count_of(text, "class=\"band\""), 8);
     assert_int_equal(count_of(text, "class=\"bar\""), 0);
     assert_int_equal(count_of(text, ">bands: one standard error<"), 1);
@@ -521,8 +521,8 @@ static void pits_are_named_after_their_distribution(void **state) {
             add_curve(&study.cases[c], "summit_height_pdf", "pits", NULL, NAN, 0);
         }
         assert_int_equal(plot_lines_choose(&lines, &study, &request, &err), 0);
-        label_of(&lines, CHANNEL_DASH, 0, "summit height pdf");
-        label_of(&lines, CHANNEL_DASH, 1, mixed ? "pits" : "weibull max (as pits)");
+        label_of(&lines, CHANNEL_DASH, 0, "summit height PDF");
+        label_of(&lines, CHANNEL_DASH, 1, mixed ? "pits" : "Weibull max (as pits)");
         plot_lines_clear(&lines);
         request =
             (struct lines_request){.quantity = "summit_height_pdf", .series = "summit_height_pdf"};
@@ -532,8 +532,8 @@ static void pits_are_named_after_their_distribution(void **state) {
         plot_lines_clear(&lines);
         request.series = "pits";
         char *text = picture_of(&study, &(struct plot_request){.lines = request});
-        assert_int_equal(count_of(text, mixed ? "summit_height_pdf, pits"
-                                              : "summit_height_pdf, weibull max (as pits)"),
+        assert_int_equal(count_of(text, mixed ? "summit height PDF, pits"
+                                              : "summit height PDF, Weibull max (as pits)"),
                          2);
         free(text);
         study_result_clear(&study);

@@ -57,7 +57,7 @@ static void each_series_is_drawn(void **state) {
     fixture_make(&f);
     char *text = draw(&f.study, 0);
     assert_true(strncmp(text, "<svg ", 5) == 0 && strstr(text, "</svg>\n") != NULL);
-    assert_non_null(strstr(text, "a &amp; b: error of contact_area by cost"));
+    assert_non_null(strstr(text, "a &amp; b: error of contact area by cost"));
     assert_non_null(strstr(text, "halfspace, level 8, edges"));
     assert_non_null(strstr(text, "full, level 8, edges"));
     assert_null(strstr(text, "nodes")); /* reads the same solves */

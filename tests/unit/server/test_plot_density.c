@@ -77,7 +77,7 @@ static void levels_have_colours_and_theories_contours(void **state) {
     char *text = draw(&study, 0, &err);
     assert_int_equal(count_of(text, "class=\"heat\""), 2);
     assert_int_equal(count_of(text, "class=\"theory\""), 2); /* and its legend */
-    assert_int_equal(count_of(text, ">theory: nayak<"), 1);
+    assert_int_equal(count_of(text, ">theory: Nayak<"), 1);
     assert_int_equal(count_of(text, "theory: grid"), 0);
     assert_int_equal(count_of(text, ">0.1 to 0.2<"), 1);
     assert_int_equal(count_of(text, ">0.02 to 0.05<"), 1);

@@ -43,10 +43,31 @@ static void parameters_have_symbols(void **state) {
     assert_int_equal(plot_letters("lambda_s = 8"), strlen("l_s = 8"));
 }
 
+static void names_are_words(void **state) {
+    (void)state;
+    static const struct {
+        const char *name, *words;
+    } NAMES[] = {{"summit_height_pdf", "summit height PDF"},
+                 {"persson_light_load", "Persson light load"},
+                 {"gw_mccool", "GW McCool"},
+                 {"weibull_min", "Weibull min"},
+                 {"personal_pdfs", "personal pdfs"},
+                 {"_", " "},
+                 {"", ""}};
+    char words[40];
+    for (size_t n = 0; n < sizeof NAMES / sizeof *NAMES; n++) {
+        plot_in_words(NAMES[n].name, words, sizeof words);
+        assert_string_equal(words, NAMES[n].words);
+    }
+    plot_in_words("summit_height_pdf", words, sizeof "summit_hei");
+    assert_string_equal(words, "summit hei");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(labels_are_set),
         cmocka_unit_test(parameters_have_symbols),
+        cmocka_unit_test(names_are_words),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

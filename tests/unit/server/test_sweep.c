@@ -108,7 +108,7 @@ static void each_setting_is_a_line(void **state) {
     check_count(&study, &DENSITY, ">theory<", 1);
     check_count(&study, &DENSITY, "</tspan> 8</text>", 1);
     check_count(&study, &DENSITY, "</tspan> 16</text>", 1);
-    check_count(&study, &DENSITY, "a &amp; b: summit_density over hurst<", 2);
+    check_count(&study, &DENSITY, "a &amp; b: summit density over hurst<", 2);
     check_count(&study, &DENSITY, ">0.6</text>", 1); /* what was swept has the ticks */
     study.cases[0].scalars[0].theory = 9;
     check_count(&study, &DENSITY, "class=\"theory\"", 3);
@@ -186,7 +186,7 @@ static void what_is_left_out_is_told(void **state) {
     struct error err = {0};
     struct study_result study = study_of(20);
     const struct request by_hurst = {"summit_density", "hurst", NULL};
-    check_count(&study, &DENSITY, "over wavelength_ratio<", 2); /* which has more values */
+    check_count(&study, &DENSITY, "over wavelength ratio<", 2); /* which has more values */
     check_count(&study, &by_hurst, "class=\"curve\"", 20 + 7);  /* not all are named */
     check_count(&study, &by_hurst, "in between: of 20 values of ", 1);
     study_result_clear(&study);
