@@ -315,6 +315,8 @@ nightly: all
 	$(MAKE) slurm-test
 	$(MAKE) check-static
 	$(MAKE) BUILD=$(BUILD)-O2 CFLAGS=-O2 run-unit
+	-@tests/install-deps "" clang clang
+	! command -v clang >/dev/null || $(MAKE) BUILD=$(BUILD)-clang CC=clang CFLAGS=-O2 run-unit
 	$(MAKE) BUILD=$(BUILD)-address SAN=address,undefined run-unit
 	RUGO_EFFORT=4 $(MAKE) BUILD=$(BUILD)-address SAN=address,undefined run-faults
 	$(MAKE) BUILD=$(BUILD)-thread SAN=thread run-threads

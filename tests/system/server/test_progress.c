@@ -64,10 +64,10 @@ static int count_moves(char *text, int *seconds) {
  * is soon done is given more to do. */
 static void the_bar_moves(void **state) {
     (void)state;
-    enum { SECONDS_LEAST = 3, MOST = 20000 };
+    enum { SECONDS_LEAST = 2, MOST = 20000 };
     int status = -1, seconds = 0, moves = 0;
     spit("slow.json", STUDY);
-    for (int realisations = 20; seconds < SECONDS_LEAST; realisations *= 4) {
+    for (int realisations = 20; seconds < SECONDS_LEAST; realisations *= 2) {
         char all[80], *text = run_on_terminal(realisations, &status);
         assert_true(realisations < MOST);
         assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);

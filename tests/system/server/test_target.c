@@ -184,10 +184,10 @@ static void says_what_is_left(void **state) {
     (void)state;
     assert_int_equal(
         run_rugo("short",
-                 (const char *[]){"run", "--db", "short.db", "--set", "/target/error=0.0005",
+                 (const char *[]){"run", "--db", "short.db", "--set", "/target/error=0.002",
                                   "--set", "/target/max_seconds=0.2", "study.json", NULL}),
         0);
-    assert_true(read_number("short.db", "SELECT error_reached FROM study_progress") > 0.0005);
+    assert_true(read_number("short.db", "SELECT error_reached FROM study_progress") > 0.002);
     assert_true(contains("short.out", "Not reached"));
 }
 

@@ -13,7 +13,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { SEQUENCES = 800 }; /* times RUGO_EFFORT */
+enum { SEQUENCES = 400 }; /* times RUGO_EFFORT */
 
 /* --- what workers and people do; each changes the model, too, and compares the answers --- */
 

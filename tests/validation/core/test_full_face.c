@@ -7,6 +7,7 @@
 #include "core/surface/surface.h"
 #include "tests/support/block_volume.h"
 #include "tests/support/contact_scene.h"
+#include "tests/support/effort.h"
 
 static const struct grid GRIDS[] = {{128, 1, 1, 1}, {16, 16, 1, 1}, {16, 12, 1, 0.8}};
 
@@ -143,6 +144,8 @@ static void a_linear_model_knows_the_stretch(void **state) {
     static const double SLOPES[] = {0.01, 0.03, 0.1};
     static const struct grid FINE[] = {{256, 1, 1, 1}, {32, 32, 1, 1}, {24, 16, 1, 0.8}};
     for (size_t c = 0; c < 27; c++) {
+        if (c >= 9 && c / 3 % 3 == 1 && effort() == 1)
+            continue; /* surfaces of the slope between */
         struct pressed p;
         double poisson = MATERIALS[c % 3].poisson, slope = SLOPES[c / 3 % 3];
         struct block block = {.model = MODEL_LAYERED,

@@ -183,7 +183,7 @@ static void summit_figures(const struct surface_options *options, size_t surface
  * mean. */
 static void default_iteration_is_near_the_limit(void **state) {
     (void)state;
-    const size_t surfaces = 8 * (size_t)effort();
+    const size_t surfaces = 5 * (size_t)effort();
     double *limit = calloc(2 * surfaces * FIGURES, sizeof *limit);
     assert_non_null(limit);
     double *found = limit + surfaces * FIGURES;

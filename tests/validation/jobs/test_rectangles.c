@@ -217,8 +217,8 @@ static void contact_agrees_with_the_square(void **state) {
     static const struct {
         const char *quantity, *series;
     } CURVES[] = {{"contact_area", "edges"}, {"mean_gap", ""}};
-    cJSON *wide = contact(4, 2, "probed", 30), *high = contact(2, 4, "none", 30);
-    cJSON *square = contact(4, 4, "none", 15);
+    cJSON *wide = contact(4, 2, "probed", 20), *high = contact(2, 4, "none", 20);
+    cJSON *square = contact(4, 4, "none", 10);
     for (size_t c = 0; c < 2; c++)
         for (size_t m = 0; m < 2; m++) {
             const char *model = m == 0 ? "halfspace" : "layered";
