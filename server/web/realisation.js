@@ -7,6 +7,8 @@ import { chart } from "/web/chart.js";
 // Stops of the colour map inferno, dark to light, as in server/show/map/map_png.c.
 const STOPS = [[0, 0, 4], [40, 11, 84], [101, 21, 110], [159, 42, 99], [212, 72, 66], [245, 125, 21], [250, 193, 39], [252, 255, 164]];
 const SIDE = 512; // pixels of a map
+const UNITS = { pressure: " in E* h′" }; // heights and gaps are in units of the study
+const BLANK = { gap: "white where there is contact", pressure: "white where there is no contact" };
 
 /** Reads a little-endian npy of doubles (NumPy's format 1): {shape, values}. */
 export function readNpy(buffer) {
@@ -23,33 +25,27 @@ function colour(share) {
   return STOPS[below].map((a, k) => a + part * (STOPS[below + 1][k] - a));
 }
 
-const UNITS = { height: "", gap: "", pressure: " E* h′" };
-const BLANK = { gap: "contact", pressure: "no contact" }; // what a value of 0 is, which has no colour
-
-/** Draws a map of rows x columns; gaps and pressures of 0 are white, and the scale is that of the others. */
+/** Draws a map of rows x columns. Of gaps and pressures what is not above 0 is left out, and white, and the scale begins at the least of the rest. */
 function mapOf({ shape, values }, field) {
-  const [rows, columns] = shape, isBlank = (value) => field in BLANK && value === 0;
+  const [rows, columns] = shape, isBlank = (value) => field !== "height" && !(value > 0);
   let low = Infinity, high = -Infinity;
   for (const value of values) {
     if (isBlank(value)) continue;
     if (value < low) low = value;
     if (value > high) high = value;
   }
-  if (low > high) low = high = 0;
-  const canvas = make("canvas", { width: columns, height: rows, role: "img", "aria-label": `${field} of ${rows} by ${columns} points, from ${number(low)} to ${number(high)}` });
+  const about = `${field}${UNITS[field] ?? ""}`, ends = [low, high].map((value) => number(isFinite(value) ? value : null));
+  const canvas = make("canvas", { width: columns, height: rows, class: "map", role: "img", "aria-label": `${about}, ${rows} by ${columns} points, from ${ends[0]} to ${ends[1]}` });
   const context = canvas.getContext("2d"), image = context.createImageData(columns, rows);
-  for (let i = 0; i < values.length; i++) {
-    const [r, g, b] = colour(high > low ? (values[i] - low) / (high - low) : 0);
-    image.data.set(isBlank(values[i]) ? [255, 255, 255, 255] : [r, g, b, 255], 4 * i);
-  }
+  for (let i = 0; i < values.length; i++)
+    if (!isBlank(values[i])) image.data.set([...colour(high > low ? (values[i] - low) / (high - low) : 0), 255], 4 * i);
   context.putImageData(image, 0, 0);
-  canvas.className = "map";
   canvas.style.width = `${SIDE * Math.min(1, columns / rows)}px`;
   const scale = make("canvas", { width: 256, height: 1, class: "scale", "aria-hidden": "true" });
   const line = scale.getContext("2d").createImageData(256, 1);
   for (let i = 0; i < 256; i++) line.data.set([...colour(i / 255), 255], 4 * i);
   scale.getContext("2d").putImageData(line, 0, 0);
-  return make("figure", {}, canvas, make("figcaption", {}, `${field} from `, number(low), " ", scale, " to ", number(high), UNITS[field], field in BLANK ? [", ", make("span", { class: "blank" }), ` ${BLANK[field]}`] : ""));
+  return make("figure", {}, canvas, make("figcaption", { class: "tools" }, make("span", {}, about), make("span", { class: "ends" }, make("span", {}, ends[0]), scale, make("span", {}, ends[1])), BLANK[field] ? make("span", {}, BLANK[field]) : null));
 }
 
 export function showRealisation(root, signal, study, contents) {
@@ -71,7 +67,7 @@ export function showRealisation(root, signal, study, contents) {
       shown = null;
       if (map.shape.length === 1 || map.shape[0] === 1) {
         const y = Array.from(map.values);
-        shown = chart([{ label: state.field, x: y.map((_, i) => i), y, colour: "#0072b2" }], { xLabel: "point", yLabel: state.field });
+        shown = chart([{ label: state.field, x: y.map((_, i) => i), y, colour: "#0072b2" }], { xLabel: "point", yLabel: `${state.field} in ${UNITS[state.field]}` });
         place.replaceChildren(shown.element);
       } else place.replaceChildren(mapOf(map, state.field));
       const touching = state.field === "pressure" ? map.values.reduce((sum, p) => sum + (p > 0), 0) / map.values.length : null;

@@ -19,6 +19,9 @@ const STEEP = { name: "steep", kind: "contact", seed: 1, realisations: 2,
   contact: { model: "full", levels: [3, 6], block_height: { lengths: 1 }, pressures: { values: [5] } } };
 const TARGET = { name: "target", kind: "contact", seed: 1, target: { error: 0.02 }, surface: { dimension: 1, hurst: 0.8, wavelength_ratio: 2 },
   contact: { model: "halfspace", pressures: { values: [0.1, 0.2] } } };
+const PATCHES = { name: "patches", kind: "contact", seed: 1, realisations: 1,
+  surface: { dimension: 2, hurst: 0.8, wavelength_ratio: 4, length_ratio: 4, points_per_wavelength: 8 },
+  contact: { model: "halfspace", pressures: { values: [0.1] } } };
 const SWEEP = { name: "sweep", kind: "contact", seed: 1, realisations: 2,
   surface: { dimension: 1, hurst: [0.1, 0.3, 0.5, 0.7, 0.9], wavelength_ratio: [2, 3, 4, 5], length_ratio: [2, 3, 4], points_per_wavelength: 4 },
   contact: { model: "halfspace", pressures: { values: [0.1, 0.2, 0.3] } } };
@@ -86,6 +89,11 @@ test("a case without values is no plain success: state, curves and report say wh
   await page.goto(`${url}/#/study/${id}/report`);
   await page.waitForFunction(() => [...document.querySelectorAll("section li")].some((one) => one.textContent.includes("realisation 0: ")));
   await picture(page, "valueless-report");
+  await page.goto(`${url}/#/`);
+  const inList = await page.waitForSelector("tbody td.lacking");
+  assert.deepEqual(await inList.evaluate((one) => [one.textContent, one.title]), ["done, 1 case without values", study.valueless_note]);
+  assert.equal(await page.$("tbody td.done"), null, "no other study is there yet");
+  await picture(page, "valueless-list");
 });
 
 test("a target shows one error: in its state, in its sources by size, and where its picture stands", async (t) => {
@@ -103,6 +111,35 @@ test("a target shows one error: in its state, in its sources by size, and where 
   const svg = decodeURIComponent((await page.$eval("img.picture", (one) => one.src)).split(",").slice(1).join(","));
   assert.ok(!svg.includes("level nan"), "the legend has no level where there is none");
   await picture(page, "target");
+});
+
+test("pressures are white where there is no contact, beside a scale with ends and unit, in the dark too", async (t) => {
+  const { id } = await send(url, "POST", "/v1/studies", PATCHES);
+  await finished(url, id);
+  const page = await tab(t), scale = () => page.$$eval(".ends span", (all) => all.map((one) => Number(one.textContent)));
+  const open = () => page.$eval("canvas.map", (one) => {
+    const { data } = one.getContext("2d").getImageData(0, 0, one.width, one.height);
+    return data.filter((_, k) => k % 4 === 3 && data[k] === 0).length / (data.length / 4);
+  });
+  await page.goto(`${url}/#/study/${id}/realisation`);
+  await says(page, "height in λₛ");
+  assert.equal(await open(), 0);
+  await pick(page, "Field", "pressure");
+  await says(page, "% of the points are in contact");
+  await says(page, "pressure in E* h′");
+  const share = Number.parseFloat(await page.$eval("main p[role=status]:not(:empty)", (one) => one.textContent)) / 100;
+  assert.ok(Math.abs(1 - share - await open()) < 1e-3 && share > 0.05, `${share} in contact`);
+  const [low, high] = await scale();
+  assert.ok(low > 0 && low < high, `from ${low} to ${high}`);
+  await picture(page, "pressure");
+  await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: "dark" }]);
+  await page.setViewport({ width: 390, height: 844, isMobile: true });
+  await pick(page, "Field", "gap");
+  await says(page, "white where there is contact");
+  await pick(page, "Field", "pressure");
+  await says(page, "white where there is no contact");
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth) <= 390);
+  await picture(page, "pressure-dark");
 });
 
 test("a sweep of sixty cases is a picture with the choices of rugo plot, and a table to order and filter", async (t) => {

@@ -173,7 +173,7 @@ test("a study that asks for an error says what it has reached; who computed it, 
   const white = await page.$eval("canvas.map", (one) => {
     const { data } = one.getContext("2d").getImageData(0, 0, one.width, one.height);
     let count = 0;
-    for (let i = 0; i < data.length; i += 4) count += data[i] === 255 && data[i + 1] === 255 && data[i + 2] === 255 && data[i + 3] === 255;
+    for (let i = 0; i < data.length; i += 4) count += data[i + 3] === 0;
     return count / (one.width * one.height);
   });
   const touching = await page.$$eval("[role=status]", (all) => Number.parseFloat(all.map((one) => one.textContent).find((text) => text.includes("of the points"))) / 100);

@@ -11,6 +11,7 @@
 #include "server/command/map/map_output.h"
 #include "server/command/map/press_loads.h"
 #include "server/command/output_file.h"
+#include "server/show/map/map_png.h"
 #include "server/show/map/press_print.h"
 #include <stdlib.h>
 #include <string.h>
@@ -37,11 +38,28 @@ static int press_files_check(const struct press_paths *paths, struct error *err)
     return status;
 }
 
-static int write_map(const char *path, const char *name, const struct grid *grid,
-                     const double *values, struct error *err) {
+/* Draws pressures, blank where there is no contact. */
+static int draw_pressures(const char *path, const struct map_picture *labels,
+                          const struct grid *grid, const double *pressures, struct error *err) {
+    size_t size = grid_points(grid) * sizeof *pressures;
+    double *drawn = array_create(grid_points(grid), sizeof *drawn);
+    if (drawn == NULL)
+        return error_memory(err, size, "a picture");
+    memcpy(drawn, pressures, size);
+    map_blank_open(grid, drawn);
+    int status = map_output_write(path, labels, grid, drawn, err);
+    free(drawn);
+    return status;
+}
+
+/* Writes pressures where are_pressures holds, else a gap or the contact. */
+static int write_map(const char *path, const char *name, bool are_pressures,
+                     const struct grid *grid, const double *values, struct error *err) {
     const struct map_picture labels = {
         .name = name, .subject = "", .x_label = "x", .y_label = "y", .z_label = name};
-    return map_output_write(path, &labels, grid, values, err);
+    return are_pressures && map_output_is_picture(path)
+               ? draw_pressures(path, &labels, grid, values, err)
+               : map_output_write(path, &labels, grid, values, err);
 }
 
 static int write_mesh(const char *path, const struct nodal_step *step, struct error *err) {
@@ -66,7 +84,7 @@ static int write_last(const struct press_paths *paths, const struct nodal_step *
     snprintf(pressure, sizeof pressure, "pressure, %s", unit_name);
     for (size_t f = 0; f < sizeof list / sizeof *list && status == 0; f++)
         if (list[f] != NULL)
-            status = write_map(list[f], names[f], &step->grid, values[f], err);
+            status = write_map(list[f], names[f], f == 0, &step->grid, values[f], err);
     if (status == 0 && paths->mesh != NULL)
         status = write_mesh(paths->mesh, step, err);
     return status;

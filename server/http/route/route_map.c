@@ -149,20 +149,10 @@ static int find_case(struct exchange *exchange, const struct map_question *quest
     return status;
 }
 
-/* Leaves out of a picture what is 0: pressures where nothing touches, gaps where something does. */
-static void blank_zeros(size_t points, double *z) {
-    for (size_t i = 0; i < points; i++)
-        if (z[i] == 0)
-            z[i] = NAN;
-}
-
-/* Of a picture of gaps or pressures, z is changed. */
-static int write_map(const struct map_question *question, const struct grid *grid, double *z,
+static int write_map(const struct map_question *question, const struct grid *grid, const double *z,
                      struct memory_file *out, struct error *err) {
     if (!memory_file_open(out))
         return error_memory(err, 0, "a map");
-    if (question->png && question->field != MAP_HEIGHT)
-        blank_zeros(grid_points(grid), z);
     return question->png ? map_png(out->file, grid, z, err)
                          : height_map_write(out->file, HEIGHT_MAP_NPY, grid, z, err);
 }
@@ -182,6 +172,8 @@ static int send_map(struct exchange *exchange, const void *whole, const struct m
     int status = realisation_map(order, &grid, &z, err);
     if (status != 0)
         return status;
+    if (question->png && question->field == MAP_PRESSURE)
+        map_blank_open(&grid, z);
     status = write_map(question, &grid, z, &memory, err);
     free(z);
     size_t size = 0;

@@ -70,6 +70,15 @@ static void no_warning(png_structp png, png_const_charp text) {
     (void)text;
 }
 
+void map_blank_open(const struct grid *grid, double *pressures) {
+    size_t points = grid_points(grid);
+    if (grid_is_profile(grid) || !(range_of(points, pressures).high > 0))
+        return;
+    for (size_t i = 0; i < points; i++)
+        if (!(pressures[i] > 0))
+            pressures[i] = NAN;
+}
+
 int map_png(FILE *file, const struct grid *grid, const double *z, struct error *err) {
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, no_warning);
     png_infop info = png != NULL ? png_create_info_struct(png) : NULL;

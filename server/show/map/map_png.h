@@ -12,4 +12,9 @@
  * written. */
 int map_png(FILE *file, const struct grid *grid, const double *z, struct error *err);
 
+/* Makes NaN of the pressures of a surface where there is no contact, so that pictures leave these
+ * points blank and their scale begins at the least pressure of the contact. Profiles, which are
+ * drawn as lines, and pressures without any contact stay as they are. */
+void map_blank_open(const struct grid *grid, double *pressures);
+
 #endif

@@ -1,5 +1,6 @@
 /* Protects: the picture of a surface marks each of its summits at its position, shows the extremes
  * of a trace however many points it has, and says where it marks but the highest. */
+#include "server/show/map/map_png.h"
 #include "server/show/plot/plot_frame.h"
 #include "server/show/plot/plot_map.h"
 #include "tests/support/check.h"
@@ -204,6 +205,25 @@ static void flat_surfaces_are_drawn(void **state) {
     free(z);
 }
 
+/* What is open has no colour, and the scale begins at the contact; a lone pressure is drawn, too.
+ */
+static void pressures_are_blank_where_there_is_no_contact(void **state) {
+    (void)state;
+    const struct grid grid = {.nx = 4, .ny = 2, .lx = 4, .ly = 2},
+                      profile = {.nx = 4, .ny = 1, .lx = 4, .ly = 1};
+    double p[8] = {0, 3, 4, 0, 0, 5, 0, 0}, none[8] = {0}, line[4] = {0, 1, 0, 2};
+    map_blank_open(&grid, p);
+    for (size_t i = 0; i < 8; i++)
+        assert_int_equal(isnan(p[i]), i != 1 && i != 2 && i != 5);
+    char *text = draw_map(&grid, p, BOUNDARY_OPEN);
+    assert_int_equal(count_of(text, ">3<"), 1); /* at the scale, and at neither axis */
+    assert_int_equal(count_of(text, ">0<"), 2);
+    free(text);
+    map_blank_open(&grid, none);
+    map_blank_open(&profile, line);
+    assert_true(none[0] == 0 && line[0] == 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_trace_has_its_peaks),
@@ -213,6 +233,7 @@ int main(void) {
         cmocka_unit_test(open_maps_end_and_have_holes),
         cmocka_unit_test(flat_surfaces_are_drawn),
         cmocka_unit_test(next_to_flat_maps_are_drawn),
+        cmocka_unit_test(pressures_are_blank_where_there_is_no_contact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
