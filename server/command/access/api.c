@@ -170,6 +170,24 @@ int api_status(struct store *store, const char *id, cJSON **out, struct error *e
     return code;
 }
 
+/* Makes what the list has of a study: its progress, and how many cases of an ended one are without
+ * values. */
+static int list_entry(struct store *store, const struct study_status *study, cJSON *studies,
+                      struct error *err) {
+    struct valueless valueless = {0};
+    int status = has_ended(study) ? store_valueless(store, study->id, &valueless, err) : 0;
+    if (status == ERROR_ABSENT) /* it was deleted since it was listed */
+        return 0;
+    if (status != 0)
+        return status;
+    bool complete;
+    cJSON *entry = progress(study, &complete);
+    if (!list_put(studies, entry) || !complete || !put_valueless(entry, &valueless))
+        status = error_memory(err, 0, "a list of studies");
+    valueless_clear(&valueless);
+    return status;
+}
+
 int api_list(struct store *store, const char *after, size_t limit, cJSON **out, struct error *err) {
     struct study_status *list = NULL;
     size_t count = 0;
@@ -179,17 +197,18 @@ int api_list(struct store *store, const char *after, size_t limit, cJSON **out, 
     cJSON *document = cJSON_CreateObject();
     cJSON *studies = document != NULL ? cJSON_AddArrayToObject(document, "studies") : NULL;
     bool complete = studies != NULL;
-    for (size_t i = 0; i < count; i++) {
-        bool whole = false;
-        cJSON *entry = complete ? progress(&list[i], &whole) : NULL;
-        complete = complete && list_put(studies, entry) && whole;
-    }
+    for (size_t i = 0; complete && status == 0 && i < count; i++)
+        status = list_entry(store, &list[i], studies, err);
     /* A full page may have a next one. */
-    if (complete && count == limit)
+    if (complete && status == 0 && count == limit)
         complete = field_put(document, "next", cJSON_CreateString(list[count - 1].id));
     for (size_t i = 0; i < count; i++)
         study_status_clear(&list[i]);
     free(list);
+    if (status != 0) {
+        cJSON_Delete(document);
+        return status;
+    }
     return finish(document, complete, out, err);
 }
 
