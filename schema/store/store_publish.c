@@ -163,6 +163,14 @@ static int clear_case(const struct target *target, struct error *err) {
     return status;
 }
 
+/* Whether case ?2 of study ?1 has curves, and no value on any of them. */
+#define VALUELESS                                                                                  \
+    "EXISTS (SELECT 1 FROM curve WHERE study_id = ?1 AND case_number = ?2) AND NOT EXISTS "        \
+    "(SELECT "                                                                                     \
+    "1 FROM curve c JOIN point t ON t.curve_id = c.id WHERE c.study_id = ?1 AND c.case_number = "  \
+    "?2 "                                                                                          \
+    "AND t.y IS NOT NULL)"
+
 /* The texts of a case that are published. */
 struct case_texts {
     uint64_t revision;
@@ -207,9 +215,9 @@ static int write_case(const struct target *target, const struct case_texts *text
     if (status == 0)
         status = store_run(target->store, err,
                            "INSERT OR REPLACE INTO published (study_id, case_number, revision, "
-                           "document, report, curves_seal, rows_seal, seal) VALUES (?1, ?2, ?3, "
-                           "?4, ?5, " CURVES_SEAL ", " ROWS_SEAL
-                           ", seal_of(?1, ?2, ?3, ?4, ?5, " CURVES_SEAL "))",
+                           "document, report, curves_seal, rows_seal, seal, valueless) VALUES (?1, "
+                           "?2, ?3, ?4, ?5, " CURVES_SEAL ", " ROWS_SEAL
+                           ", seal_of(?1, ?2, ?3, ?4, ?5, " CURVES_SEAL "), " VALUELESS ")",
                            "iiitt", target->study, target->case_number, (int64_t)texts->revision,
                            texts->document, texts->report);
     return status;

@@ -213,11 +213,7 @@ int store_cost(struct store *store, const char *study, uint64_t case_number, str
 /* Cases that were computed without any value of any realisation. */
 
 /* Cases of study ?1 that have curves, and no value on any of them. */
-#define WITHOUT_VALUES                                                                             \
-    "FROM published p WHERE p.study_id = ?1 AND EXISTS (SELECT 1 FROM curve c WHERE c.study_id = " \
-    "p.study_id AND c.case_number = p.case_number) AND NOT EXISTS (SELECT 1 FROM curve c JOIN "    \
-    "point t ON t.curve_id = c.id WHERE c.study_id = p.study_id AND c.case_number = "              \
-    "p.case_number AND t.y IS NOT NULL)"
+#define WITHOUT_VALUES "FROM published p WHERE p.study_id = ?1 AND p.valueless"
 
 /* Reads the first note of the first such case. */
 static int read_first(struct store *store, int64_t study, struct valueless *out,

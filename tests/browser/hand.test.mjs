@@ -122,7 +122,7 @@ test("pressures are white where there is no contact, beside a scale with ends an
     return data.filter((_, k) => k % 4 === 3 && data[k] === 0).length / (data.length / 4);
   });
   await page.goto(`${url}/#/study/${id}/realisation`);
-  await says(page, "height in λₛ");
+  await page.waitForSelector("canvas.map");
   assert.equal(await open(), 0);
   await pick(page, "Field", "pressure");
   await says(page, "% of the points are in contact");
