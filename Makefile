@@ -47,10 +47,10 @@ COMPILE  = $(CC) $(WARN) $(CPPFLAGS) $(CFLAGS) $(NEEDED)
 LINK     = $(CC) $(CFLAGS) $(LDFLAGS) -pthread $(TESTED)
 LIBS_library = -lcholmod -lfftw3 -lgsl -lgslcblas -lm
 LIBS_core   = -lzip -lexpat -lnettle $(LIBS_library)
-LIBS_schema = -lcjson -lsqlite3 $(LIBS_core)
+LIBS_schema = -lcjson -lsqlite3 -lz $(LIBS_core)
 LIBS_jobs   = $(LIBS_schema)
 LIBS_worker = -lcurl $(LIBS_jobs)
-LIBS_server = -lmicrohttpd -lgnutls -lpng -lz $(LIBS_worker)
+LIBS_server = -lmicrohttpd -lgnutls -lpng $(LIBS_worker)
 
 # Files linked in as data: _binary_<path with underscores>_start and _end.
 embedded = $(filter %.html %.js %.css %.yaml %.py,$(wildcard $(addprefix $(1)/,web/* web/vendor/* http/* python/rugo/client.py)))

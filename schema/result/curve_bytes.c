@@ -7,7 +7,7 @@
 
 /* Marks of the parts of a curve. Lists of named parts end with PART_END, so that older bytes stay
  * readable when a table of attributes or sources gets another row. */
-enum { FORMAT_CURVE = 0x4355, FORMAT_VERSION = 1, TEXT_MOST = 4096 };
+enum { FORMAT_CURVE = 0x4355, FORMAT_CURVES = 0x4353, FORMAT_VERSION = 1, TEXT_MOST = 4096 };
 enum part {
     PART_END,
     PART_TEXT,
@@ -108,20 +108,28 @@ static void put_parts(struct bytes *bytes, const struct curve *curve) {
     bytes_put_unsigned(bytes, PART_END);
 }
 
-int curve_encode(const struct curve *curve, unsigned char **data, size_t *size, struct error *err) {
+static void put_curve(struct bytes *bytes, const struct curve *curve) {
+    put_text(bytes, curve->quantity);
+    put_text(bytes, curve->x_label);
+    put_text(bytes, curve->y_label);
+    put_attributes(bytes, curve);
+    put_values(bytes, curve);
+    put_parts(bytes, curve);
+}
+
+int curves_encode(const struct curve *curves, size_t count, unsigned char **data, size_t *size,
+                  struct error *err) {
     struct bytes bytes = {0};
-    bytes_put_unsigned(&bytes, FORMAT_CURVE);
+    bytes_put_unsigned(&bytes, count == 1 ? FORMAT_CURVE : FORMAT_CURVES);
     bytes_put_unsigned(&bytes, FORMAT_VERSION);
-    put_text(&bytes, curve->quantity);
-    put_text(&bytes, curve->x_label);
-    put_text(&bytes, curve->y_label);
-    put_attributes(&bytes, curve);
-    put_values(&bytes, curve);
-    put_parts(&bytes, curve);
+    if (count != 1)
+        bytes_put_unsigned(&bytes, count);
+    for (size_t a = 0; a < count; a++)
+        put_curve(&bytes, &curves[a]);
     bytes_put_checksum(&bytes);
     if (bytes.failed) {
         bytes_clear(&bytes);
-        return error_memory(err, bytes.capacity, "a curve");
+        return error_memory(err, bytes.capacity, "curves");
     }
     *data = bytes.data;
     *size = bytes.size;
@@ -134,6 +142,7 @@ int curve_encode(const struct curve *curve, unsigned char **data, size_t *size, 
 struct decoding {
     struct byte_reader reader;
     struct case_result *result;
+    size_t size; /* of all bytes */
     bool no_memory;
 };
 
@@ -285,23 +294,38 @@ static void get_parts(struct decoding *decoding, struct curve *curve) {
     }
 }
 
-int curve_decode(struct case_result *result, const unsigned char *data, size_t size,
-                 struct error *err) {
-    struct decoding decoding = {bytes_open(data, size), result, false};
+/* last: nothing may follow. */
+static int decode_curve(struct decoding *decoding, bool last, struct error *err) {
+    const struct byte_reader *reader = &decoding->reader;
     struct curve curve = {0};
+    curve.quantity = get_text(decoding);
+    curve.x_label = get_text(decoding);
+    curve.y_label = get_text(decoding);
+    get_attributes(decoding, &curve);
+    get_values(decoding, &curve);
+    get_parts(decoding, &curve);
+    if (decoding->no_memory)
+        return error_memory(err, decoding->size, "a curve");
+    if (reader->failed || curve.series == NULL || (last && reader->at != reader->end))
+        return error_set(err, ERROR_INPUT, "a stored curve is damaged");
+    return result_add_curve(decoding->result, &curve, err);
+}
+
+int curves_decode(struct case_result *result, const unsigned char *data, size_t size,
+                  struct error *err) {
+    struct decoding decoding = {bytes_open(data, size), result, size, false};
     uint64_t format = bytes_get_unsigned(&decoding.reader);
     uint64_t version = bytes_get_unsigned(&decoding.reader);
-    if (format != FORMAT_CURVE || version != FORMAT_VERSION)
+    uint64_t count = format == FORMAT_CURVES ? bytes_get_unsigned(&decoding.reader) : 1;
+    size_t before = result->curve_count;
+    int status = 0;
+    if ((format != FORMAT_CURVE && format != FORMAT_CURVES) || version != FORMAT_VERSION ||
+        count == 0)
         decoding.reader.failed = true;
-    curve.quantity = get_text(&decoding);
-    curve.x_label = get_text(&decoding);
-    curve.y_label = get_text(&decoding);
-    get_attributes(&decoding, &curve);
-    get_values(&decoding, &curve);
-    get_parts(&decoding, &curve);
-    if (decoding.no_memory)
-        return error_memory(err, size, "a curve");
-    if (decoding.reader.failed || decoding.reader.at != decoding.reader.end || curve.series == NULL)
-        return error_set(err, ERROR_INPUT, "a stored curve is damaged");
-    return result_add_curve(result, &curve, err);
+    do
+        status = decode_curve(&decoding, count <= 1, err);
+    while (status == 0 && --count > 0);
+    if (status != 0)
+        result->curve_count = before;
+    return status;
 }

@@ -15,6 +15,7 @@
 
 #include "schema/program.h"
 #include "schema/result/block_result.h"
+#include "schema/result/packed_bytes.h"
 #include "schema/result/report.h"
 #include "schema/result/work_time.h"
 #include "schema/study/study.h"
@@ -199,12 +200,14 @@ int store_share(struct store *store, const char *owner, double weight, struct er
 int store_heartbeat(struct store *store, int64_t job, const char *token, uint64_t done,
                     struct error *err);
 
-/* Names and scalars as they are stored. A thread that queues results for the one writer makes them
- * beforehand; store_complete makes those of a result without. */
+/* A block as it is stored. A thread that queues results for the one writer makes it beforehand;
+ * store_complete makes that of a result without. */
 struct block_text {
-    char *names, *scalars; /* owned */
-    int64_t seal;          /* checksum of the block with these (store_seal.h) */
+    char *names, *scalars;    /* owned */
+    struct packed_bytes data; /* borrows the result's where it is not packed */
+    int64_t seal;             /* checksum of these (store_seal.h) */
 };
+/* Makes *out, to be cleared before the result is. */
 int block_text_create(struct block_text *out, const struct block_result *result, struct error *err);
 void block_text_clear(struct block_text *text);
 

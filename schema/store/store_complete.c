@@ -56,11 +56,17 @@ static char *names_text(const struct block_result *result) {
 int block_text_create(struct block_text *out, const struct block_result *result,
                       struct error *err) {
     struct block_text text = {.names = names_text(result), .scalars = scalars_text(result)};
-    if (text.names == NULL || text.scalars == NULL) {
+    struct block_result stored = *result;
+    int status = text.names != NULL && text.scalars != NULL
+                     ? bytes_pack(&text.data, result->data, result->size, PACKED_LEAST, err)
+                     : error_memory(err, result->size, "a result");
+    if (status != 0) {
         block_text_clear(&text);
-        return error_memory(err, result->size, "a result");
+        return status;
     }
-    text.seal = block_seal(result, text.names, text.scalars);
+    stored.data = text.data.data;
+    stored.size = text.data.size;
+    text.seal = block_seal(&stored, text.names, text.scalars);
     *out = text;
     return 0;
 }
@@ -68,6 +74,7 @@ int block_text_create(struct block_text *out, const struct block_result *result,
 void block_text_clear(struct block_text *text) {
     free(text->names);
     free(text->scalars);
+    packed_bytes_clear(&text->data);
     *text = (struct block_text){0};
 }
 
@@ -85,15 +92,14 @@ static int names_row(struct store *store, const char *names, int64_t *id, struct
 }
 
 static int insert_result(struct store *store, const struct job_row *job,
-                         const struct block_result *result, const struct block_text *text,
-                         struct error *err) {
+                         const struct block_text *text, struct error *err) {
     int64_t names = 0;
     int status = names_row(store, text->names, &names, err);
     if (status == 0)
         status = store_run(
             store, err,
             "INSERT INTO result (job_id, names_id, scalars, data, seal) VALUES (?, ?, ?, ?, ?)",
-            "iitbi", job->id, names, text->scalars, (const void *)result->data, result->size,
+            "iitbi", job->id, names, text->scalars, (const void *)text->data.data, text->data.size,
             text->seal);
     return status;
 }
@@ -181,7 +187,7 @@ static int queue_rest(struct store *store, const struct job_row *job,
 static int job_complete(struct store *store, const struct job_row *job,
                         const struct block_result *result, const struct block_text *text,
                         int64_t *left, struct error *err) {
-    int status = insert_result(store, job, result, text, err);
+    int status = insert_result(store, job, text, err);
     if (status == 0 && (int64_t)result->count < job->count)
         status = queue_rest(store, job, result, err);
     if (status == 0)

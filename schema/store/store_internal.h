@@ -76,7 +76,8 @@ const char *store_time(struct store *store);
 char *column_copy(sqlite3_stmt *statement, int column); /* "" for NULL; NULL out of memory */
 /* Reads whether the cases of the study share their random numbers. */
 enum study_random column_random(sqlite3_stmt *row, int column);
-/* Reads a JSON text that this program stored, whatever its size; the caller deletes *out. */
+/* Reads a JSON text that this program stored, whatever its size, or packed (a BLOB); the caller
+ * deletes *out. */
 int column_json(sqlite3_stmt *row, int column, cJSON **out, struct error *err);
 
 /* The studies that queries leave out. */

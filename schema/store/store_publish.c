@@ -2,6 +2,7 @@
  * JSON. */
 #include "core/memory_file.h"
 #include "schema/result/curve_bytes.h"
+#include "schema/result/packed_bytes.h"
 #include "schema/result/result_json.h"
 #include "schema/result/total.h"
 #include "schema/store/store_internal.h"
@@ -9,6 +10,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 struct target {
     struct store *store;
@@ -125,27 +127,74 @@ static int insert_realisations(const struct target *target, int64_t row, const s
     return status;
 }
 
-static int insert_curve(const struct target *target, const struct curve *curve, struct error *err) {
-    sqlite3_stmt *statement = NULL;
+/* Curves of one quantity, one after the other, share their x and more, and are packed together. In
+ * all of them at most about so many numbers, far more than deflate looks back. */
+enum { GROUP_NUMBERS = 1 << 16 };
+/* The least bytes that are packed: fewer of curves are hardly made fewer. */
+enum { GROUP_LEAST = 2048, REPORT_LEAST = 1024 };
+
+/* Returns how many of the curves are stored together, in the row of the first. */
+static size_t group_size(const struct curve *curves, size_t count) {
+    size_t size = 1, numbers = curve_value_count(&curves[0]);
+    while (size < count && numbers < GROUP_NUMBERS &&
+           strcmp(curves[size].quantity, curves[0].quantity) == 0)
+        numbers += curve_value_count(&curves[size++]);
+    return size;
+}
+
+static int group_bytes(const struct curve *curves, size_t count, struct packed_bytes *out,
+                       struct error *err) {
     unsigned char *data = NULL;
     size_t size = 0;
-    int status = curve_encode(curve, &data, &size, err);
+    int status = curves_encode(curves, count, &data, &size, err);
     if (status == 0)
-        status =
-            store_query(target->store, &statement, err,
-                        "INSERT INTO curve (study_id, case_number, quantity, series, model, "
-                        "kinematics, level, pressure, data) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
-                        "iittttddb", target->study, target->case_number, curve->quantity,
-                        curve->series, curve->model, curve->kinematics, curve->level,
-                        curve->pressure, (const void *)data, size);
+        status = bytes_pack(out, data, size, GROUP_LEAST, err);
+    if (status == 0 && out->owned == NULL)
+        out->owned = data;
+    else
+        free(data);
+    return status;
+}
+
+/* data: NULL for a curve that is stored in the row of another. */
+static int insert_curve(const struct target *target, const struct curve *curve,
+                        const struct packed_bytes *data, struct error *err) {
+    sqlite3_stmt *statement = NULL;
+    int status = store_query(
+        target->store, &statement, err,
+        "INSERT INTO curve (study_id, case_number, quantity, series, model, kinematics, level, "
+        "pressure, data) VALUES (?, ?, ?, ?, ?, ?, ?, ?, iif(?10, ?9, NULL))",
+        "iittttddbi", target->study, target->case_number, curve->quantity, curve->series,
+        curve->model, curve->kinematics, curve->level, curve->pressure, (const void *)data->data,
+        data->size, (int64_t)(data->data != NULL));
     if (status == 0)
         status = run_bound(target->store, statement, err);
-    free(data);
     if (status != 0)
         return status;
     int64_t row = sqlite3_last_insert_rowid(target->store->db);
     status = insert_points(target->store, row, curve, err);
     return status != 0 ? status : insert_realisations(target, row, curve, err);
+}
+
+static int insert_group(const struct target *target, const struct curve *curves, size_t count,
+                        struct error *err) {
+    struct packed_bytes data = {0};
+    const struct packed_bytes none = {0};
+    int status = group_bytes(curves, count, &data, err);
+    for (size_t a = 0; a < count && status == 0; a++)
+        status = insert_curve(target, &curves[a], a == 0 ? &data : &none, err);
+    packed_bytes_clear(&data);
+    return status;
+}
+
+static int insert_curves(const struct target *target, const struct case_result *result,
+                         struct error *err) {
+    int status = 0;
+    for (size_t a = 0, size; a < result->curve_count && status == 0; a += size) {
+        size = group_size(&result->curves[a], result->curve_count - a);
+        status = insert_group(target, &result->curves[a], size, err);
+    }
+    return status;
 }
 
 static int clear_case(const struct target *target, struct error *err) {
@@ -204,22 +253,37 @@ static int case_texts_print(struct case_texts *out, struct error *err) {
                : error_set(err, ERROR_MEMORY, "no memory left to publish a case");
 }
 
+/* A report below its bound, or that is not made smaller, is a TEXT; a packed one is a BLOB. */
+static int insert_published(const struct target *target, const struct case_texts *texts,
+                            struct error *err) {
+    static const char SQL[] =
+        "INSERT OR REPLACE INTO published (study_id, case_number, revision, document, report, "
+        "curves_seal, rows_seal, seal, valueless) VALUES (?1, ?2, ?3, ?4, ?5, " CURVES_SEAL
+        ", " ROWS_SEAL ", seal_of(?1, ?2, ?3, ?4, ?5, " CURVES_SEAL "), " VALUELESS ")";
+    struct packed_bytes report = {0};
+    int status = bytes_pack(&report, texts->report, strlen(texts->report), REPORT_LEAST, err);
+    if (status == 0)
+        status =
+            report.owned != NULL
+                ? store_run(target->store, err, SQL, "iiitb", target->study, target->case_number,
+                            (int64_t)texts->revision, texts->document, (const void *)report.data,
+                            report.size)
+                : store_run(target->store, err, SQL, "iiitt", target->study, target->case_number,
+                            (int64_t)texts->revision, texts->document, texts->report);
+    packed_bytes_clear(&report);
+    return status;
+}
+
 static int write_case(const struct target *target, const struct case_texts *texts,
                       struct error *err) {
     const struct case_result *result = texts->result;
     int status = clear_case(target, err);
     for (size_t s = 0; s < result->scalar_count && status == 0; s++)
         status = insert_scalar(target, &result->scalars[s], err);
-    for (size_t a = 0; a < result->curve_count && status == 0; a++)
-        status = insert_curve(target, &result->curves[a], err);
     if (status == 0)
-        status = store_run(target->store, err,
-                           "INSERT OR REPLACE INTO published (study_id, case_number, revision, "
-                           "document, report, curves_seal, rows_seal, seal, valueless) VALUES (?1, "
-                           "?2, ?3, ?4, ?5, " CURVES_SEAL ", " ROWS_SEAL
-                           ", seal_of(?1, ?2, ?3, ?4, ?5, " CURVES_SEAL "), " VALUELESS ")",
-                           "iiitt", target->study, target->case_number, (int64_t)texts->revision,
-                           texts->document, texts->report);
+        status = insert_curves(target, result, err);
+    if (status == 0)
+        status = insert_published(target, texts, err);
     return status;
 }
 

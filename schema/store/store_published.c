@@ -5,21 +5,38 @@
 #include <stdio.h>
 #include <string.h>
 
+static int read_group(struct case_result *result, const void *data, size_t size,
+                      struct error *err) {
+    struct packed_bytes bytes = {0};
+    int status = bytes_unpack(&bytes, data, size, err);
+    if (status == 0)
+        status = curves_decode(result, bytes.data, bytes.size, err);
+    packed_bytes_clear(&bytes);
+    return status;
+}
+
 /* Reads the curves of a case, all or those of a quantity, in the order in which they were
- * published. */
+ * published. The row of one may have several of its quantity; theirs have no bytes then. */
 static int read_curves(struct store *store, int64_t study, uint64_t case_number,
                        const char *quantity, struct case_result *result, struct error *err) {
     sqlite3_stmt *row = NULL;
+    size_t rows = 0, before = result->curve_count;
     int status = store_query(store, &row, err,
                              "SELECT data FROM curve WHERE study_id = ?1 AND case_number = ?2 AND "
                              "(?3 IS NULL OR quantity = ?3) ORDER BY id",
                              "iit", study, (int64_t)case_number, quantity);
     while (status == 0 && (status = store_step(store, row, err)) == 1) {
-        status = curve_decode(result, sqlite3_column_blob(row, 0),
-                              (size_t)sqlite3_column_bytes(row, 0), err);
+        status = 0;
+        if (sqlite3_column_type(row, 0) != SQLITE_NULL)
+            status = read_group(result, sqlite3_column_blob(row, 0),
+                                (size_t)sqlite3_column_bytes(row, 0), err);
         if (status != 0)
             sqlite3_reset(row);
+        rows++;
     }
+    if (status == 0 && result->curve_count - before != rows)
+        return error_set(err, ERROR_INPUT, "%zu curves instead of %zu",
+                         result->curve_count - before, rows);
     return status;
 }
 

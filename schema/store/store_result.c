@@ -70,11 +70,13 @@ int store_case(struct store *store, const char *study, uint64_t case_number, str
 
 struct stored_block {
     cJSON *names, *rows;
+    struct packed_bytes data; /* unpacked */
 };
 
 static void stored_block_clear(struct stored_block *block) {
     cJSON_Delete(block->names);
     cJSON_Delete(block->rows);
+    packed_bytes_clear(&block->data);
 }
 
 static int fill_scalars(const struct stored_block *block, struct block_result *out,
@@ -105,7 +107,8 @@ static double column_number(sqlite3_stmt *row, int column) {
                                                            : sqlite3_column_double(row, column);
 }
 
-/* Compares the checksum of a block with its contents; a block of an older program has none. */
+/* Compares the checksum of a block with what is stored of it, before that is unpacked; a block of
+ * an older program has none. */
 static int check_checksum(sqlite3_stmt *row, const struct block_result *result, struct error *err) {
     const char *names = (const char *)sqlite3_column_text(row, 2);
     const char *scalars = (const char *)sqlite3_column_text(row, 3);
@@ -130,6 +133,12 @@ static int read_block(sqlite3_stmt *row, struct stored_block *block, struct bloc
                                     .seconds = sqlite3_column_double(row, 5),
                                     .cpu_seconds = column_number(row, 6)};
     int status = check_checksum(row, result, err);
+    if (status == 0 && (status = bytes_unpack(&block->data, result->data, result->size, err)) != 0)
+        error_context(err, "the stored result of realisations %llu to %llu",
+                      (unsigned long long)result->first,
+                      (unsigned long long)(result->first + result->count - 1));
+    result->data = block->data.data;
+    result->size = block->data.size;
     if (status == 0)
         status = column_json(row, 2, &block->names, err);
     if (status == 0)
@@ -161,7 +170,7 @@ int store_results(struct store *store, const char *study, uint64_t case_number, 
         status = read_block(row, &block, &result, err);
         if (status == 0)
             status = visit(context, &result, err);
-        result.data = NULL; /* belongs to the row */
+        result.data = NULL; /* belongs to the row, or to `block` */
         block_result_clear(&result);
         stored_block_clear(&block);
         if (status != 0)

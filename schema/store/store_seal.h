@@ -55,7 +55,7 @@ int seal_functions(struct store *store, struct error *err);
                                           "kinematics, level, pressure, data) FROM "               \
                                           "curve WHERE study_id = ?1 AND case_number = ?2))"
 
-/* Returns the checksum of a block as it is stored; texts as block_text has them. */
+/* Returns the checksum of a block as it is stored: data and texts as block_text has them. */
 int64_t block_seal(const struct block_result *result, const char *names, const char *scalars);
 /* Sets the checksums of the cases of a study that have none. */
 int cases_seal(struct store *store, int64_t study, struct error *err);

@@ -66,12 +66,16 @@ enum study_random column_random(sqlite3_stmt *row, int column) {
 
 int column_json(sqlite3_stmt *row, int column, cJSON **out, struct error *err) {
     static const struct json_limits limits = {.bytes = SIZE_MAX, .depth = 32, .values = SIZE_MAX};
+    bool packed = sqlite3_column_type(row, column) == SQLITE_BLOB;
     bool held = sqlite3_column_type(row, column) != SQLITE_NULL;
-    const char *text = (const char *)sqlite3_column_text(row, column);
-    size_t size = (size_t)sqlite3_column_bytes(row, column);
-    if (held && text == NULL)
+    const void *data = packed ? sqlite3_column_blob(row, column) : sqlite3_column_text(row, column);
+    struct packed_bytes text = {data, (size_t)sqlite3_column_bytes(row, column), NULL};
+    if (held && data == NULL)
         return error_set(err, ERROR_MEMORY, "no memory left to read a document of the database");
-    int status = json_parse(text != NULL ? text : "", size, &limits, out, err);
+    int status = packed ? bytes_unpack(&text, data, text.size, err) : 0;
+    if (status == 0)
+        status = json_parse(held ? (const char *)text.data : "", text.size, &limits, out, err);
+    packed_bytes_clear(&text);
     return status != 0 ? error_context(err, "the database holds malformed JSON") : 0;
 }
 

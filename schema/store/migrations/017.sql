@@ -6,12 +6,6 @@ ALTER TABLE scalar ADD COLUMN unknown_errors TEXT; -- sources that the totals le
 ALTER TABLE point ADD COLUMN total_low REAL;
 ALTER TABLE point ADD COLUMN total_high REAL;
 ALTER TABLE point ADD COLUMN unknown_errors TEXT;
-ALTER TABLE published ADD COLUMN valueless INTEGER NOT NULL DEFAULT 0; -- whether it has curves, and no value on any
-UPDATE published SET valueless = 1
-    WHERE EXISTS (SELECT 1 FROM curve c WHERE c.study_id = published.study_id AND c.case_number = published.case_number)
-      AND NOT EXISTS (SELECT 1 FROM curve c JOIN point t ON t.curve_id = c.id WHERE c.study_id = published.study_id
-                      AND c.case_number = published.case_number AND t.y IS NOT NULL);
-CREATE INDEX published_valueless ON published(study_id, case_number) WHERE valueless;
 
 DROP VIEW case_scalars;
 CREATE VIEW case_scalars AS

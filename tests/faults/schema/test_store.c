@@ -43,6 +43,7 @@ static int open_new(void *context, struct error *err) {
 static int complete_jobs(struct store_life *life, struct claimed_job *jobs, size_t count,
                          struct error *err) {
     static const char *const NAMES[] = {"a"};
+    static const unsigned char data[2 * PACKED_LEAST]; /* packed for the store */
     double scalars[20] = {1, NAN, 3};
     int status = 0;
     for (size_t n = 0; n < count && status == 0; n++) {
@@ -51,8 +52,8 @@ static int complete_jobs(struct store_life *life, struct claimed_job *jobs, size
                                       .scalar_count = 1,
                                       .names = NAMES,
                                       .scalars = scalars,
-                                      .data = (const unsigned char *)"data",
-                                      .size = 4,
+                                      .data = data,
+                                      .size = sizeof data,
                                       .seconds = 2};
         bool first = false, case_done = false;
         status = store_heartbeat(life->store, jobs[n].id, jobs[n].token, 1, err);

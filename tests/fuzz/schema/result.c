@@ -1,11 +1,12 @@
 /* Results as JSON: what is read prints, and reads and prints again the same; and as a table. Curves
  * of it as bytes: read back and written again the same. Other bytes are refused, or
- * written as what they mean. */
+ * written as what they mean. Packed bytes likewise, which never take more memory than they may. */
 #include "core/memory_file.h"
 #include "schema/json/json.h"
 #include "schema/result/bytes.h"
 #include "schema/result/csv.h"
 #include "schema/result/curve_bytes.h"
+#include "schema/result/packed_bytes.h"
 #include "schema/result/result_json.h"
 #include "tests/support/fuzz/fuzz.h"
 
@@ -34,11 +35,11 @@ static unsigned char *write_again(const unsigned char *data, size_t size, size_t
     struct case_result result = {0};
     struct error err = {0};
     unsigned char *again = NULL;
-    int status = curve_decode(&result, data, size, &err);
+    int status = curves_decode(&result, data, size, &err);
     MUST(status == 0 || status == ERROR_INPUT);
     if (status == 0) {
-        MUST(result.curve_count == 1);
-        MUST(curve_encode(&result.curves[0], &again, length, &err) == 0);
+        MUST(result.curve_count >= 1);
+        MUST(curves_encode(result.curves, result.curve_count, &again, length, &err) == 0);
     }
     result_clear(&result);
     return again;
@@ -67,7 +68,7 @@ static void read_text(const uint8_t *data, size_t size) {
         for (size_t c = 0; c < result.curve_count; c++) {
             unsigned char *bytes = NULL;
             size_t length = 0;
-            MUST(curve_encode(&result.curves[c], &bytes, &length, &err) == 0);
+            MUST(curves_encode(&result.curves[c], 1, &bytes, &length, &err) == 0);
             cross_curve(bytes, length);
             free(bytes);
         }
@@ -97,9 +98,35 @@ static void read_bytes(const uint8_t *data, size_t size) {
     free(sealed);
 }
 
+/* Whatever bytes are packed come back, packed ones too. */
+static void cross_packed(const unsigned char *data, size_t size) {
+    struct packed_bytes packed, again;
+    struct error err = {0};
+    MUST(bytes_pack(&packed, data, size, 0, &err) == 0);
+    MUST(bytes_unpack(&again, packed.data, packed.size, &err) == 0);
+    MUST(again.size == size && (size == 0 || memcmp(again.data, data, size) == 0));
+    packed_bytes_clear(&packed);
+    packed_bytes_clear(&again);
+}
+
+static void read_packed(const uint8_t *data, size_t size) {
+    struct packed_bytes bytes = {0};
+    struct error err = {0};
+    int status = bytes_unpack(&bytes, data, size, &err);
+    MUST(status == 0 || status == ERROR_INPUT);
+    MUST(status == 0 || err.text[0] != '\0');
+    MUST(bytes.owned == NULL || (bytes.size <= PACKED_MOST && bytes.size / 1032 <= size));
+    if (status == 0)
+        cross_packed(bytes.data, bytes.size);
+    packed_bytes_clear(&bytes);
+    cross_packed(data, size);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     if (size > 0 && *data == '{')
         read_text(data, size);
+    else if (size > 0 && *data == 0xfe)
+        read_packed(data, size);
     else if (size > 0)
         read_bytes(data + 1, size - 1);
     return 0;

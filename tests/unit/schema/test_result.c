@@ -141,8 +141,8 @@ static void bytes_come_back(void **state) {
     for (size_t a = 0; a < sample.curve_count; a++) {
         unsigned char *data = NULL;
         size_t size = 0;
-        assert_int_equal(curve_encode(&sample.curves[a], &data, &size, NULL), 0);
-        assert_int_equal(curve_decode(&again, data, size, NULL), 0);
+        assert_int_equal(curves_encode(&sample.curves[a], 1, &data, &size, NULL), 0);
+        assert_int_equal(curves_decode(&again, data, size, NULL), 0);
         free(data);
     }
     assert_int_equal(again.curve_count, 3);
@@ -171,7 +171,7 @@ static void unknown_sources_are_left_out(void **state) {
     unsigned char *data = NULL;
     size_t size = 0, renamed = 0;
     sample_result(&sample);
-    assert_int_equal(curve_encode(&sample.curves[2], &data, &size, NULL), 0);
+    assert_int_equal(curves_encode(&sample.curves[2], 1, &data, &size, NULL), 0);
     for (size_t a = 0; a + 14 < size; a++)
         if (memcmp(data + a, "discretisation", 14) == 0) {
             memcpy(data + a, "generation----", 14);
@@ -181,7 +181,7 @@ static void unknown_sources_are_left_out(void **state) {
     uint64_t checksum = hash_bytes(HASH_START, size - 8, data);
     for (size_t a = 0; a < 8; a++)
         data[size - 8 + a] = (unsigned char)(checksum >> 8 * a);
-    assert_int_equal(curve_decode(&again, data, size, NULL), 0);
+    assert_int_equal(curves_decode(&again, data, size, NULL), 0);
     assert_false(again.curves[0].errors[ERROR_DISCRETISATION].applies);
     assert_true(again.curves[0].errors[ERROR_MODEL].value[1] == -2);
     assert_memory_equal(again.curves[0].y, sample.curves[2].y, 2 * sizeof *again.curves[0].y);
@@ -198,12 +198,12 @@ static void damaged_bytes_are_refused(void **state) {
     unsigned char *data = NULL;
     size_t size = 0;
     sample_result(&sample);
-    assert_int_equal(curve_encode(&sample.curves[2], &data, &size, NULL), 0);
+    assert_int_equal(curves_encode(&sample.curves[2], 1, &data, &size, NULL), 0);
     for (size_t a = 0; a < size; a++) {
         data[a] ^= 0x10;
-        assert_int_equal(curve_decode(&again, data, size, NULL), ERROR_INPUT);
+        assert_int_equal(curves_decode(&again, data, size, NULL), ERROR_INPUT);
         data[a] ^= 0x10;
-        assert_int_equal(curve_decode(&again, data, a, NULL), ERROR_INPUT);
+        assert_int_equal(curves_decode(&again, data, a, NULL), ERROR_INPUT);
     }
     assert_int_equal(again.curve_count, 0);
     free(data);

@@ -64,7 +64,7 @@ static inline void print_results(FILE *file, const struct case_result *result) {
         struct error err = {0};
         unsigned char *bytes = NULL;
         size_t size = 0;
-        assert_int_equal(curve_encode(&result->curves[a], &bytes, &size, &err), 0);
+        assert_int_equal(curves_encode(&result->curves[a], 1, &bytes, &size, &err), 0);
         fprintf(file, "%s %s %llx\n", result->curves[a].quantity, result->curves[a].series,
                 (unsigned long long)hash_bytes(HASH_START, size, bytes));
         free(bytes);

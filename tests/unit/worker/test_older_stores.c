@@ -263,7 +263,8 @@ static int refuse_structure(void *context, const struct flaw *flaw, struct error
 /* Migrations make of each older store what they make of an empty one. */
 static void a_store_brought_up_is_like_a_new_one(void **state) {
     (void)state;
-    static const char *const FIXTURES[] = {"version-1.sql", "version-3.sql", "early-layout.sql"};
+    static const char *const FIXTURES[] = {"version-1.sql", "version-3.sql", "version-17.sql",
+                                           "early-layout.sql"};
     for (size_t f = 0; f < sizeof FIXTURES / sizeof *FIXTURES; f++) {
         const struct verification verification = {.found = refuse_structure};
         struct verify_report report = {0};
@@ -277,6 +278,70 @@ static void a_store_brought_up_is_like_a_new_one(void **state) {
         assert_true(report.counts.cases > 0);
         store_close(&store);
     }
+}
+
+static int refuse_flaw(void *context, const struct flaw *flaw, struct error *err) {
+    (void)context;
+    (void)err;
+    fail_msg("%s", flaw->text);
+    return 0;
+}
+
+/* The ordinates of the curves, a line each; the caller frees. */
+static char *ordinates(const struct case_result *result) {
+    char *text = calloc(1, ROWS_MOST);
+    size_t used = 0;
+    assert_non_null(text);
+    for (size_t a = 0; a < result->curve_count; a++)
+        for (size_t b = 0; b < result->curves[a].n && used < ROWS_MOST; b++)
+            used += (size_t)snprintf(text + used, ROWS_MOST - used, "%s %s %.12g\n",
+                                     result->curves[a].quantity, result->curves[a].series,
+                                     result->curves[a].y[b]);
+    assert_true(used < ROWS_MOST);
+    return text;
+}
+
+/* Blocks, curves and reports that are not packed, each curve by itself: their checksums match, and
+ * they are read as they were published, which the rows of the views have, too. */
+static void what_was_not_packed_is_read(void **state) {
+    (void)state;
+    static const char POINTS[] =
+        "SELECT quantity || ' ' || series || ' ' || iif(y IS NULL, 'nan', printf('%.12g', y)) FROM "
+        "point JOIN curve ON curve.id = curve_id WHERE ?1 IS NULL ORDER BY curve_id, number";
+    const struct verification verification = {.found = refuse_flaw};
+    const struct published_part all = {0};
+    struct verify_report report = {0};
+    struct case_result result = {0};
+    struct case_report about = {0};
+    struct case_info info;
+    struct store *store = NULL;
+    struct study_status *list = NULL;
+    struct error err = {0};
+    size_t count = 0;
+    bool found = false;
+    load("version-17.sql", "plain.db");
+    assert_int_equal(store_open(&store, "plain.db", NULL, &err), 0);
+    assert_int_equal(verify_store(store, &verification, true, &report, &err), 0);
+    assert_int_equal(report.counts.flaws, 0);
+    assert_int_equal(store_list(store, "", 10, &list, &count, &err), 0);
+    assert_int_equal(count, 1);
+    assert_int_equal(store_case(store, list[0].id, 0, &info, &err), 0);
+    assert_int_equal(
+        store_published(store, list[0].id, 0, info.revision, &all, &result, &found, &err), 0);
+    assert_true(found && result.curve_count > 10);
+    char *is = ordinates(&result), *was = rows_of("plain.db", POINTS, NULL);
+    assert_string_equal(is, was);
+    assert_int_equal(
+        store_published_report(store, list[0].id, 0, info.revision, &about, &found, &err), 0);
+    assert_true(found && about.curve_count == result.curve_count);
+    free(is);
+    free(was);
+    case_report_clear(&about);
+    result_clear(&result);
+    case_info_clear(&info);
+    study_status_clear(&list[0]);
+    free(list);
+    store_close(&store);
 }
 
 static void the_first_layout_is_refused(void **state) {
@@ -299,6 +364,7 @@ int main(void) {
         cmocka_unit_test(an_early_layout_is_mended),
         cmocka_unit_test(a_reader_reads_it),
         cmocka_unit_test(a_store_brought_up_is_like_a_new_one),
+        cmocka_unit_test(what_was_not_packed_is_read),
         cmocka_unit_test(the_first_layout_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
