@@ -1,5 +1,5 @@
-/* Curves as portable bytes with a checksum, in which the store keeps them; every number is exact. Of
- * theories that are made on demand (y NULL) only the name is kept. */
+/* Curves as portable bytes with a checksum, in which the store keeps them; every number is exact.
+ * Of theories that are made on demand (y NULL) only the name is kept. */
 #ifndef RUGO_SCHEMA_RESULT_CURVE_BYTES_H
 #define RUGO_SCHEMA_RESULT_CURVE_BYTES_H
 
