@@ -71,6 +71,23 @@ static int count_result(void *context, const struct block_result *result, struct
     return 0;
 }
 
+static int look_at_published(struct store *store, const char *id, uint64_t revision,
+                             struct error *err) {
+    const struct published_part all = {0};
+    struct case_result result = {0};
+    struct case_report report = {0};
+    bool found = false;
+    int status = store_published(store, id, 0, revision, &all, &result, &found, err);
+    if (status == 0) {
+        assert_true(found && result.curve_count == 1 && result.curves[0].theories[0].y != NULL);
+        status = store_published_report(store, id, 0, revision, &report, &found, err);
+        assert_true(status != 0 || found);
+    }
+    result_clear(&result);
+    case_report_clear(&report);
+    return status;
+}
+
 static int look(struct store_life *life, const char *id, struct error *err) {
     struct study_status status = {0};
     struct case_info info = {0};
@@ -83,6 +100,8 @@ static int look(struct store_life *life, const char *id, struct error *err) {
         result = store_cost(life->store, id, 0, &cost, err);
     if (result == 0)
         result = store_results(life->store, id, 0, count_result, &seen, err);
+    if (result == 0)
+        result = look_at_published(life->store, id, info.revision, err);
     if (result == 0) {
         assert_string_equal(status.state, "done");
         assert_int_equal(info.realisations_done, 20);
@@ -93,15 +112,30 @@ static int look(struct store_life *life, const char *id, struct error *err) {
     return result;
 }
 
-static int publish_empty(void *context, struct store *store, const struct due_case *due,
-                         struct error *err) {
-    const struct case_result empty = {.case_number = due->case_number};
+/* A curve whose bytes are packed, in one row of the views. */
+static int publish_matrix(void *context, struct store *store, const struct due_case *due,
+                          struct error *err) {
+    static const double x[20], theory[400], y[1], error[1];
+    static const uint32_t cells[1];
+    struct case_result result = {.case_number = due->case_number, .realisations = 20};
+    struct curve matrix = curve_named("joint", "z", "density");
     (void)context;
-    return store_publish(store, due->study, due->case_number, due->revision, &empty, err);
+    curve_set_points(&matrix, 20, x, y, error);
+    matrix.x2 = x;
+    matrix.x2_label = "t";
+    matrix.columns = 20;
+    matrix.cells = cells;
+    matrix.cell_count = 1;
+    matrix.theories[matrix.theory_count++] = (struct theory){"nayak", theory};
+    int status = result_add_curve(&result, &matrix, err);
+    if (status == 0)
+        status = store_publish(store, due->study, due->case_number, due->revision, &result, err);
+    result_clear(&result);
+    return status;
 }
 
 static int publish(struct store_life *life, struct error *err) {
-    const struct publication publication = {.publish = publish_empty};
+    const struct publication publication = {.publish = publish_matrix};
     struct publish_counts counts;
     int status = store_publish_due(life->store, &publication, &counts, err);
     if (status == 0 && counts.postponed > 0) {
