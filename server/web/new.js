@@ -154,6 +154,17 @@ export async function showNew(root, signal, from) {
     }
   }
 
+  let begun = JSON.stringify(study); // what was typed since is asked for before it is replaced
+  const ready = choice("Begin from", [["", "…"], ...templates.map((one, k) => [k, one.name])], "", (k) => {
+    if (k === "") return;
+    if (JSON.stringify(study) !== begun && !confirm("Replace what was typed by this study?")) {
+      ready.querySelector("select").value = "";
+      return;
+    }
+    study = structuredClone(templates[k]);
+    begun = JSON.stringify(study);
+    write();
+  });
   function later() {
     clearTimeout(timer);
     timer = setTimeout(check, WAIT);
@@ -190,7 +201,7 @@ export async function showNew(root, signal, from) {
       submit.disabled = false;
     }
   });
-  root.append(make("div", { class: "tools" }, choice("Begin from", [["", "…"], ...templates.map((one, k) => [k, one.name])], "", (k) => { if (k !== "") { study = structuredClone(templates[k]); write(); } })),
+  root.append(make("div", { class: "tools" }, ready),
     make("p", {}, "A list in place of a value sweeps: a case for each of its values."),
     make("div", { class: "columns" }, fields, make("div", {}, editor, cost, faults, submit)));
   write();

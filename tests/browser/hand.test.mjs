@@ -73,6 +73,13 @@ test("the form keeps focus, caret and scroll, and takes what is typed in one fie
   await page.waitForNetworkIdle({ idleTime: 600 });
   assert.equal(await top(), place);
   await picture(page, "form");
+  const kept = await written(page), asked = [];
+  page.on("dialog", (dialog) => (asked.push(dialog.message()) === 1 ? dialog.dismiss() : dialog.accept()));
+  await pick(page, "Begin from", "contact-demo");
+  assert.deepEqual([asked.length, await written(page)], [1, kept], "what was typed stays where the question is answered no");
+  await pick(page, "Begin from", "contact-demo");
+  await page.waitForFunction(() => JSON.parse(document.querySelector("textarea").value).name === "contact-demo");
+  assert.equal(asked.length, 2);
 });
 
 test("a case without values is no plain success: state, curves and report say why", async (t) => {
