@@ -46,7 +46,7 @@ static void error_headings(const struct error_columns *columns, struct text_tabl
     for (int source = 0; source < ERROR_SOURCES; source++)
         if (columns->shown[1 + source])
             table_cell(table, "%s %%", ERROR_SOURCE_ROWS[source].name);
-    table_cell(table, "total %%");
+    table_cell(table, "size %%");
     if (columns->shown[LAW_COLUMN])
         table_cell(table, "law %%");
 }
@@ -177,9 +177,8 @@ void summary_of_report(const struct study_report *report, FILE *file) {
     print_all_series(report, &shown, &columns, file);
     print_unknown(columns.unknown, NULL, file);
     print_small(columns.small, NULL, file);
-    fputs("total: one standard error and the other errors at most, root of the sum of squares; - "
-          "where "
-          "one is not known.\n",
+    fputs("size: one standard error and the other errors at most, root of the sum of squares; - "
+          "where one is not known.\n",
           file);
     if (columns.shown[LAW_COLUMN])
         print_law_legend(file);

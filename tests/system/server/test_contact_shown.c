@@ -83,7 +83,7 @@ static void many_cases_have_a_row_each(void **state) {
 static void the_report_tells_what_each_part_buys(void **state) {
     (void)state;
     shell("one.db", "$RUGO report --db $DB $ID");
-    check_shown((const char *[]){"statistical %", "discretisation %", "model %", "total %",
+    check_shown((const char *[]){"statistical %", "discretisation %", "model %", "size %",
                                  "s to halve", "case 0: contact_area by model, level and estimator",
                                  "\nhalfspace      8  edges", "\nhalfspace      4  nodes",
                                  "\nlayered        8  edges", NULL});

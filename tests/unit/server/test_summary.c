@@ -157,7 +157,7 @@ static void many_cases_have_a_row_each(void **state) {
 }
 
 static const char HEADING[] = "\ncase  realisations  seconds  CPU s  CPU s/realisation  "
-                              "statistical %  discretisation %  total %  CPU s to halve\n";
+                              "statistical %  discretisation %  size %  CPU s to halve\n";
 
 /* The report of one case, made by hand: statistical, two sources, total. */
 static void a_report_tells_errors_by_source(void **state) {
