@@ -19,26 +19,23 @@ function tableOf(title, columns) {
 const workingRow = ({ worker, job }) => make("tr", {}, make("th", { scope: "row" }, worker), make("td", { class: "number" }, job.case), make("td", { class: "number" }, `${job.done ?? 0} / ${job.count}`), make("td", {}, time(job.since)));
 const runRow = (run) => make("tr", {}, make("th", { scope: "row" }, run.host ?? "–"), make("td", {}, run.program ?? "–"), make("td", { class: "number" }, number(run.jobs)), make("td", {}, time(run.first)), make("td", {}, time(run.last)));
 
-/** Returns a function that reads again who has computed the study. */
 export function showJobs(root, signal, study, contents) {
   const path = `/v1/studies/${encodeURIComponent(study.id)}`;
   const counts = make("p", { role: "status" }), message = make("p", { role: "alert" });
   const working = tableOf("At work", ["Worker", "Case", "Realisations", "Since"]), runs = tableOf("Results by", ["Host", "Program", "Jobs", "From", "To"]);
+  let { provenance } = contents, { revision } = study;
   root.append(counts, message, make("div", { class: "scroll" }, working.element), make("div", { class: "scroll" }, runs.element));
-
-  function show(status, { provenance }) {
-    say(counts, `Jobs: ${STATES.filter((state) => status.jobs[state] > 0).map((state) => `${number(status.jobs[state])} ${words(state)}`).join(", ") || "none"}.`);
-    runs.fill(provenance?.runs ?? [], (run) => `${run.host} ${run.program}`, runRow);
-  }
 
   async function refresh() {
     try {
       const [status, { workers }] = await Promise.all([getJson(path, { signal }), getJson("/v1/workers", { signal })]);
+      if (status.revision !== revision) ({ provenance } = await getJson(`${path}/contents`, { signal }));
+      ({ revision } = status);
       const jobs = workers.flatMap((worker) => worker.jobs.filter((job) => job.study === study.id).map((job) => ({ worker: worker.name, job })));
-      show(status, contents);
-      working.fill(jobs, ({ worker, job }) => `${worker} ${job.case} ${job.since}`, workingRow);
+      say(counts, `Jobs: ${STATES.filter((state) => status.jobs[state] > 0).map((state) => `${number(status.jobs[state])} ${words(state)}`).join(", ") || "none"}.`);
+      working.fill(jobs, ({ worker, job }) => `${worker} ${job.job}`, workingRow);
+      runs.fill(provenance.runs, (run) => `${run.host} ${run.program}`, runRow);
       say(message, isLive(status) && jobs.length === 0 ? "Nobody is at work on it." : "");
-      if (!isLive(status)) return;
     } catch (error) {
       if (signal.aborted) return;
       say(message, error.message);
@@ -46,8 +43,5 @@ export function showJobs(root, signal, study, contents) {
     if (!signal.aborted) setTimeout(refresh, PERIOD);
   }
   refresh();
-  return async () => {
-    contents = await getJson(`${path}/contents`, { signal });
-    show(await getJson(path, { signal }), contents);
-  };
+  return null; // it looks by itself
 }

@@ -8,6 +8,7 @@ import { chart } from "/web/chart.js";
 const STOPS = [[0, 0, 4], [40, 11, 84], [101, 21, 110], [159, 42, 99], [212, 72, 66], [245, 125, 21], [250, 193, 39], [252, 255, 164]];
 const SIDE = 512; // pixels of a map
 const UNITS = { pressure: " in E* h′" }; // heights and gaps are in units of the study
+const labelOf = (field) => `${field}${UNITS[field] ?? ""}`;
 const BLANK = { gap: "white where there is contact", pressure: "white where there is no contact" };
 
 /** Reads a little-endian npy of doubles (NumPy's format 1): {shape, values}. */
@@ -34,7 +35,7 @@ function mapOf({ shape, values }, field) {
     if (value < low) low = value;
     if (value > high) high = value;
   }
-  const about = `${field}${UNITS[field] ?? ""}`, ends = [low, high].map((value) => number(isFinite(value) ? value : null));
+  const about = labelOf(field), ends = [low, high].map((value) => number(isFinite(value) ? value : null));
   const canvas = make("canvas", { width: columns, height: rows, class: "map", role: "img", "aria-label": `${about}, ${rows} by ${columns} points, from ${ends[0]} to ${ends[1]}` });
   const context = canvas.getContext("2d"), image = context.createImageData(columns, rows);
   for (let i = 0; i < values.length; i++)
@@ -67,7 +68,7 @@ export function showRealisation(root, signal, study, contents) {
       shown = null;
       if (map.shape.length === 1 || map.shape[0] === 1) {
         const y = Array.from(map.values);
-        shown = chart([{ label: state.field, x: y.map((_, i) => i), y, colour: "#0072b2" }], { xLabel: "point", yLabel: `${state.field} in ${UNITS[state.field]}` });
+        shown = chart([{ label: state.field, x: y.map((_, i) => i), y, colour: "#0072b2" }], { xLabel: "point", yLabel: labelOf(state.field) });
         place.replaceChildren(shown.element);
       } else place.replaceChildren(mapOf(map, state.field));
       const touching = state.field === "pressure" ? map.values.reduce((sum, p) => sum + (p > 0), 0) / map.values.length : null;

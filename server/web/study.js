@@ -23,18 +23,18 @@ function notesOf(one) {
 const PARTS_OF_ERROR = [["error_chance", "statistical"], ["error_mesh", "mesh"], ["error_cell", "cell"], ["error_model", "model"], ["error_solver", "solver"]];
 const percent = (error) => `${number(100 * error, 3)} %`;
 
+/** The error that a study asks for, beside the largest of its cases so far. */
+function targetText(asked, reached) {
+  return [asked ? `asked ${percent(asked)}` : "", reached ? `reached ${percent(reached)}` : asked ? "none known yet" : ""].filter(Boolean).join(", ");
+}
+
 /** What a case asks for and has reached, and its sources, the largest first; null of a study that asks for no error. */
 function reachedOf({ scalars }) {
   const value = (name) => scalars?.[name]?.value;
   if (!value("error_reached") || !value("error_asked")) return null;
   const parts = PARTS_OF_ERROR.map(([key, name]) => [value(key) ?? 0, name]).filter(([error]) => error > 0).sort((a, b) => b[0] - a[0]);
   const cost = value("work") > 0 && value("plain_work") > 0 ? `; ${number(value("work") / value("plain_work"), 2)} times the work of plain sampling` : "";
-  return `asked ${percent(value("error_asked"))}, reached ${percent(value("error_reached"))}: ${parts.map(([error, name]) => `${name} ${percent(error)}`).join(", ")}${cost}`;
-}
-
-/** The error that a study asks for, beside the largest of its cases so far. */
-function targetText(asked, reached) {
-  return [asked ? `asked ${percent(asked)}` : "", reached ? `reached ${percent(reached)}` : asked ? "none known yet" : ""].filter(Boolean).join(", ");
+  return `${targetText(value("error_asked"), value("error_reached"))}: ${parts.map(([error, name]) => `${name} ${percent(error)}`).join(", ")}${cost}`;
 }
 
 /** The report's picture, where cost and error are known, and its notes. */

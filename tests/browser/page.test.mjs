@@ -146,8 +146,11 @@ test("realisations are shown: heights, gaps and pressures", async (t) => {
   await picture(page, "map");
   await page.goto(`${open}/#/study/${CONTACT.id}/realisation`);
   await page.waitForSelector(".uplot canvas");
+  const label = () => page.$eval("[aria-label*=' over point']", (one) => one.getAttribute("aria-label"));
+  assert.ok((await label()).startsWith("height over point"), await label());
   await choose(page, "Field", "pressure");
   await says(page, "of the points are in contact");
+  assert.ok((await label()).startsWith("pressure in E* h′ over point"), await label());
 });
 
 test("a study that asks for an error says what it has reached, and who computed it", async (t) => {
