@@ -8,9 +8,8 @@
 
 /* {study, name, kind, provenance, cases: [{case, swept: {pointer: value}, realisations}], curves:
  * [{quantity, matrix, series, models, levels, x_label, y_label}], scalars: [names]}, the caller's
- * to delete. Curves and scalars are those of the first case that has any. ERROR_ABSENT for an
- * unknown study.
- */
+ * to delete. Curves and scalars are those of the first case that has any. ERROR_ABSENT for a study
+ * that is not known. */
 int contents_document(struct store *store, const char *id, cJSON **out, struct error *err);
 
 #endif

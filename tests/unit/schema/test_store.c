@@ -373,6 +373,62 @@ static uint64_t due_cases(struct store *store) {
     return seen;
 }
 
+/* What the views have of the store that results_and_views made. */
+static void check_views(const char *path) {
+    static const struct {
+        const char *sql, *expected;
+    } VIEWS[] = {
+        {"SELECT state || percent FROM study_progress", "running100.0"},
+        {"SELECT count(*) || max(realisation) FROM realisation_scalars WHERE \"case\" = 1", "4019"},
+        {"SELECT group_concat(scalar || coalesce(value, 'none')) FROM realisation_scalars "
+         "WHERE \"case\" = 0 AND realisation = 1",
+         "a0.666666666666667,bnone"},
+        {"SELECT group_concat(x || ':' || y) FROM curve_points WHERE quantity = 'q'", "0.1:3.0"},
+        {"SELECT min(x) || ':' || min(x2) || ':' || min(y) || ':' || min(standard_error) FROM "
+         "curve_points WHERE quantity = 'joint'",
+         "0.1:8.0:2.0:0.25"},
+        {"SELECT group_concat(model || kinematics || level || '@' || pressure "
+         "|| ':' || "
+         "coalesce(discretisation_error, 'none') || ':' || coalesce(model_error, 'none') || ':' || "
+         "valueless) "
+         "FROM curve_points WHERE quantity = 'area'",
+         "fullhencky8.0@0.5:0.25:none:0,fullhencky8.0@0.5:0.5:-2.0:3"},
+        {"SELECT group_concat(x || source || value || ':' || coalesce(bound, 'none')) FROM "
+         "curve_errors WHERE value IS NOT NULL ORDER BY x, source",
+         "0.1discretisation-0.5:0.75,2.0discretisation1.0:0.0,0.1discretisation0.25:0.125,2."
+         "0discretisation0.5:0.0,2.0model-2.0:none"},
+        {"SELECT scalar || source || value || bound || standard_error FROM scalar_errors",
+         "m0model-0.50.250.125"},
+        {"SELECT \"case\" || realisation || note FROM case_notes", "07why"},
+        {"SELECT group_concat(scalar || value || coalesce(standard_error, 'none')) FROM "
+         "case_scalars",
+         "alpha5.0none,m01.00.5"},
+        /* 1.96 standard errors, and all that the model's error of -0.5 +- 0.25 comes to */
+        {"SELECT group_concat(coalesce(round(total_low, 9), 'none') || ' ' || "
+         "coalesce(round(total_high, 9), 'none') || coalesce(unknown_errors, '')) FROM "
+         "case_scalars",
+         "none none,0.02 2.73cell"},
+        {"SELECT count(*) > 2 AND max(abs(total_low - (y - 1.96 * coalesce(standard_error, "
+         "0) - max(0, known)))) < 1e-12 FROM (SELECT *, (SELECT total(value + "
+         "coalesce(bound, 0)) FROM curve_errors e WHERE e.\"case\" = p.\"case\" AND "
+         "e.quantity = p.quantity AND e.series IS p.series AND e.x = p.x AND e.model IS "
+         "p.model AND e.level IS p.level) AS known FROM curve_points p) WHERE total_low "
+         "IS NOT NULL",
+         "1"},
+        {"SELECT name || \"case\" || state || (parameters ->> '$.box.width') || ' ' || "
+         "(scalars ->> 'm0') FROM case_table WHERE \"case\" = 0",
+         "n0published0.5 1.0"},
+        {"SELECT count(*) || group_concat(DISTINCT worker || host || attempts) FROM job_log",
+         "4where1"},
+        {"SELECT group_concat(\"case\" || parameter || '=' || value) FROM case_parameters WHERE "
+         "parameter = '/box/width'",
+         "0/box/width=0.5,1/box/width=1"},
+        {"SELECT host || program || jobs || (first <= last) FROM study_runs", "here0.0.1+c0ffee41"},
+        {"SELECT seed || program FROM study_progress", "1" RUGO_VERSION "+unknown"}};
+    for (size_t v = 0; v < sizeof VIEWS / sizeof *VIEWS; v++)
+        check_text(path, VIEWS[v].sql, VIEWS[v].expected);
+}
+
 static void results_and_views(void **state) {
     (void)state;
     struct store *store = open_store("views.db");
@@ -419,73 +475,7 @@ static void results_and_views(void **state) {
     assert_int_equal(store_snapshot(store, "copy.db", NULL, NULL, NULL), 0);
     struct error err = {0};
     assert_int_equal(store_snapshot(store, "copy.db", NULL, NULL, &err), ERROR_INPUT);
-    check_text("copy.db", "SELECT state || percent FROM study_progress", "running100.0");
-    check_text("copy.db",
-               "SELECT count(*) || max(realisation) FROM realisation_scalars WHERE \"case\" = 1",
-               "4019");
-    check_text("copy.db",
-               "SELECT group_concat(scalar || coalesce(value, 'none')) FROM realisation_scalars "
-               "WHERE \"case\" = 0 AND realisation = 1",
-               "a0.666666666666667,bnone");
-    check_text("copy.db",
-               "SELECT group_concat(x || ':' || y) FROM curve_points WHERE quantity = 'q'",
-               "0.1:3.0");
-    check_text(
-        "copy.db",
-        "SELECT min(x) || ':' || min(x2) || ':' || min(y) || ':' || min(standard_error) FROM "
-        "curve_points WHERE quantity = 'joint'",
-        "0.1:8.0:2.0:0.25");
-    check_text(
-        "copy.db",
-        "SELECT group_concat(model || kinematics || level || '@' || pressure "
-        "|| ':' || "
-        "coalesce(discretisation_error, 'none') || ':' || coalesce(model_error, 'none') || ':' || "
-        "valueless) "
-        "FROM curve_points WHERE quantity = 'area'",
-        "fullhencky8.0@0.5:0.25:none:0,fullhencky8.0@0.5:0.5:-2.0:3");
-    check_text("copy.db",
-               "SELECT group_concat(x || source || value || ':' || coalesce(bound, 'none')) FROM "
-               "curve_errors WHERE value IS NOT NULL ORDER BY x, source",
-               "0.1discretisation-0.5:0.75,2.0discretisation1.0:0.0,0.1discretisation0.25:0.125,2."
-               "0discretisation0.5:0.0,2.0model-2.0:none");
-    check_text("copy.db",
-               "SELECT scalar || source || value || bound || standard_error FROM scalar_errors",
-               "m0model-0.50.250.125");
-    check_text("copy.db", "SELECT \"case\" || realisation || note FROM case_notes", "07why");
-    check_text("copy.db",
-               "SELECT group_concat(scalar || value || coalesce(standard_error, 'none')) FROM "
-               "case_scalars",
-               "alpha5.0none,m01.00.5");
-    /* 1.96 standard errors, and all that the model's error of -0.5 +- 0.25 comes to */
-    check_text("copy.db",
-               "SELECT group_concat(coalesce(round(total_low, 9), 'none') || ' ' || "
-               "coalesce(round(total_high, 9), 'none') || coalesce(unknown_errors, '')) FROM "
-               "case_scalars",
-               "none none,0.02 2.73cell");
-    check_text("copy.db",
-               "SELECT count(*) > 2 AND max(abs(total_low - (y - 1.96 * coalesce(standard_error, "
-               "0) - max(0, known)))) < 1e-12 FROM (SELECT *, (SELECT total(value + "
-               "coalesce(bound, 0)) FROM curve_errors e WHERE e.\"case\" = p.\"case\" AND "
-               "e.quantity = p.quantity AND e.series IS p.series AND e.x = p.x AND e.model IS "
-               "p.model AND e.level IS p.level) AS known FROM curve_points p) WHERE total_low "
-               "IS NOT NULL",
-               "1");
-    check_text("copy.db",
-               "SELECT name || \"case\" || state || (parameters ->> '$.box.width') || ' ' || "
-               "(scalars ->> 'm0') FROM case_table WHERE \"case\" = 0",
-               "n0published0.5 1.0");
-    check_text("copy.db",
-               "SELECT count(*) || group_concat(DISTINCT worker || host || attempts) FROM job_log",
-               "4where1");
-    check_text(
-        "copy.db",
-        "SELECT group_concat(\"case\" || parameter || '=' || value) FROM case_parameters WHERE "
-        "parameter = '/box/width'",
-        "0/box/width=0.5,1/box/width=1");
-    check_text("copy.db", "SELECT host || program || jobs || (first <= last) FROM study_runs",
-               "here0.0.1+c0ffee41");
-    check_text("copy.db", "SELECT seed || program FROM study_progress",
-               "1" RUGO_VERSION "+unknown");
+    check_views("copy.db");
     cJSON *document = NULL;
     assert_int_equal(store_document(store, id, &document, NULL), 0);
     assert_true(json_number_at(document, "/realisations", 0) == 20);

@@ -5,6 +5,7 @@
 #include "tests/support/check.h"
 #include "tests/support/fake_kind.h"
 #include "tests/support/sample_result.h"
+#include "tests/support/seed.h"
 #include "tests/support/store_text.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -53,12 +54,10 @@ static void run(struct store *store, const char *key, char id[STUDY_ID_SIZE]) {
     const struct publication publication = {.publish = publish_sample};
     struct publish_counts counts;
     unsigned char *data = malloc(BLOCK_BYTES);
-    uint64_t state = 1;
+    uint64_t random = 1;
     assert_non_null(data);
-    for (size_t a = 0; a < BLOCK_BYTES; a++) { /* as at random, which is not packed */
-        state = state * 6364136223846793005u + 1442695040888963407u;
-        data[a] = (unsigned char)(state >> 56);
-    }
+    for (size_t a = 0; a < BLOCK_BYTES; a++) /* which is not packed */
+        data[a] = (unsigned char)next_word(&random);
     submit(store, key, id);
     for (int j = 0; j < 4; j++) {
         struct claimed_job job = {0};
