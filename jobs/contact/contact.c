@@ -289,7 +289,39 @@ static const struct quantity_table TABLE = {
     .scalars = SCALARS,
     .left_out = LEFT_OUT,
 };
-static const struct result_view VIEW = {.table = &TABLE, .logarithmic = LOGARITHMIC};
+static const struct series_name SERIES_NAMES[] = {{"wave", NULL, NULL, "per longest wave"},
+                                                  {"cell", NULL, NULL, "in the cell"},
+                                                  {NULL, NULL, NULL, NULL}};
+static const struct shown_name NAMES[] = {
+    {"p/(E* h'_rms)", "load", "load p/(E* h'_rms)"},
+    {"local p/(E* h'_rms)", "local pressure", "local pressure p/(E* h'_rms)"},
+    {"A/A0", "contact area", "contact area A/A0"},
+    {"K sqrt(m0)/(E* h'_rms)", "stiffness", "stiffness K sqrt(m0)/(E* h'_rms)"},
+    {"mean patch/cell", "mean patch area", "mean patch area/A0"},
+    {"mean patch/lambda_l", "mean patch length", "mean patch length/lambda_l"},
+    {"mean patch/lambda_l^2", "mean patch area", "mean patch area/lambda_l^2"},
+    {"largest patch/cell", "largest patch area", "largest patch area/A0"},
+    {"points x transforms", "work", "work, points × transforms"},
+    {"contact_pressure_pdf", "pressure density", NULL},
+    {"patch_count", "number of contact patches", NULL},
+    {"patch_mean_area", "mean patch area", NULL},
+    {"patch_largest_area", "largest patch area", NULL},
+    {"iterations", "iterations of the solver", NULL},
+    {"work", "work of the solver", NULL},
+    {"nodes_lower", "nodes, lower bracket", NULL},
+    {"nodes_upper", "nodes, upper bracket", NULL},
+    {"edges_stretched", "edges, stretched", NULL},
+    {"persson_light_load", "Persson, light load", NULL},
+    {"bgt_light_load", "BGT, light load", NULL},
+    {"gw_mccool", "GW (McCool)", NULL},
+    {"kappa", "slope at light load", "slope at light load kappa"},
+    {"erf_kappa", "slope of the error function", "slope of the error function kappa"},
+    {"eps_h", "error of the heights", "error of the heights eps_h"},
+    {"eps_s", "error of the spectrum", "error of the spectrum eps_s"},
+    {"nayak_alpha", "Nayak parameter", "Nayak parameter alpha"},
+    {NULL, NULL, NULL}};
+static const struct result_view VIEW = {
+    .table = &TABLE, .logarithmic = LOGARITHMIC, .series_names = SERIES_NAMES, .names = NAMES};
 
 /* As study_kind.fill has it. */
 static int complete_case(const cJSON *document, cJSON *parameters, struct error *err) {

@@ -121,9 +121,35 @@ static const char DISTRIBUTION[] = "/surface/heights/distribution";
 static const struct series_name SERIES_NAMES[] = {
     {"pits", DISTRIBUTION, "weibull_min", "weibull max (as pits)"},
     {"pits", DISTRIBUTION, "weibull_max", "weibull min (as pits)"},
+    {"", NULL, NULL, "summits"},
     {NULL, NULL, NULL, NULL}};
-static const struct result_view STATISTICS_VIEW = {
-    .headlines = HEADLINES, .logarithmic = LOGARITHMIC, .series_names = SERIES_NAMES};
+static const struct shown_name NAMES[] = {
+    {"z/sqrt(m0)", "height", "height z/sqrt(m0)"},
+    {"-sqrt(3/m4) kappa_m", "curvature", "curvature -sqrt(3/m4) kappa_m"},
+    {"kappa_m/sqrt(m4)", "mean curvature", "mean curvature kappa_m/sqrt(m4)"},
+    {"z''/sqrt(m4)", "curvature", "curvature z''/sqrt(m4)"},
+    {"-z''/sqrt(m4)", "curvature", "curvature -z''/sqrt(m4)"},
+    {"k lambda_s", "wavenumber", "wavenumber k lambda_s"},
+    {"lambda_l/lambda_s", "ratio of wavelengths", "ratio of wavelengths lambda_l/lambda_s"},
+    {"acf", "autocorrelation", NULL},
+    {"psd", "power spectral density", NULL},
+    {"summit_mean_curvature", "mean curvature of summits", NULL},
+    {"nayak_alpha", "Nayak parameter", "Nayak parameter alpha"},
+    {"nayak_alpha_by_ratio", "Nayak parameter", "Nayak parameter alpha"},
+    {"nayak_alpha_by_hurst", "Nayak parameter", "Nayak parameter alpha"},
+    {"summit_density", "summit density", "summit density (lambda_s = 1)"},
+    {"pit_density", "pit density", "pit density (lambda_s = 1)"},
+    {"summit_height_mean", "mean height of summits", "mean height of summits/sqrt(m0)"},
+    {"pit_height_mean", "mean depth of pits", "mean depth of pits/sqrt(m0)"},
+    {"summit_curvature_mean", "mean curvature of summits", "mean curvature of summits/sqrt(m4)"},
+    {"pit_curvature_mean", "mean curvature of pits", "mean curvature of pits/sqrt(m4)"},
+    {"eps_h", "error of the heights", "error of the heights eps_h"},
+    {"eps_s", "error of the spectrum", "error of the spectrum eps_s"},
+    {NULL, NULL, NULL}};
+static const struct result_view STATISTICS_VIEW = {.headlines = HEADLINES,
+                                                   .logarithmic = LOGARITHMIC,
+                                                   .series_names = SERIES_NAMES,
+                                                   .names = NAMES};
 
 /* Reads a case. The limit is not needed, as nothing large is computed. */
 static int read_case(void *one_case, const cJSON *parameters, double memory_limit,

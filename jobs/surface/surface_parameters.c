@@ -43,6 +43,7 @@ static const struct parameter ROWS[] = {
      .help = "1: profile (2D contact), 2: surface (3D contact)"},
     {.path = "/surface/hurst",
      .symbol = "H",
+     .title = "Hurst exponent",
      .type = PARAMETER_NUMBER,
      .minimum = 0,
      .maximum = 1,

@@ -25,9 +25,17 @@ struct quantity_table {
 /* What a series shows where a parameter of its case has a value: pits of one distribution are the
  * summits of another. */
 struct series_name {
-    const char *series;
-    const char *pointer, *value; /* of the parameter */
+    const char *series;          /* "": that without a name */
+    const char *pointer, *value; /* of the parameter; NULL: in every case */
     const char *name;
+};
+
+/* How people call what results name: a quantity, a series, a theory or a scalar, or the label of an
+ * axis, which is a symbol without words. */
+struct shown_name {
+    const char *name;  /* "psd"; "A/A0" */
+    const char *words; /* in titles and legends: "power spectral density" */
+    const char *label; /* at an axis: "contact area A/A0"; NULL: the words */
 };
 
 struct result_view {
@@ -36,6 +44,8 @@ struct result_view {
                                            case has one of them: all that have a theory */
     const struct logarithmic_picture *logarithmic; /* ends with a quantity of NULL; NULL: none */
     const struct series_name *series_names;        /* ends with a series of NULL; NULL: none */
+    const struct shown_name *names; /* of what is not called as it is named; ends with a name of
+                                       NULL; NULL: none */
 };
 
 /* Returns whether a NULL-terminated list, or NULL, has the name. */

@@ -30,6 +30,7 @@ struct parameter {
     const char *path;             /* JSON pointer in the study: "/surface/hurst" */
     const char *help;             /* what it means, one line, without unit and range */
     const char *symbol;           /* as people write it, "lambda_l/lambda_s"; NULL: its name */
+    const char *title;            /* in words, "Hurst exponent"; NULL: its name */
     const char *unit;             /* NULL: a pure number, or none at all */
     const char *default_json;     /* NULL: absent unless given */
     const char *example_json;     /* a value, or a list of values that makes cases */

@@ -78,7 +78,7 @@ static int write_density(const struct study_result *study, const struct case_res
     int status = open_file(&file, folder, name, err);
     if (status != 0)
         return status;
-    status = plot_density(study, one, curve, file, err);
+    status = plot_density(study, one, curve, 0, file, err);
     int closed = close_file(file, folder, name, err);
     return status != 0 ? status : closed;
 }

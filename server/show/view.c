@@ -22,10 +22,30 @@ const char *view_series_name(const struct result_view *view, const struct case_r
                              const char *series) {
     const struct series_name *row = view->series_names;
     for (; row != NULL && row->series != NULL && series != NULL; row++) {
-        const struct result_parameter *value = result_parameter(one, row->pointer);
-        if (strcmp(row->series, series) == 0 && value != NULL && value->text != NULL &&
-            strcmp(value->text, row->value) == 0)
+        const struct result_parameter *value =
+            row->pointer != NULL ? result_parameter(one, row->pointer) : NULL;
+        bool always = row->pointer == NULL;
+        if (strcmp(row->series, series) == 0 && (always || (value != NULL && value->text != NULL &&
+                                                            strcmp(value->text, row->value) == 0)))
             return row->name;
     }
     return NULL;
+}
+
+static const struct shown_name *find_name(const struct result_view *view, const char *name) {
+    const struct shown_name *row = view->names;
+    for (; row != NULL && row->name != NULL; row++)
+        if (strcmp(row->name, name) == 0)
+            return row;
+    return NULL;
+}
+
+const char *view_words(const struct result_view *view, const char *name) {
+    const struct shown_name *row = find_name(view, name);
+    return row != NULL ? row->words : name;
+}
+
+const char *view_label(const struct result_view *view, const char *label) {
+    const struct shown_name *row = find_name(view, label);
+    return row == NULL ? label : row->label != NULL ? row->label : row->words;
 }

@@ -13,5 +13,10 @@ const struct logarithmic_picture *view_logarithmic(const struct result_view *vie
 /* Returns what the series of a curve of this case shows, or NULL where its name says so. Static. */
 const char *view_series_name(const struct result_view *view, const struct case_result *one,
                              const char *series);
+/* Returns how people call a quantity, a series, a theory or a scalar in a title: its own name where
+ * the view does not say. Borrowed from either. */
+const char *view_words(const struct result_view *view, const char *name);
+/* Returns what stands at an axis for a label of curves, or for a scalar, likewise. */
+const char *view_label(const struct result_view *view, const char *label);
 
 #endif

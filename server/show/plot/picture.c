@@ -21,7 +21,7 @@ static int draw_results(const struct study_result *study, const struct plot_requ
         if (status != 0)
             return status;
         if (density != NULL)
-            return plot_density(study, &study->cases[c], density, file, err);
+            return plot_density(study, &study->cases[c], density, request->millimetres, file, err);
     }
     return plot_quantity(study, request, file, err);
 }
@@ -129,7 +129,8 @@ static int draw_case(const struct drawing *drawing, bool *done, struct error *er
             density_curve(one, drawing->request->quantity, drawing->request->series, &density, err);
     *done = density != NULL || status != 0 || drawing->request->case_number >= 0;
     if (status == 0 && density != NULL)
-        status = plot_density(&drawing->table.study, one, density, drawing->file, err);
+        status = plot_density(&drawing->table.study, one, density, drawing->plot.millimetres,
+                              drawing->file, err);
     else if (status == 0 && *done)
         status = plot_quantity(&study, &drawing->plot, drawing->file, err);
     study_result_clear(&study);

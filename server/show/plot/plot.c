@@ -78,7 +78,7 @@ static bool is_drawn(const struct plot_lines *lines, size_t line, size_t panel, 
 
 /* Draws the theories of the lines of one panel, whose frame the pen has: each once where lines
  * share it, black where all of them do, else in the colour of its line, darkened. */
-static void plot_theories_draw(const struct plot_lines *lines, size_t panel,
+static void plot_theories_draw(const struct plot_lines *lines, enum plot_marks marks, size_t panel,
                                const struct plot_pen *pen) {
     const char *names[NAMES_MOST];
     size_t count = names_of(lines, names), first;
@@ -91,14 +91,15 @@ static void plot_theories_draw(const struct plot_lines *lines, size_t panel,
                 continue;
             plot_colour(&lines->channels[CHANNEL_COLOUR], line->at[CHANNEL_COLOUR], colour);
             plot_darken(colour);
-            plot_theory_style(lines, t, shared ? BLACK : colour, style);
+            plot_theory_style(lines, marks, t, shared ? BLACK : colour, style);
             pen_line(pen, line->curve->n, line->curve->x, theory_of(line, names[t]), style);
         }
     }
 }
 
 /* Adds a row for each theory of any line. */
-static void plot_theories_name(const struct plot_lines *lines, struct legend *legend) {
+static void plot_theories_name(const struct plot_lines *lines, enum plot_marks marks,
+                               struct legend *legend) {
     const char *names[NAMES_MOST];
     size_t count = names_of(lines, names), first;
     for (size_t t = 0; t < count; t++) {
@@ -106,11 +107,11 @@ static void plot_theories_name(const struct plot_lines *lines, struct legend *le
         bool shared = true;
         for (size_t panel = 0; panel < lines->channels[CHANNEL_PANEL].count && shared; panel++)
             shared = is_shared(lines, panel, names[t], &first);
-        plot_in_words(names[t], name, sizeof name);
+        plot_in_words(view_words(view_of(lines->kind), names[t]), name, sizeof name);
         snprintf(label, sizeof label, "%s%s%s",
                  strncmp(name, "theory", 6) == 0 ? "" : "theory: ", name,
-                 shared ? "" : ", of each");
-        plot_theory_style(lines, t, shared ? BLACK : "#777777", style);
+                 shared ? "" : ", of each case");
+        plot_theory_style(lines, marks, t, shared ? BLACK : "#777777", style);
         legend_add(legend, label, style);
     }
 }
@@ -270,7 +271,7 @@ static bool fit(struct plot *plot, const struct study_result *study) {
         if (plot->lines->list[n].at[CHANNEL_PANEL] < plot->panels)
             include(frame, plot, plot->lines->list[n].curve);
     if (plot->errors.total)
-        plot_errors_include(frame, plot->lines, plot->panels,
+        plot_errors_include(frame, plot->lines, plot->panels, !plot->errors.bands,
                             plot->words->points || plot->lines->list[0].curve->minuend != NULL);
     struct plot_axis own = frame->x;
     if (!frame_finish(frame))
@@ -323,7 +324,7 @@ static void draw_panel(struct plot *plot, size_t panel) {
         for (size_t n = 0; n < lines->count; n++)
             if (lines->list[n].at[CHANNEL_PANEL] == panel && lines->list[n].coarseness == level)
                 draw_line(plot, &lines->list[n]);
-    plot_theories_draw(lines, panel, &plot->pen);
+    plot_theories_draw(lines, plot->marks, panel, &plot->pen);
     fputs("</g>\n", plot->pen.file);
 }
 
@@ -376,6 +377,13 @@ static void note_unit(struct plot *plot, const struct physical_unit *unit, const
     (void)legend_add(&plot->legend, text, "");
 }
 
+/* Returns whether a label fits beside the panels, in whose middle it stands. */
+static bool has_room(const struct plot *plot, const struct frame *whole, const char *label) {
+    double middle = (whole->top + whole->bottom) / 2.0;
+    double room = 2 * fmin(middle, plot->layout.size.height - middle);
+    return (double)plot_letters(label) * PEN_LETTER * plot->layout.scale <= room;
+}
+
 /* One label an axis, in the middle of all panels. */
 static void draw_labels(const struct plot *plot) {
     struct frame whole = {0}, last = {0};
@@ -388,6 +396,8 @@ static void draw_labels(const struct plot *plot) {
     char label[PLOT_LABEL_SIZE];
     snprintf(label, sizeof label, "%.120s%s", plot->words->y,
              is_one_plus(plot) ? ", as log10(1 + y)" : "");
+    if (plot->words->y_bare != NULL && !has_room(plot, &whole, label))
+        snprintf(label, sizeof label, "%.120s", plot->words->y_bare);
     frame_label(plot->pen.file, &whole, false, label);
 }
 
@@ -404,16 +414,18 @@ static size_t columns_of(const struct plot_channel *channel) {
                : 0;
 }
 
-static void lay_out(struct plot *plot) {
+static void lay_out(struct plot *plot, const struct study_result *study) {
     const struct plot_channel *panels = &plot->lines->channels[CHANNEL_PANEL];
     plot->panels = panels->count < PANELS_MOST ? panels->count : PANELS_MOST;
     plot->marks = plot_marks_of(plot->lines, plot->words);
     plot_legend_lines(&plot->legend, plot->lines, plot->marks, plot->words);
-    plot_theories_name(plot->lines, &plot->legend);
-    plot->errors = (struct errors_drawn){.bands = plot->marks == MARKS_NONE ||
-                                                  plot->lines->list[0].curve->minuend != NULL,
-                                         .total = !plot->request->without_total};
+    plot_theories_name(plot->lines, plot->marks, &plot->legend);
+    plot_errors_choose(&plot->errors, plot->lines, plot->panels,
+                       plot->marks == MARKS_NONE || plot->lines->list[0].curve->minuend != NULL,
+                       !plot->request->without_total);
     plot_errors_note(&plot->legend, plot->lines, &plot->errors);
+    if (plot->words->one != NULL)
+        plot_legend_case(&plot->legend, study, plot->words->one);
     plot_legend_notes(&plot->legend, plot->lines, plot->words->note);
     plot->x_unit = common_unit(plot->lines, true);
     plot->y_unit = common_unit(plot->lines, false);
@@ -436,7 +448,7 @@ int plot_lines_draw(const struct plot_lines *lines, const struct study_result *s
     plot->request = request;
     plot->words = words;
     plot->pen.file = file;
-    lay_out(plot);
+    lay_out(plot, study);
     pen_head_sized(&plot->pen, &plot->layout.size);
     pen_study(&plot->pen, study);
     (request->millimetres > 0 ? pen_subject : pen_title)(&plot->pen, study->name, words->subject);
@@ -473,6 +485,11 @@ static double shared_load(const struct plot_lines *lines) {
     return load;
 }
 
+/* Returns whether the picture is of one case of several. */
+static bool is_one_of(const struct study_result *study) {
+    return study->case_count == 1 && !study->cases[0].difference && swept_count(study) > 0;
+}
+
 /* Names the quantity, the series that was asked for, the load where all have one, and the case
  * where it is one of several, or the two of a difference. */
 static void make_subject(const struct study_result *study, const struct plot_lines *lines,
@@ -483,8 +500,9 @@ static void make_subject(const struct study_result *study, const struct plot_lin
     unsigned long long number = one->case_number, less = one->less;
     bool other = request->series != NULL && strcmp(request->series, request->quantity) != 0;
     const char *series = other ? series_shown(study, request->series) : NULL;
-    plot_in_words(request->quantity, quantity, sizeof quantity);
-    plot_in_words(series != NULL ? series : "", series_words, sizeof series_words);
+    plot_in_words(view_words(view_of(study->kind), request->quantity), quantity, sizeof quantity);
+    plot_in_words(series != NULL ? view_words(view_of(study->kind), series) : "", series_words,
+                  sizeof series_words);
     int used = snprintf(subject, PLOT_LABEL_SIZE, "%s%s%s", quantity, series != NULL ? ", " : "",
                         series_words);
     if (!isnan(load))
@@ -492,7 +510,7 @@ static void make_subject(const struct study_result *study, const struct plot_lin
     if (one->difference)
         snprintf(subject + used, PLOT_LABEL_SIZE - (size_t)used, ", case %llu less case %llu",
                  number, less);
-    else if (study->case_count == 1 && swept_count(study) > 0)
+    else if (is_one_of(study))
         snprintf(subject + used, PLOT_LABEL_SIZE - (size_t)used, ", case %llu", number);
 }
 
@@ -505,7 +523,15 @@ int plot_quantity(const struct study_result *study, const struct plot_request *r
         return status;
     const struct curve *first = lines.list[0].curve;
     make_subject(study, &lines, &request->lines, subject);
-    const struct plot_words words = {.subject = subject, .x = first->x_label, .y = first->y_label};
+    const struct result_view *view = view_of(study->kind);
+    char y[PLOT_LABEL_SIZE];
+    snprintf(y, sizeof y, "%s%.120s", first->minuend != NULL ? "difference of " : "",
+             view_label(view, first->y_label));
+    const struct plot_words words = {.subject = subject,
+                                     .x = view_label(view, first->x_label),
+                                     .y = y,
+                                     .one = is_one_of(study) ? &study->cases[0] : NULL,
+                                     .y_bare = first->y_label};
     status = plot_lines_draw(&lines, study, request, &words, file, err);
     plot_lines_clear(&lines);
     return status;

@@ -325,6 +325,7 @@ static const char *shown_series(const struct plot_lines *lines, enum plot_channe
 void channel_label(const struct plot_lines *lines, enum plot_channel_type channel, size_t v,
                    char *out, size_t size) {
     const struct plot_channel *own = &lines->channels[channel];
+    const struct result_view *view = view_of(lines->kind);
     *out = '\0';
     for (size_t f = 0; f < own->factor_count; f++) {
         const struct plot_factor *factor = own->factors[f];
@@ -335,9 +336,10 @@ void channel_label(const struct plot_lines *lines, enum plot_channel_type channe
         if (series != NULL)
             plot_in_words(series, text, sizeof text);
         else if (value.text != NULL && *value.text != '\0')
-            plot_in_words(value.text, text, sizeof text);
+            plot_in_words(view_words(view, value.text), text, sizeof text);
         else if (is_attribute(factor, "series") && value.text != NULL)
-            plot_in_words(lines->list[own->lines[v]].curve->quantity, text, sizeof text);
+            plot_in_words(view_words(view, lines->list[own->lines[v]].curve->quantity), text,
+                          sizeof text);
         else if (value.text != NULL || isnan(value.number))
             snprintf(text, sizeof text, "no %.60s", factor_name(factor));
         else if (is_attribute(factor, "pressure"))

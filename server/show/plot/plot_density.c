@@ -1,7 +1,9 @@
 #include "server/show/plot/plot_density.h"
 #include "server/show/plot/plot_heat.h"
+#include "server/show/plot/plot_layout.h"
+#include "server/show/plot/plot_style.h"
 #include "server/show/quantity.h"
-#include "server/show/table/shown_cases.h"
+#include "server/show/view.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,12 +27,8 @@ struct density {
     double *fine;     /* owned: the matrix with its empty cells */
     double *coarse;   /* owned: groups of it and of each theory, x.count * y.count values each */
     struct plot_pen pen;
+    struct legend legend;
 };
-
-static void density_clear(struct density *density) {
-    free(density->fine);
-    free(density->coarse);
-}
 
 /* --- what is drawn --- */
 
@@ -104,6 +102,56 @@ static void join_bins(const struct density *density, const double *matrix, doubl
             out[j * density->x.count + i] = mean_of(density, matrix, i, j);
 }
 
+/* The matrix and its theories have one scale, up to the highest of all; but a theory that is
+ * singular somewhere leaves the matrix its colours. */
+static struct heat_scale scale_of(const struct density *density) {
+    static const double MOST = 2; /* of the highest value of the matrix */
+    size_t cells = density->x.count * density->y.count;
+    double own = highest_of(density->coarse, cells);
+    double all = highest_of(density->coarse, cells * (1 + density->curve->theory_count));
+    return heat_scale_of_density(own > 0 ? fmin(all, MOST * own) : all);
+}
+
+/* Joins the bins of the sides, of the matrix and of each theory. */
+static int join_all(struct density *density, struct error *err) {
+    size_t theories = density->curve->theory_count, cells = density->x.count * density->y.count;
+    free(density->coarse);
+    density->coarse = array_create(cells * (1 + theories), sizeof *density->coarse);
+    if (density->coarse == NULL)
+        return error_memory(err, cells * sizeof *density->coarse, "a density");
+    join_bins(density, density->fine, density->coarse);
+    for (size_t t = 0; t < theories; t++)
+        if (theory_of(density, t) != NULL)
+            join_bins(density, theory_of(density, t), density->coarse + (1 + t) * cells);
+    return 0;
+}
+
+/* Narrows a side to cells first to last and one more at either end, as far as there are bins. */
+static struct side narrowed(const struct side *side, size_t first, size_t last, size_t bins) {
+    size_t low = first > 0 ? first - 1 : 0, high = last + 2;
+    size_t end = side->first + high * side->step;
+    return side_of(side->first + low * side->step, (end < bins ? end : bins) - 1);
+}
+
+/* Narrows the sides to the cells that have a colour or a contour: few summits far from the others
+ * would leave most of the picture blank. */
+static void narrow(struct density *density) {
+    size_t nx = density->x.count, cells = nx * density->y.count;
+    size_t low[2] = {SIZE_MAX, SIZE_MAX}, high[2] = {0, 0};
+    double least = scale_of(density).bounds[0];
+    for (size_t n = 0; n < cells * (1 + density->curve->theory_count); n++) {
+        const size_t place[2] = {n % cells % nx, n % cells / nx};
+        for (int a = 0; a < 2 && density->coarse[n] >= least; a++) {
+            low[a] = place[a] < low[a] ? place[a] : low[a];
+            high[a] = place[a] > high[a] ? place[a] : high[a];
+        }
+    }
+    if (low[0] > high[0])
+        return;
+    density->x = narrowed(&density->x, low[0], high[0], density->curve->n);
+    density->y = narrowed(&density->y, low[1], high[1], density->curve->columns);
+}
+
 /* Fills the dense matrix and the joined bins. */
 static int fill(struct density *density, struct error *err) {
     const struct curve *curve = density->curve;
@@ -117,15 +165,11 @@ static int fill(struct density *density, struct error *err) {
         density->fine[curve->cells[n]] = curve->y[n];
     if (!find_sides(density))
         return error_set(err, ERROR_ABSENT, "\"%.60s\" has no values yet", curve->quantity);
-    size_t cells = density->x.count * density->y.count;
-    density->coarse = array_create(cells * (1 + curve->theory_count), sizeof *density->coarse);
-    if (density->coarse == NULL)
-        return error_memory(err, cells * sizeof *density->coarse, "a density");
-    join_bins(density, density->fine, density->coarse);
-    for (size_t t = 0; t < curve->theory_count; t++)
-        if (theory_of(density, t) != NULL)
-            join_bins(density, theory_of(density, t), density->coarse + (1 + t) * cells);
-    return 0;
+    int status = join_all(density, err);
+    if (status != 0)
+        return status;
+    narrow(density);
+    return join_all(density, err);
 }
 
 /* --- the picture --- */
@@ -146,92 +190,116 @@ static struct heat_cells cells_of(const struct density *density, size_t which) {
     return cells;
 }
 
-/* The matrix and its theories have one scale, up to the highest of all. */
-static struct heat_scale scale_of(const struct density *density) {
-    size_t cells = density->x.count * density->y.count;
-    return heat_scale_of_density(
-        highest_of(density->coarse, cells * (1 + density->curve->theory_count)));
+/* A stroke of the legend, or of the contours themselves. */
+static void theory_style(size_t t, char style[LEGEND_STYLE_SIZE]) {
+    snprintf(style, LEGEND_STYLE_SIZE, "class=\"theory\" stroke=\"%s\" stroke-linecap=\"round\"",
+             STROKES[t % STROKE_COUNT]);
 }
 
 static void draw_theories(struct density *density, const struct heat_scale *scale) {
     for (size_t t = 0; t < density->curve->theory_count; t++) {
-        char style[96], label[PLOT_LABEL_SIZE], name[81];
+        char style[LEGEND_STYLE_SIZE];
         struct heat_cells cells = cells_of(density, 1 + t);
         if (theory_of(density, t) == NULL)
             continue;
-        snprintf(style, sizeof style, "class=\"theory\" stroke=\"%s\" stroke-linecap=\"round\"",
-                 STROKES[t % STROKE_COUNT]);
-        plot_in_words(density->curve->theories[t].name, name, sizeof name);
-        snprintf(label, sizeof label, "theory: %s", name);
+        theory_style(t, style);
         heat_contours(&density->pen, &cells, scale, style);
-        pen_legend(&density->pen, label, style);
     }
 }
 
-/* Notes what distinguishes the case from the others of the study, a line each. */
-static void note_case(struct plot_pen *pen, const struct study_result *study,
-                      const struct case_result *one) {
-    struct shown_cases shown;
-    char text[PLOT_LABEL_SIZE];
-    if (!shown_of_results(study, &shown))
-        return;
-    for (size_t n = 0; n < shown.varied_count; n++) {
-        const struct result_parameter *value = result_parameter(one, shown.varied[n]);
-        if (value == NULL)
+static void name_theories(struct density *density, const struct result_view *view) {
+    for (size_t t = 0; t < density->curve->theory_count; t++) {
+        char style[LEGEND_STYLE_SIZE], label[PLOT_LABEL_SIZE], name[81];
+        if (theory_of(density, t) == NULL)
             continue;
-        char name[61], word[61];
-        plot_in_words(last_name(value->pointer), name, sizeof name);
-        plot_in_words(value->text != NULL ? value->text : "", word, sizeof word);
-        if (value->text != NULL)
-            snprintf(text, sizeof text, "%s: %s", name, word);
-        else
-            snprintf(text, sizeof text, "%s: %.5g", name, value->number);
-        pen_note(pen, text);
+        theory_style(t, style);
+        plot_in_words(view_words(view, density->curve->theories[t].name), name, sizeof name);
+        snprintf(label, sizeof label, "theory: %s", name);
+        legend_add(&density->legend, label, style);
     }
-    shown_clear(&shown);
+}
+
+/* Names the levels, the highest first, below what they are of. */
+static void name_levels(struct legend *legend, const struct heat_scale *scale,
+                        const char *heading) {
+    legend_add(legend, heading, "");
+    for (size_t level = scale->count; level > 0; level--) {
+        char style[HEAT_STYLE_SIZE], label[HEAT_LABEL_SIZE];
+        heat_level(scale, level - 1, style, label);
+        legend_add(legend, label, style);
+    }
 }
 
 /* Notes what one of an axis is in its physical unit. */
-static void note_unit(struct plot_pen *pen, const char *label, const struct physical_unit *unit) {
+static void note_unit(struct legend *legend, const char *label, const struct physical_unit *unit) {
     char text[PLOT_LABEL_SIZE];
     if (unit->unit == NULL)
         return;
     unit_note(label, unit->symbol, unit->unit, unit->scale, text, sizeof text);
-    pen_note(pen, text);
+    legend_add(legend, text, "");
+}
+
+static void fill_legend(struct density *density, const struct study_result *study,
+                        const struct case_result *one, const struct heat_scale *scale) {
+    const struct curve *curve = density->curve;
+    name_levels(&density->legend, scale, curve->y_label);
+    name_theories(density, view_of(study->kind));
+    plot_legend_case(&density->legend, study, one);
+    note_unit(&density->legend, curve->x_label, &curve->x_unit);
+    note_unit(&density->legend, curve->x2_label, &curve->x2_unit);
+}
+
+/* Writes "summit joint PDF, pits, case 1". */
+static void make_subject(const struct study_result *study, const struct case_result *one,
+                         const struct curve *curve, char subject[PLOT_LABEL_SIZE]) {
+    const struct result_view *view = view_of(study->kind);
+    bool serial = curve->series != NULL && *curve->series != '\0';
+    char quantity[41], series[41];
+    plot_in_words(view_words(view, curve->quantity), quantity, sizeof quantity);
+    plot_in_words(serial ? view_words(view, curve->series) : "", series, sizeof series);
+    snprintf(subject, PLOT_LABEL_SIZE, "%s%s%s, case %llu", quantity, serial ? ", " : "", series,
+             (unsigned long long)one->case_number);
 }
 
 static void draw(struct density *density, const struct study_result *study,
-                 const struct case_result *one) {
+                 const struct case_result *one, double millimetres) {
     struct plot_pen *pen = &density->pen;
     const struct curve *curve = density->curve;
+    const struct result_view *view = view_of(study->kind);
     const struct heat_scale scale = scale_of(density);
     struct heat_cells cells = cells_of(density, 0);
-    char subject[PLOT_LABEL_SIZE], quantity[41];
-    bool serial = curve->series != NULL && *curve->series != '\0';
-    plot_in_words(curve->quantity, quantity, sizeof quantity);
-    snprintf(subject, sizeof subject, "%s%s%.16s, case %llu", quantity, serial ? ", " : "",
-             serial ? curve->series : "", (unsigned long long)one->case_number);
+    struct plot_layout layout = {0};
+    char subject[PLOT_LABEL_SIZE];
+    make_subject(study, one, curve, subject);
+    fill_legend(density, study, one, &scale);
+    plot_lay_out(&layout, 1, 1, &density->legend, millimetres);
     frame_set(&pen->frame, cells.x, cells.y, false);
-    pen_head(pen, PEN_WIDTH);
+    plot_place(&layout, 0, &pen->frame);
+    pen_head_sized(pen, &layout.size);
     pen_study(pen, study);
-    pen_title(pen, study->name, subject);
+    (millimetres > 0 ? pen_subject : pen_title)(pen, study->name, subject);
     heat_draw(pen, &cells, &scale);
-    frame_draw(pen->file, &pen->frame, curve->x_label, curve->x2_label);
-    heat_legend(pen, &scale, curve->y_label);
+    frame_draw(pen->file, &pen->frame, view_label(view, curve->x_label),
+               view_label(view, curve->x2_label));
     draw_theories(density, &scale);
-    note_case(pen, study, one);
-    note_unit(pen, curve->x_label, &curve->x_unit);
-    note_unit(pen, curve->x2_label, &curve->x2_unit);
+    legend_draw(&density->legend, pen->file, layout.scale, layout.legend_left, layout.legend_top,
+                layout.legend_width);
     fputs("</svg>\n", pen->file);
 }
 
 int plot_density(const struct study_result *study, const struct case_result *one,
-                 const struct curve *curve, FILE *file, struct error *err) {
-    struct density density = {.curve = curve, .pen = {.file = file}};
-    int status = fill(&density, err);
+                 const struct curve *curve, double millimetres, FILE *file, struct error *err) {
+    struct density *density = calloc(1, sizeof *density);
+    if (density == NULL)
+        return error_memory(err, sizeof *density, "a picture");
+    density->curve = curve;
+    density->pen.file = file;
+    int status = fill(density, err);
     if (status == 0)
-        draw(&density, study, one);
-    density_clear(&density);
+        draw(density, study, one, millimetres);
+    free(density->fine);
+    free(density->coarse);
+    free(density);
     return status;
 }
 

@@ -9,10 +9,10 @@
 /* Draws the curve of a case, which is a matrix (columns > 0), as colours, and as contours its
  * theories, both at the same levels: where they agree, lines lie between colours. Bins are joined
  * until they are about 45 a side. study: has the name, and what was swept; its cases need have no
- * curves. ERROR_ABSENT where the matrix has no values yet. Write errors are left to the file's own
- * flag. */
+ * curves. millimetres: the width on paper; 0: for screens. ERROR_ABSENT where the matrix has no
+ * values yet. Write errors are left to the file's own flag. */
 int plot_density(const struct study_result *study, const struct case_result *one,
-                 const struct curve *curve, FILE *file, struct error *err);
+                 const struct curve *curve, double millimetres, FILE *file, struct error *err);
 
 /* Finds the matrix of a quantity that a case has, of this series, or the first of any where series
  * is NULL. *out: borrowed; NULL where the quantity is no matrix. ERROR_INPUT for another series. */

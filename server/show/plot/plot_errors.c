@@ -118,6 +118,26 @@ static void draw_band(const struct plot_pen *pen, const struct curve *curve, spa
     }
 }
 
+/* Returns the lines of finest levels in the panel that has most of them. */
+static size_t most_in_panel(const struct plot_lines *lines, size_t panels) {
+    size_t most = 0;
+    for (size_t panel = 0; panel < panels; panel++) {
+        size_t count = 0;
+        for (size_t n = 0; n < lines->count; n++)
+            count += lines->list[n].at[CHANNEL_PANEL] == panel && lines->list[n].coarseness == 0;
+        most = count > most ? count : most;
+    }
+    return most;
+}
+
+void plot_errors_choose(struct errors_drawn *drawn, const struct plot_lines *lines, size_t panels,
+                        bool bands, bool total) {
+    enum { TOTAL_BANDS_MOST = 4 };
+    bool crowded = bands && most_in_panel(lines, panels) > TOTAL_BANDS_MOST;
+    *drawn = (struct errors_drawn){
+        .bands = bands, .total = total && !crowded, .crowded = total && crowded};
+}
+
 void plot_errors_draw(const struct plot_pen *pen, const struct curve *curve,
                       const struct errors_drawn *drawn, const char *colour) {
     if (!drawn->bands) {
@@ -131,15 +151,15 @@ void plot_errors_draw(const struct plot_pen *pen, const struct curve *curve,
 
 /* --- axis and legend --- */
 
-/* Limits how far an axis grows. */
-static void find_limits(const struct plot_axis *axis, bool whole, double *least, double *most) {
-    static const double MOST = 0.5; /* of the range of the points, or of its decades */
-    double low = axis->low, high = axis->high, length = MOST * (high - low);
+/* Limits how far an axis grows: by `part` of the range of the points, or of its decades. */
+static void find_limits(const struct plot_axis *axis, double part, bool whole, double *least,
+                        double *most) {
+    double low = axis->low, high = axis->high, length = part * (high - low);
     *least = whole ? -INFINITY : low - length;
     *most = whole ? INFINITY : high + length;
     if (axis->logarithmic) {
-        *least = low / pow(high / low, MOST);
-        *most = whole ? INFINITY : high * pow(high / low, MOST);
+        *least = low / pow(high / low, part);
+        *most = whole ? INFINITY : high * pow(high / low, part);
     } else if (!whole && low >= 0) {
         *least = fmax(*least, 0);
     }
@@ -148,11 +168,11 @@ static void find_limits(const struct plot_axis *axis, bool whole, double *least,
 }
 
 void plot_errors_include(struct frame *frame, const struct plot_lines *lines, size_t panels,
-                         bool whole) {
+                         bool bars, bool whole) {
     double least, most;
     if (!(frame->y.low <= frame->y.high))
         return;
-    find_limits(&frame->y, whole, &least, &most);
+    find_limits(&frame->y, bars && !frame->y.logarithmic ? 1 : 0.5, whole, &least, &most);
     for (size_t n = 0; n < lines->count; n++) {
         const struct plot_line *line = &lines->list[n];
         if (line->at[CHANNEL_PANEL] >= panels || line->coarseness > 0)
@@ -192,6 +212,8 @@ static void note_unknown(struct legend *legend, const struct plot_lines *lines, 
 void plot_errors_note(struct legend *legend, const struct plot_lines *lines,
                       const struct errors_drawn *drawn) {
     legend_add(legend, drawn->bands ? "bands: one standard error" : "bars: one standard error", "");
+    if (drawn->crowded)
+        legend_add(legend, "total, 95 %: not drawn of so many bands", "");
     if (!drawn->total)
         return;
     legend_add(legend, drawn->bands ? "pale bands: total, 95 %" : "thin bars: total, 95 %", "");

@@ -1,6 +1,8 @@
 #include "server/show/plot/plot_frame.h"
 #include "server/show/plot/plot_words.h"
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 static bool axis_has(const struct plot_axis *axis, double value) {
     return isfinite(value) && (!axis->logarithmic || value > 0) && (!axis->one_plus || value > -1);
@@ -106,7 +108,8 @@ static void leave_margin(struct plot_axis *axis) {
         return;
     }
     axis->high += margin;
-    axis->low -= axis->low < 0 ? margin : 0;
+    if (axis->low != 0)
+        axis->low = axis->low > 0 ? fmax(axis->low - margin, 0) : axis->low - margin;
 }
 
 bool frame_finish(struct frame *frame) {
@@ -131,12 +134,29 @@ static double tick_value(double value, const struct plot_axis *axis) {
     return fabs(value) < 1e-12 * (axis->high - axis->low) ? 0.0 : value;
 }
 
-/* Prints a number of an axis, or the power of ten that it is. */
+static void print_power(FILE *file, long power) {
+    fprintf(file, "10<tspan class=\"index\" dy=\"-5\">%s%ld</tspan>", power < 0 ? "−" : "",
+            labs(power));
+}
+
+/* Prints a number of an axis with a minus sign, large and small ones with a power of ten: "2×10" to
+ * the 5th; or the power of ten that it is. */
 static void print_number(FILE *file, double value, bool power) {
-    if (power)
-        fprintf(file, "10<tspan class=\"index\" dy=\"-5\">%ld</tspan>", lrint(log10(value)));
-    else
-        fprintf(file, "%.4g", value);
+    char text[32];
+    if (power) {
+        print_power(file, lrint(log10(value)));
+        return;
+    }
+    snprintf(text, sizeof text, "%.4g", fabs(value));
+    char *exponent = strchr(text, 'e');
+    long ten = exponent != NULL ? strtol(exponent + 1, NULL, 10) : 0;
+    if (exponent != NULL)
+        *exponent = '\0';
+    bool one = exponent != NULL && strcmp(text, "1") == 0;
+    fprintf(file, "%s%s%s", value < 0 ? "−" : "", one ? "" : text,
+            exponent != NULL && !one ? "×" : "");
+    if (exponent != NULL)
+        print_power(file, ten);
 }
 
 enum tick_label { TICK_BARE, TICK_NUMBER, TICK_POWER };

@@ -165,14 +165,20 @@ void heat_contours(const struct plot_pen *pen, const struct heat_cells *cells,
 
 /* --- the legend --- */
 
+void heat_level(const struct heat_scale *scale, size_t level, char style[HEAT_STYLE_SIZE],
+                char label[HEAT_LABEL_SIZE]) {
+    char colour[HEAT_COLOUR_SIZE];
+    colour_of(scale, level, colour);
+    snprintf(style, HEAT_STYLE_SIZE, "stroke=\"%s\" stroke-width=\"12\"", colour);
+    snprintf(label, HEAT_LABEL_SIZE, "%.4g to %.4g", scale->bounds[level],
+             scale->bounds[level + 1]);
+}
+
 void heat_legend(struct plot_pen *pen, const struct heat_scale *scale, const char *heading) {
     pen_note(pen, heading);
     for (size_t level = scale->count; level > 0; level--) {
-        char style[64], label[48], colour[HEAT_COLOUR_SIZE];
-        colour_of(scale, level - 1, colour);
-        snprintf(style, sizeof style, "stroke=\"%s\" stroke-width=\"12\"", colour);
-        snprintf(label, sizeof label, "%.4g to %.4g", scale->bounds[level - 1],
-                 scale->bounds[level]);
+        char style[HEAT_STYLE_SIZE], label[HEAT_LABEL_SIZE];
+        heat_level(scale, level - 1, style, label);
         pen_legend(pen, label, style);
     }
 }

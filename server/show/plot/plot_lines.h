@@ -87,8 +87,10 @@ struct plot_value factor_value(const struct plot_factor *factor, const struct pl
 struct plot_words {
     const char *subject; /* of the title */
     const char *x, *y;   /* labels of the axes */
+    const char *y_bare;  /* that of y where a small picture has no room for words; NULL: the same */
     const char *note;    /* in the legend; NULL: none */
-    bool points;         /* x is of a few cases: each has a tick and a mark */
+    const struct case_result *one; /* what it has of what was swept is noted; NULL: no case's */
+    bool points;                   /* x is of a few cases: each has a tick and a mark */
 };
 
 #endif

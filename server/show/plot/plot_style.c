@@ -1,21 +1,26 @@
 #include "server/show/plot/plot_style.h"
+#include "schema/result/swept.h"
 #include "server/show/summary/summary_cells.h"
+#include "server/show/view.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 static const char *const DASHES[DASHES_MOST] = {"",         "8 4",         "2 3",
                                                 "12 3 2 3", "5 2 2 2 2 2", "16 5"};
-/* Theories differ by their dashes; by dots, thinner, where curves have dashes. */
-static const char *const THEORIES[] = {"7 4", "2 3", "12 3 2 3", "4 2 1 2 1 2", "14 5", "1 5"};
-static const char *const DOTTED[] = {"1 2.5", "1 2 1 6", "1 6", "1 2 1 2 1 7", "3 2 1 2", "1 9"};
+/* Theories, thinner, differ by their dashes; by dots where curves have dashes and no marks. */
+static const char *const THEORIES[] = {"7 4", "2 3", "12 3 2 3", "9 2 1 2 1 2", "16 6", "1 6"};
+static const char *const DOTTED[] = {"1.5 2.5",         "9 2 1.5 2", "1.5 6",
+                                     "6 2 1.5 2 1.5 2", "3 2 1 2",   "1 9"};
 enum { THEORY_COUNT = sizeof THEORIES / sizeof *THEORIES };
 
 /* Coarser levels are fainter. */
 static const char *const LEVELS[] = {
-    "stroke-width=\"1.8\"", "stroke-opacity=\".65\" stroke-width=\"1.2\"",
-    "stroke-opacity=\".45\" stroke-width=\".9\"", "stroke-opacity=\".3\" stroke-width=\".7\""};
+    "stroke-width=\"1.8\"", "stroke-opacity=\".75\" stroke-width=\"1.2\"",
+    "stroke-opacity=\".5\" stroke-width=\".9\"", "stroke-opacity=\".35\" stroke-width=\".7\""};
 enum { LEVEL_COUNT = sizeof LEVELS / sizeof *LEVELS };
+/* Coarser levels have shorter dashes, too, where nothing else has. */
+static const char *const LEVEL_DASHES[LEVEL_COUNT] = {"", "9 3", "4 3", "1.5 3"};
 
 /* Stops of the colour map "viridis", whose lightness rises evenly, without the palest. */
 static const double STOPS[][3] = {{68, 1, 84},    {70, 50, 127},  {54, 92, 141}, {39, 127, 142},
@@ -42,24 +47,26 @@ void plot_darken(char colour[COLOUR_SIZE]) {
     snprintf(colour, COLOUR_SIZE, "#%06lx", all >> 1 & 0x7f7f7f); /* each byte by half */
 }
 
-static void style_of(const char *colour, size_t dash, size_t coarseness,
-                     char style[LEGEND_STYLE_SIZE]) {
-    const char *dashes = DASHES[dash % DASHES_MOST];
+static void style_of(const struct plot_lines *lines, const char *colour, size_t dash,
+                     size_t coarseness, char style[LEGEND_STYLE_SIZE]) {
+    size_t level = coarseness < LEVEL_COUNT ? coarseness : LEVEL_COUNT - 1;
+    const char *dashes =
+        lines->channels[CHANNEL_DASH].count > 1 ? DASHES[dash % DASHES_MOST] : LEVEL_DASHES[level];
     snprintf(style, LEGEND_STYLE_SIZE, "class=\"curve\" stroke=\"%s\" %s%s%s%s", colour,
-             LEVELS[coarseness < LEVEL_COUNT ? coarseness : LEVEL_COUNT - 1],
-             *dashes != '\0' ? " stroke-dasharray=\"" : "", dashes, *dashes != '\0' ? "\"" : "");
+             LEVELS[level], *dashes != '\0' ? " stroke-dasharray=\"" : "", dashes,
+             *dashes != '\0' ? "\"" : "");
 }
 
 void plot_curve_style(const struct plot_lines *lines, const struct plot_line *line,
                       char style[LEGEND_STYLE_SIZE]) {
     char colour[COLOUR_SIZE];
     plot_colour(&lines->channels[CHANNEL_COLOUR], line->at[CHANNEL_COLOUR], colour);
-    style_of(colour, line->at[CHANNEL_DASH], line->coarseness, style);
+    style_of(lines, colour, line->at[CHANNEL_DASH], line->coarseness, style);
 }
 
-void plot_theory_style(const struct plot_lines *lines, size_t number, const char *colour,
-                       char style[LEGEND_STYLE_SIZE]) {
-    bool dotted = lines->channels[CHANNEL_DASH].count > 1;
+void plot_theory_style(const struct plot_lines *lines, enum plot_marks marks, size_t number,
+                       const char *colour, char style[LEGEND_STYLE_SIZE]) {
+    bool dotted = lines->channels[CHANNEL_DASH].count > 1 && marks != MARKS_SHAPES;
     snprintf(style, LEGEND_STYLE_SIZE, "class=\"theory\" stroke=\"%s\" stroke-dasharray=\"%s\"",
              colour, (dotted ? DOTTED : THEORIES)[number % THEORY_COUNT]);
 }
@@ -97,7 +104,7 @@ static void add_colours(struct legend *legend, const struct plot_lines *lines,
         size_t v = thinned ? (s * (channel->count - 1) + steps / 2) / steps : s;
         channel_label(lines, CHANNEL_COLOUR, v, label, sizeof label);
         plot_colour(channel, v, colour);
-        style_of(colour, 0, 0, style);
+        style_of(lines, colour, 0, 0, style);
         set_mark(legend_add(legend, label, style), marks, colour, 0);
     }
     if (thinned) {
@@ -113,7 +120,7 @@ static void add_dashes(struct legend *legend, const struct plot_lines *lines,
     for (size_t v = 0; v < channel->count && channel->count > 1; v++) {
         char label[PLOT_LABEL_SIZE], style[LEGEND_STYLE_SIZE];
         channel_label(lines, CHANNEL_DASH, v, label, sizeof label);
-        style_of(NEUTRAL, v, 0, style);
+        style_of(lines, NEUTRAL, v, 0, style);
         set_mark(legend_add(legend, label, style), marks, NEUTRAL, v);
     }
 }
@@ -138,9 +145,16 @@ static void add_levels(struct legend *legend, const struct plot_lines *lines) {
             snprintf(label, sizeof label, "level %.4g", level);
         else
             snprintf(label, sizeof label, k == 0 ? "finest level" : "%zu levels coarser", k);
-        style_of(NEUTRAL, 0, k, style);
+        style_of(lines, NEUTRAL, 0, k, style);
         legend_add(legend, label, style);
     }
+}
+
+/* Returns what the series of a line is called. */
+static const char *series_words(const char *kind, const struct plot_line *line) {
+    const struct result_view *view = view_of(kind);
+    const char *shown = view_series_name(view, line->one, line->curve->series);
+    return shown != NULL ? shown : view_words(view, line->curve->series);
 }
 
 /* A picture of one line says whose it is. */
@@ -154,7 +168,7 @@ static void add_only(struct legend *legend, const struct plot_lines *lines, enum
     else if (line->one->difference)
         snprintf(label, sizeof label, "case %llu less case %llu", number, less);
     else if (line->curve->series != NULL && *line->curve->series != '\0')
-        plot_in_words(line->curve->series, label, sizeof label);
+        plot_in_words(series_words(lines->kind, line), label, sizeof label);
     else if (line->curve->model != NULL)
         snprintf(label, sizeof label, "%s",
                  model_text(line->curve->model, line->curve->kinematics, model, sizeof model));
@@ -171,6 +185,29 @@ void plot_legend_lines(struct legend *legend, const struct plot_lines *lines, en
     if (legend->count == 0)
         add_only(legend, lines, marks, words);
     add_levels(legend, lines);
+}
+
+void plot_legend_case(struct legend *legend, const struct study_result *study,
+                      const struct case_result *one) {
+    char text[PLOT_LABEL_SIZE], name[81];
+    for (size_t n = 0; n < swept_count(study); n++) {
+        const char *pointer = swept_pointer(study, n);
+        const struct result_parameter *value =
+            pointer != NULL ? result_parameter(one, pointer) : NULL;
+        if (value == NULL || value->list)
+            continue;
+        if (value->text != NULL) {
+            plot_parameter_words(study->kind, value->pointer, name, sizeof name);
+            plot_in_words(value->text, text, sizeof text);
+            char row[PLOT_LABEL_SIZE];
+            snprintf(row, sizeof row, "%s: %.80s", name, text);
+            legend_add(legend, row, "");
+            continue;
+        }
+        snprintf(text, sizeof text, "%.60s = %.5g", plot_symbol(study->kind, value->pointer),
+                 value->number);
+        legend_add(legend, text, "");
+    }
 }
 
 static bool is_partial(const struct plot_lines *lines) {

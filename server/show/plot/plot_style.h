@@ -15,8 +15,8 @@ void plot_curve_style(const struct plot_lines *lines, const struct plot_line *li
 /* Darkens it by half, for a theory that lies upon its curve. */
 void plot_darken(char colour[COLOUR_SIZE]);
 /* number: of the theory among those of the picture. */
-void plot_theory_style(const struct plot_lines *lines, size_t number, const char *colour,
-                       char style[LEGEND_STYLE_SIZE]);
+void plot_theory_style(const struct plot_lines *lines, enum plot_marks marks, size_t number,
+                       const char *colour, char style[LEGEND_STYLE_SIZE]);
 /* Few points are seen as shapes or dots, many as a line alone. */
 enum plot_marks plot_marks_of(const struct plot_lines *lines, const struct plot_words *words);
 
@@ -24,6 +24,9 @@ enum plot_marks plot_marks_of(const struct plot_lines *lines, const struct plot_
  * line that there is. */
 void plot_legend_lines(struct legend *legend, const struct plot_lines *lines, enum plot_marks marks,
                        const struct plot_words *words);
+/* Adds what distinguishes a case from the others of its study, a row each: "H = 0.8". */
+void plot_legend_case(struct legend *legend, const struct study_result *study,
+                      const struct case_result *one);
 /* Adds what open circles are, and what is left out. */
 void plot_legend_notes(struct legend *legend, const struct plot_lines *lines, const char *note);
 

@@ -101,6 +101,10 @@ static size_t put_next(FILE *file, const char *text, bool inside_word) {
         fputs(text[1] == '\'' ? "″" : "′", file);
         return text[1] == '\'' ? 2 : 1;
     }
+    if (*text == '-' && !inside_word && (text[1] == '\0' || !isdigit((unsigned char)text[1]))) {
+        fputs("−", file);
+        return 1;
+    }
     size_t width = text_character(text); /* of several bytes, which stay together */
     for (size_t a = 0; a < (width > 1 ? width : 1); a++)
         put(file, text[a]);
@@ -135,9 +139,21 @@ const char *plot_symbol(const char *kind, const char *pointer) {
     return row != NULL && row->symbol != NULL ? row->symbol : last_name(pointer);
 }
 
-const char *plot_unit(const char *kind, const char *pointer) {
+void plot_parameter_words(const char *kind, const char *pointer, char *out, size_t size) {
     const struct parameter *row = row_of(kind, pointer);
-    return row != NULL ? row->unit : NULL;
+    if (row != NULL && row->title != NULL)
+        snprintf(out, size, "%s", row->title);
+    else
+        plot_in_words(last_name(pointer), out, size);
+}
+
+void plot_parameter_label(const char *kind, const char *pointer, char *out, size_t size) {
+    const struct parameter *row = row_of(kind, pointer);
+    char words[80];
+    plot_parameter_words(kind, pointer, words, sizeof words);
+    bool symbol = row != NULL && row->symbol != NULL, unit = row != NULL && row->unit != NULL;
+    snprintf(out, size, "%s%s%s%s%s%s", words, symbol ? " " : "", symbol ? row->symbol : "",
+             unit ? " (" : "", unit ? row->unit : "", unit ? ")" : "");
 }
 
 /* Sets the capitals of a word of so many letters, where it has any. */

@@ -15,8 +15,11 @@ void svg_label(FILE *file, const char *label);
 /* Returns the symbol of a kind's parameter for svg_label, "H" of "/surface/hurst"; its last name
  * where it has none. Borrowed from either. */
 const char *plot_symbol(const char *kind, const char *pointer);
-/* Returns the unit of such a parameter, or NULL. */
-const char *plot_unit(const char *kind, const char *pointer);
+/* Writes what an axis over such a parameter says, for svg_label: "Hurst exponent H", with the unit
+ * in brackets where it has one. */
+void plot_parameter_label(const char *kind, const char *pointer, char *out, size_t size);
+/* Writes what a title calls such a parameter: "Hurst exponent", "length ratio". */
+void plot_parameter_words(const char *kind, const char *pointer, char *out, size_t size);
 /* Writes "summit density" of "summit_density", with the capitals of people and of abbreviations:
  * "Persson light load", "height PDF". */
 void plot_in_words(const char *name, char *out, size_t size);

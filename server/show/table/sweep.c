@@ -1,6 +1,7 @@
 #include "server/show/table/sweep.h"
 #include "schema/near_name.h"
 #include "server/show/table/shown_cases.h"
+#include "server/show/view.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -229,34 +230,57 @@ static int add_lines(struct sweep *sweep, const char *name, struct error *err) {
 
 enum { LABEL_SIZE = 160 };
 
-static void label_y(const struct case_table *table, const char *name, char label[LABEL_SIZE]) {
-    const struct table_column *column = &table->columns[table->column_count - 1];
-    if (column->type == COLUMN_CURVE && column->unit != NULL)
-        snprintf(label, LABEL_SIZE, "%.60s at %.60s = %.6g", column->unit, column->x_label,
-                 column->x);
-    else
-        plot_in_words(name, label, LABEL_SIZE);
+/* Returns the column that is drawn. */
+static const struct table_column *drawn_column(const struct case_table *table) {
+    return &table->columns[table->column_count - 1];
 }
 
-static void label_x(const struct sweep *sweep, char label[LABEL_SIZE]) {
-    const char *kind = sweep->table->study.kind, *unit = plot_unit(kind, sweep->x);
-    snprintf(label, LABEL_SIZE, "%.60s%s%.40s%s", plot_symbol(kind, sweep->x),
-             unit != NULL ? " (" : "", unit != NULL ? unit : "", unit != NULL ? ")" : "");
+/* Writes " at load 0.1" for a value of curves, nothing for a scalar. */
+static void place_of(const struct case_table *table, char place[LABEL_SIZE]) {
+    const struct table_column *column = drawn_column(table);
+    *place = '\0';
+    if (column->type == COLUMN_CURVE)
+        snprintf(place, LABEL_SIZE, " at %.60s %.6g",
+                 view_words(view_of(table->study.kind), column->x_label), column->x);
 }
 
-/* Writes "contact area (edges) over shape": the words of a column without its x, which the axis
- * has, and the parameter. */
+/* Labels the y axis; bare: with symbols alone, where there is no room for words. */
+static void label_y(const struct case_table *table, const char *name, char label[LABEL_SIZE],
+                    char bare[LABEL_SIZE]) {
+    const struct table_column *column = drawn_column(table);
+    const struct result_view *view = view_of(table->study.kind);
+    char place[LABEL_SIZE], own[LABEL_SIZE];
+    place_of(table, place);
+    if (column->type == COLUMN_CURVE && column->unit != NULL) {
+        snprintf(label, LABEL_SIZE, "%.80s%.70s", view_label(view, column->unit), place);
+        snprintf(bare, LABEL_SIZE, "%.80s%.70s", column->unit, place);
+        return;
+    }
+    snprintf(own, sizeof own, "%s", view_label(view, name));
+    if (strcmp(own, name) == 0)
+        plot_in_words(name, own, sizeof own);
+    snprintf(label, LABEL_SIZE, "%s", own);
+    snprintf(bare, LABEL_SIZE, "%s", own);
+}
+
+/* Writes "contact area (edges) at load 0.1 over Hurst exponent": the words of a column, and the
+ * parameter. */
 static void make_subject(const struct sweep *sweep, const char *name, char subject[LABEL_SIZE]) {
-    size_t quantity = strcspn(name, ":@"), words = strcspn(name, "@");
-    bool chosen = words > quantity;
-    char text[LABEL_SIZE], shown[91], over[61];
-    snprintf(text, sizeof text, "%.*s%s%.*s%s", (int)quantity, name, chosen ? " (" : "",
-             chosen ? (int)(words - quantity - 1) : 0, name + quantity + chosen, chosen ? ")" : "");
-    for (char *at = text; (at = strchr(at, ':')) != NULL;)
+    const struct result_view *view = view_of(sweep->table->study.kind);
+    size_t end = strcspn(name, ":@"), words = strcspn(name, "@");
+    char quantity[LABEL_SIZE], shown[61], chosen[LABEL_SIZE] = "", in_words[41] = "", over[41],
+                                          place[LABEL_SIZE];
+    snprintf(quantity, sizeof quantity, "%.*s", (int)end, name);
+    plot_in_words(view_words(view, quantity), shown, sizeof shown);
+    if (words > end)
+        snprintf(chosen, sizeof chosen, "%.*s", (int)(words - end - 1), name + end + 1);
+    for (char *at = chosen; (at = strchr(at, ':')) != NULL;)
         *at = ' ';
-    plot_in_words(text, shown, sizeof shown);
-    plot_in_words(last_name(sweep->x), over, sizeof over);
-    snprintf(subject, LABEL_SIZE, "%s over %s", shown, over);
+    plot_in_words(chosen, in_words, sizeof in_words);
+    plot_parameter_words(sweep->table->study.kind, sweep->x, over, sizeof over);
+    place_of(sweep->table, place);
+    snprintf(subject, LABEL_SIZE, "%s%s%s%s%.30s over %s", shown, words > end ? " (" : "", in_words,
+             words > end ? ")" : "", place, over);
 }
 
 static int draw(struct sweep *sweep, const char *name, const struct plot_request *request,
@@ -264,21 +288,22 @@ static int draw(struct sweep *sweep, const char *name, const struct plot_request
     const struct study_result *study = &sweep->table->study;
     struct lines_request lines_request = request->lines;
     struct plot_lines lines;
-    char x[LABEL_SIZE], y[LABEL_SIZE], subject[LABEL_SIZE], left_out[LABEL_SIZE] = "";
+    char x[LABEL_SIZE], y[LABEL_SIZE], bare[LABEL_SIZE], subject[LABEL_SIZE];
+    char left_out[LABEL_SIZE] = "";
     lines_request.left_out = sweep->x;
     struct plot_line *list = sweep->list;
     sweep->list = NULL;
     int status = plot_lines_take(&lines, study->kind, list, sweep->count, &lines_request, err);
     if (status != 0)
         return status;
-    label_x(sweep, x);
-    label_y(sweep->table, name, y);
+    plot_parameter_label(study->kind, sweep->x, x, sizeof x);
+    label_y(sweep->table, name, y, bare);
     make_subject(sweep, name, subject);
     if (sweep->left_out > 0)
         snprintf(left_out, sizeof left_out, "without a value: %zu %s", sweep->left_out,
                  sweep->left_out == 1 ? "case" : "cases");
     const struct plot_words words = {
-        .subject = subject, .x = x, .y = y, .note = left_out, .points = true};
+        .subject = subject, .x = x, .y = y, .y_bare = bare, .note = left_out, .points = true};
     status = plot_lines_draw(&lines, study, request, &words, file, err);
     plot_lines_clear(&lines);
     return status;

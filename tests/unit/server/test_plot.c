@@ -256,7 +256,7 @@ static void a_picture_names_what_it_draws(void **state) {
     study.cases[0].curves[0].theories[0].y = (const double[]){0.15, 0.25};
     char *text = picture_of(&study, &AREA);
     assert_int_equal(count_of(text, "class=\"theory\""), 3);
-    assert_int_equal(count_of(text, "theory: Persson, of each"), 1);
+    assert_int_equal(count_of(text, "theory: Persson, of each case"), 1);
     free(text);
     study_result_clear(&study);
 }
@@ -332,7 +332,7 @@ static void many_cases_are_panels(void **state) {
     assert_int_equal(count_of(text, "class=\"middle\">0.2</text>"), 2);
     assert_int_equal(count_of(text, "first 12"), 0);
     assert_int_equal(count_of(text, "#440154"),
-                     4 * (1 + 1 + 2 + 2 * 2) + 3); /* the least H is darkest */
+                     4 * (1 + 1 + 3 + 2 * 2) + 3); /* the least H is darkest */
     free(text);
     study_result_clear(&study);
 }
@@ -498,7 +498,7 @@ static void one_plus_shows_peaks_beside_low_parts(void **state) {
     one->difference = true;
     one->curves[0].minuend = one->curves[0].subtrahend = one->curves[0].y;
     text = picture_of(&study, &request);
-    assert_int_equal(count_of(text, ">density<"), 1);
+    assert_int_equal(count_of(text, ">difference of density<"), 1);
     free(text);
     study_result_clear(&study);
 }
@@ -521,7 +521,7 @@ static void pits_are_named_after_their_distribution(void **state) {
             add_curve(&study.cases[c], "summit_height_pdf", "pits", NULL, NAN, 0);
         }
         assert_int_equal(plot_lines_choose(&lines, &study, &request, &err), 0);
-        label_of(&lines, CHANNEL_DASH, 0, "summit height PDF");
+        label_of(&lines, CHANNEL_DASH, 0, "summits");
         label_of(&lines, CHANNEL_DASH, 1, mixed ? "pits" : "Weibull max (as pits)");
         plot_lines_clear(&lines);
         request =
@@ -538,6 +538,109 @@ static void pits_are_named_after_their_distribution(void **state) {
         free(text);
         study_result_clear(&study);
     }
+}
+
+/* A study of one curve, whose y axis is not A/A0. */
+static struct study_result one_curve(const char *kind, const char *quantity, size_t n,
+                                     const double *x, const double *y, const double *error) {
+    struct study_result study = built_study(kind, "one", 1);
+    struct curve curve = built_points(&study.cases[0], quantity, n, x, y, error);
+    built_curve(&study.cases[0], &curve);
+    return study;
+}
+
+/* Axes and legends are in words beside their symbols; where a small picture has no room for them,
+ * symbols stand alone. */
+static void axes_have_words(void **state) {
+    (void)state;
+    struct study_result study =
+        one_curve("contact", "patch_largest_area", 2, (const double[]){0.1, 0.2},
+                  (const double[]){0.1, 0.2}, (const double[]){0.01, 0.01});
+    struct curve *curve = &study.cases[0].curves[0];
+    struct plot_request request = {.lines = {.quantity = "patch_largest_area"}};
+    curve->x_label = "p/(E* h'_rms)";
+    curve->y_label = "K sqrt(m0)/(E* h'_rms)";
+    curve->series = "wave";
+    char *text = picture_of(&study, &request);
+    assert_int_equal(count_of(text, "one: largest patch area<"), 2);
+    assert_int_equal(count_of(text, ">load p/(E* h′"), 1);
+    assert_int_equal(count_of(text, ">stiffness K √m₀"), 1);
+    assert_int_equal(count_of(text, ">per longest wave<"), 1);
+    free(text);
+    request.millimetres = 40;
+    text = picture_of(&study, &request);
+    assert_int_equal(count_of(text, ">load p/(E* h′"), 1);
+    assert_int_equal(count_of(text, ">stiffness K √m₀"), 0);
+    assert_int_equal(count_of(text, ">K √m₀"), 1);
+    free(text);
+    study_result_clear(&study);
+}
+
+/* Numbers at axes have a minus sign, and a power of ten where they are large. */
+static void numbers_are_set(void **state) {
+    (void)state;
+    struct study_result study =
+        one_curve("contact", "work", 3, (const double[]){-2, 0, 2}, (const double[]){1e7, 2e7, 4e7},
+                  (const double[]){0, 0, 0});
+    char *text = picture_of(&study, &(struct plot_request){.lines = {.quantity = "work"}});
+    assert_int_equal(count_of(text, ">−2</text>"), 1);
+    assert_int_equal(count_of(text, ">-2</text>"), 0);
+    assert_int_equal(count_of(text, ">2×10<tspan class=\"index\" dy=\"-5\">7</tspan></text>"), 1);
+    assert_int_equal(count_of(text, ">10<tspan class=\"index\" dy=\"-5\">7</tspan></text>"), 1);
+    assert_int_equal(count_of(text, "e+07"), 0);
+    free(text);
+    study_result_clear(&study);
+}
+
+/* Bands of more than four lines hide each other: the legend says that totals are left out. */
+static void totals_of_many_bands_are_left_out(void **state) {
+    (void)state;
+    enum { POINTS = 50 };
+    double x[POINTS], y[POINTS], error[POINTS];
+    for (size_t n = 0; n < POINTS; n++) {
+        x[n] = (double)n;
+        y[n] = 1 + (double)n;
+        error[n] = 0.5;
+    }
+    for (size_t cases = 4; cases <= 5; cases++) {
+        struct study_result study = built_study("statistics", "bands", cases);
+        for (size_t c = 0; c < cases; c++) {
+            struct curve curve =
+                built_points(&study.cases[c], "summit_height_pdf", POINTS, x, y, error);
+            built_parameter(&study.cases[c], "/surface/hurst", NULL, 0.1 * (double)(c + 1));
+            built_curve(&study.cases[c], &curve);
+        }
+        struct plot_request request = {.lines = {.quantity = "summit_height_pdf"}};
+        char *text = picture_of(&study, &request);
+        assert_int_equal(count_of(text, "class=\"band\""), cases);
+        assert_int_equal(count_of(text, "class=\"wide\""), cases > 4 ? 0 : cases);
+        assert_int_equal(count_of(text, ">total, 95 %: not drawn of so many bands<"), cases > 4);
+        assert_int_equal(count_of(text, ">pale bands: total, 95 %<"), cases <= 4);
+        free(text);
+        request.lines.names[CHANNEL_PANEL] = "hurst"; /* a panel each has room for them */
+        text = picture_of(&study, &request);
+        assert_int_equal(count_of(text, "class=\"wide\""), cases);
+        free(text);
+        study_result_clear(&study);
+    }
+}
+
+/* Where nothing else has dashes, coarser levels have them. */
+static void levels_differ_by_dashes_that_are_free(void **state) {
+    (void)state;
+    struct study_result study = contact_of(1, 3);
+    struct plot_request request = {
+        .lines = {.quantity = "contact_area", .series = "edges", .model = "layered"}};
+    char *text = picture_of(&study, &request);
+    assert_int_equal(count_of(text, "stroke-dasharray=\"9 3\""), 2); /* and the legend */
+    assert_int_equal(count_of(text, "stroke-dasharray=\"4 3\""), 2);
+    free(text);
+    request.lines.model = NULL;
+    request.lines.names[CHANNEL_DASH] = "model"; /* which has the dashes */
+    text = picture_of(&study, &request);
+    assert_int_equal(count_of(text, "stroke-dasharray=\"9 3\""), 0);
+    free(text);
+    study_result_clear(&study);
 }
 
 int main(void) {
@@ -558,6 +661,10 @@ int main(void) {
         cmocka_unit_test(the_view_sets_logarithmic_axes),
         cmocka_unit_test(one_plus_shows_peaks_beside_low_parts),
         cmocka_unit_test(pits_are_named_after_their_distribution),
+        cmocka_unit_test(axes_have_words),
+        cmocka_unit_test(numbers_are_set),
+        cmocka_unit_test(totals_of_many_bands_are_left_out),
+        cmocka_unit_test(levels_differ_by_dashes_that_are_free),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

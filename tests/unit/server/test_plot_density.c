@@ -5,13 +5,15 @@
 #include "tests/support/check.h"
 #include "tests/support/count_of.h"
 #include "tests/support/result_builder.h"
+#include <cjson/cJSON.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { ROWS = 8, COLUMNS = 6, CELLS = ROWS * COLUMNS };
 
-static char *draw(const struct study_result *study, int expected, struct error *err) {
+static char *draw_wide(const struct study_result *study, double millimetres, int expected,
+                       struct error *err) {
     char *text = NULL;
     size_t size = 0;
     FILE *file = open_memstream(&text, &size);
@@ -19,9 +21,14 @@ static char *draw(const struct study_result *study, int expected, struct error *
     const struct curve *curve = NULL;
     assert_int_equal(density_curve(&study->cases[0], "joint", NULL, &curve, err), 0);
     assert_non_null(curve);
-    assert_int_equal(plot_density(study, &study->cases[0], curve, file, err), expected);
+    assert_int_equal(plot_density(study, &study->cases[0], curve, millimetres, file, err),
+                     expected);
     assert_int_equal(fclose(file), 0);
     return text;
+}
+
+static char *draw(const struct study_result *study, int expected, struct error *err) {
+    return draw_wide(study, 0, expected, err);
 }
 
 /* A matrix over centres 0.5, 1.5, ... of the values given, and a theory that is `hill` in the
@@ -29,6 +36,8 @@ static char *draw(const struct study_result *study, int expected, struct error *
 static struct study_result study_of(size_t rows, size_t columns, const double *values,
                                     double hill) {
     struct study_result study = built_study("statistics", "a & b", 2);
+    study.swept = cJSON_Parse("[\"/surface/hurst\"]");
+    assert_non_null(study.swept);
     struct case_result *one = &study.cases[0];
     size_t all = rows * columns, count = 0;
     double *axis = result_numbers(one, rows + columns), *y = result_numbers(one, 2 * all),
@@ -81,7 +90,7 @@ static void levels_have_colours_and_theories_contours(void **state) {
     assert_int_equal(count_of(text, "theory: grid"), 0);
     assert_int_equal(count_of(text, ">0.1 to 0.2<"), 1);
     assert_int_equal(count_of(text, ">0.02 to 0.05<"), 1);
-    assert_int_equal(count_of(text, ">hurst: 0.25<"), 1);
+    assert_int_equal(count_of(text, ">H = 0.25<"), 1);
     assert_int_equal(count_of(text, "a &amp; b: joint, case 0<"), 2);
     assert_int_equal(count_of(text, "height &lt;z&gt;"), 1);
     assert_int_equal(count_of(text, ">curvature<"), 1);
@@ -105,6 +114,51 @@ static void levels_hold_all_values(void **state) {
     char *text = draw(&study, 0, &err);
     assert_int_equal(count_of(text, ">0.5 to 1<"), 1);
     assert_int_equal(count_of(text, "class=\"heat\""), 1);
+    free(text);
+    study_result_clear(&study);
+}
+
+/* What lies far from all that has a colour does not make the picture larger. */
+static void the_frame_holds_what_is_seen(void **state) {
+    (void)state;
+    enum { SIDE = 40 };
+    struct error err = {0};
+    double values[SIDE * SIDE] = {0};
+    for (size_t cell = 0; cell < 6 * SIDE; cell++)
+        values[cell] = cell % SIDE < 6 ? 1 : 0;
+    values[SIDE * SIDE - 1] = 0.015; /* seen alone; below the lowest level, which has a fiftieth */
+    struct study_result study = study_of(SIDE, SIDE, values, 0);
+    char *text = draw(&study, 0, &err);
+    assert_int_equal(count_of(text, ">6</text>"), 1); /* the frame ends at 7 in place of 40 */
+    assert_int_equal(count_of(text, ">10</text>"), 0);
+    free(text);
+    study_result_clear(&study);
+}
+
+/* A theory that is singular leaves the matrix its colours. */
+static void high_theories_keep_the_matrix(void **state) {
+    (void)state;
+    struct error err = {0};
+    double values[CELLS] = {0};
+    values[COLUMNS + 1] = values[COLUMNS + 2] = 0.35;
+    struct study_result study = study_of(ROWS, COLUMNS, values, 500);
+    char *text = draw(&study, 0, &err);
+    assert_int_equal(count_of(text, "class=\"heat\""), 1);
+    assert_int_equal(count_of(text, ">0.2 to 0.5<"), 1);
+    free(text);
+    study_result_clear(&study);
+}
+
+/* On paper it has the width that was asked for, and no title, which is the caption's matter. */
+static void densities_have_sizes_on_paper(void **state) {
+    (void)state;
+    struct error err = {0};
+    double values[CELLS] = {0};
+    values[COLUMNS + 1] = 0.35;
+    struct study_result study = study_of(ROWS, COLUMNS, values, 0.5);
+    char *text = draw_wide(&study, 85, 0, &err);
+    assert_int_equal(count_of(text, "width=\"85mm\""), 1);
+    assert_int_equal(count_of(text, "a &amp; b: joint, case 0<"), 1); /* for readers of the file */
     free(text);
     study_result_clear(&study);
 }
@@ -186,6 +240,9 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(levels_have_colours_and_theories_contours),
         cmocka_unit_test(levels_hold_all_values),
+        cmocka_unit_test(the_frame_holds_what_is_seen),
+        cmocka_unit_test(high_theories_keep_the_matrix),
+        cmocka_unit_test(densities_have_sizes_on_paper),
         cmocka_unit_test(contours_lie_between_cells),
         cmocka_unit_test(many_bins_are_joined),
         cmocka_unit_test(nothing_is_told),

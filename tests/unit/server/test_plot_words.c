@@ -16,6 +16,7 @@ static void labels_are_set(void **state) {
         {"k lambda_s", "k λ<tspan class=\"index\" dy=\"3\">s</tspan>"},
         {"h'_rms)", "h′<tspan class=\"index\" dy=\"3\">rms</tspan><tspan dy=\"-3\">)</tspan>"},
         {"C_l = 3", "C<tspan class=\"index\" dy=\"3\">l</tspan> <tspan dy=\"-3\">=</tspan> 3"},
+        {"-sqrt(3/m4) kappa", "−√(3/m₄) κ"},
         {"L^-2", "L<tspan class=\"index\" dy=\"-5\">-2</tspan>"},
         {"z''", "z″"},
         {"lambdas alphabet 10 nodes", "lambdas alphabet 10 nodes"},
@@ -43,6 +44,23 @@ static void parameters_have_symbols(void **state) {
     assert_int_equal(plot_letters("lambda_s = 8"), strlen("l_s = 8"));
 }
 
+/* Axes over parameters have words, the symbol and the unit; without a row, the name. */
+static void parameters_have_labels(void **state) {
+    (void)state;
+    static const struct {
+        const char *kind, *pointer, *label;
+    } LABELS[] = {{"contact", "/surface/hurst", "Hurst exponent H"},
+                  {"contact", "/surface/length_ratio", "length ratio L/lambda_l"},
+                  {"statistics", "/surface/heights/shape", "shape C"},
+                  {"statistics", "/surface/dimension", "dimension"},
+                  {NULL, "/surface/length_ratio", "length ratio"}};
+    char label[80];
+    for (size_t n = 0; n < sizeof LABELS / sizeof *LABELS; n++) {
+        plot_parameter_label(LABELS[n].kind, LABELS[n].pointer, label, sizeof label);
+        assert_string_equal(label, LABELS[n].label);
+    }
+}
+
 static void names_are_words(void **state) {
     (void)state;
     static const struct {
@@ -67,6 +85,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(labels_are_set),
         cmocka_unit_test(parameters_have_symbols),
+        cmocka_unit_test(parameters_have_labels),
         cmocka_unit_test(names_are_words),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
