@@ -38,41 +38,53 @@ static const double *theory_of(const struct plot_line *line, const char *name) {
     return NULL;
 }
 
-static bool same_numbers(size_t n, const double *a, const double *b) {
-    for (size_t k = 0; k < n; k++)
-        if (!same_number(a[k], b[k]))
+/* Returns whether a line has the theory of another at all points of that one. Both rise. */
+static bool covers(const struct plot_line *line, const struct plot_line *other, const char *name) {
+    const double *own = theory_of(line, name), *theirs = theory_of(other, name);
+    size_t k = 0;
+    for (size_t n = 0; n < other->curve->n; n++) {
+        while (k < line->curve->n && line->curve->x[k] < other->curve->x[n])
+            k++;
+        if (k == line->curve->n || !same_number(line->curve->x[k], other->curve->x[n]) ||
+            !same_number(own[k], theirs[n]))
             return false;
+    }
     return true;
-}
-
-/* Returns whether two lines that have a theory have the same one, at the same points. */
-static bool same_theory(const struct plot_line *a, const struct plot_line *b, const char *name) {
-    size_t n = a->curve->n;
-    return n == b->curve->n && same_numbers(n, a->curve->x, b->curve->x) &&
-           same_numbers(n, theory_of(a, name), theory_of(b, name));
 }
 
 static bool has(const struct plot_lines *lines, size_t n, size_t panel, const char *name) {
     return lines->list[n].at[CHANNEL_PANEL] == panel && theory_of(&lines->list[n], name) != NULL;
 }
 
-/* Returns whether all lines of a panel that have a theory share it; *first is one of them, or the
- * count of the lines where none has it. */
+/* Returns whether all lines of a panel that have a theory share it, be it at some of its points;
+ * *first is the first of them, or the count of the lines where none has it. */
 static bool is_shared(const struct plot_lines *lines, size_t panel, const char *name,
                       size_t *first) {
-    *first = 0;
-    while (*first < lines->count && !has(lines, *first, panel, name))
-        (*first)++;
-    for (size_t n = *first + 1; n < lines->count; n++)
-        if (has(lines, n, panel, name) && !same_theory(&lines->list[*first], &lines->list[n], name))
+    *first = lines->count;
+    size_t longest = lines->count;
+    for (size_t n = lines->count; n-- > 0;) {
+        if (!has(lines, n, panel, name))
+            continue;
+        *first = n;
+        if (longest == lines->count || lines->list[n].curve->n > lines->list[longest].curve->n)
+            longest = n;
+    }
+    for (size_t n = *first; n < lines->count; n++)
+        if (has(lines, n, panel, name) && !covers(&lines->list[longest], &lines->list[n], name))
             return false;
     return true;
 }
 
+/* Returns whether another line draws the theory of this one: an earlier one has the same, or a
+ * longer one all of it. */
 static bool is_drawn(const struct plot_lines *lines, size_t line, size_t panel, const char *name) {
-    for (size_t n = 0; n < line; n++)
-        if (has(lines, n, panel, name) && same_theory(&lines->list[n], &lines->list[line], name))
+    const struct plot_line *own = &lines->list[line];
+    for (size_t n = 0; n < lines->count; n++) {
+        const struct plot_line *other = &lines->list[n];
+        if (n != line && has(lines, n, panel, name) && covers(other, own, name) &&
+            (n < line || other->curve->n > own->curve->n))
             return true;
+    }
     return false;
 }
 

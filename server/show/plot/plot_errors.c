@@ -132,7 +132,7 @@ static size_t most_in_panel(const struct plot_lines *lines, size_t panels) {
 
 void plot_errors_choose(struct errors_drawn *drawn, const struct plot_lines *lines, size_t panels,
                         bool bands, bool total) {
-    enum { TOTAL_BANDS_MOST = 4 };
+    enum { TOTAL_BANDS_MOST = 3 };
     bool crowded = bands && most_in_panel(lines, panels) > TOTAL_BANDS_MOST;
     *drawn = (struct errors_drawn){
         .bands = bands, .total = total && !crowded, .crowded = total && crowded};

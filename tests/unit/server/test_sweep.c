@@ -118,6 +118,19 @@ static void each_setting_is_a_line(void **state) {
     study_result_clear(&study);
 }
 
+/* Lines that lack points have the same theory as the others where they have any. */
+static void theories_of_shorter_lines_are_shared(void **state) {
+    (void)state;
+    struct study_result study = study_of(RATIOS);
+    study.cases[0].scalars[0].value = NAN;
+    study.cases[3].scalars[0].value = NAN;
+    check_count(&study, &DENSITY, "class=\"theory\"", 3); /* each lacks a point; and the legend */
+    study.cases[3].scalars[0].value = 1;
+    check_count(&study, &DENSITY, "class=\"theory\"", 2);
+    check_count(&study, &DENSITY, ">theory<", 1);
+    study_result_clear(&study);
+}
+
 /* Cases stand in the order of the study, points of a line by rising x. */
 static void points_rise_along_a_line(void **state) {
     (void)state;
@@ -205,9 +218,13 @@ static void what_is_left_out_is_told(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(points_have_total_errors),   cmocka_unit_test(each_setting_is_a_line),
-        cmocka_unit_test(points_rise_along_a_line),   cmocka_unit_test(parameters_are_named),
-        cmocka_unit_test(colours_are_of_a_parameter), cmocka_unit_test(what_is_left_out_is_told),
+        cmocka_unit_test(points_have_total_errors),
+        cmocka_unit_test(each_setting_is_a_line),
+        cmocka_unit_test(theories_of_shorter_lines_are_shared),
+        cmocka_unit_test(points_rise_along_a_line),
+        cmocka_unit_test(parameters_are_named),
+        cmocka_unit_test(colours_are_of_a_parameter),
+        cmocka_unit_test(what_is_left_out_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
