@@ -76,7 +76,9 @@ static int draw(const char *path, const char *name, const struct height_map *map
                                         .subject = boundary == BOUNDARY_OPEN ? "open" : "periodic",
                                         .x_label = "x",
                                         .y_label = "y",
-                                        .z_label = "z",
+                                        .z_label = "height z",
+                                        .xy_unit = map->xy_unit,
+                                        .z_unit = map->z_unit,
                                         .grid = &map->grid,
                                         .z = map->z,
                                         .boundary = boundary};

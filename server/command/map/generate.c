@@ -174,7 +174,7 @@ static int write_picture(const struct generate_order *order, const struct study 
                                         .subject = subject,
                                         .x_label = "x/lambda_s",
                                         .y_label = "y/lambda_s",
-                                        .z_label = "z",
+                                        .z_label = "height z",
                                         .grid = grid,
                                         .z = z,
                                         .trace = order->options->trace};

@@ -38,28 +38,47 @@ static int press_files_check(const struct press_paths *paths, struct error *err)
     return status;
 }
 
-/* Draws pressures, blank where there is no contact. */
-static int draw_pressures(const char *path, const struct map_picture *labels,
-                          const struct grid *grid, const double *pressures, struct error *err) {
-    size_t size = grid_points(grid) * sizeof *pressures;
-    double *drawn = array_create(grid_points(grid), sizeof *drawn);
+/* What the maps of a load are in. */
+struct press_units {
+    const char *length, *height; /* of the map */
+    bool modulus;                /* pressures are in Pa, else over E* h' */
+};
+
+enum press_map { MAP_PRESSURE, MAP_GAP, MAP_CONTACT, MAP_COUNT };
+
+/* Draws pressures blank where there is no contact, and gaps without what the solver leaves below
+ * zero in contact. */
+static int draw_values(const char *path, enum press_map which, const struct map_picture *labels,
+                       const struct grid *grid, const double *values, struct error *err) {
+    size_t points = grid_points(grid);
+    double *drawn = array_create(points, sizeof *drawn);
     if (drawn == NULL)
-        return error_memory(err, size, "a picture");
-    memcpy(drawn, pressures, size);
-    map_blank_open(grid, drawn);
+        return error_memory(err, points * sizeof *drawn, "a picture");
+    for (size_t n = 0; n < points; n++)
+        drawn[n] = values[n] < 0 ? 0 : values[n];
+    if (which == MAP_PRESSURE)
+        map_blank_open(grid, drawn);
     int status = map_output_write(path, labels, grid, drawn, err);
     free(drawn);
     return status;
 }
 
-/* Writes pressures where are_pressures holds, else a gap or the contact. */
-static int write_map(const char *path, const char *name, bool are_pressures,
+static int write_map(const char *path, enum press_map which, const struct press_units *units,
                      const struct grid *grid, const double *values, struct error *err) {
-    const struct map_picture labels = {
-        .name = name, .subject = "", .x_label = "x", .y_label = "y", .z_label = name};
-    return are_pressures && map_output_is_picture(path)
-               ? draw_pressures(path, &labels, grid, values, err)
-               : map_output_write(path, &labels, grid, values, err);
+    static const char *const SUBJECTS[MAP_COUNT] = {"pressure", "gap", "contact"};
+    const char *const names[MAP_COUNT] = {units->modulus ? "pressure p" : "pressure p/(E* h')",
+                                          "gap", "contact (1) or none (0)"};
+    const char *const z_units[MAP_COUNT] = {units->modulus ? "Pa" : "", units->height, ""};
+    const struct map_picture labels = {.name = SUBJECTS[which],
+                                       .subject = "last load",
+                                       .x_label = "x",
+                                       .y_label = "y",
+                                       .z_label = names[which],
+                                       .xy_unit = units->length,
+                                       .z_unit = z_units[which],
+                                       .note = which == MAP_PRESSURE ? "blank: no contact" : NULL};
+    return map_output_is_picture(path) ? draw_values(path, which, &labels, grid, values, err)
+                                       : map_output_write(path, &labels, grid, values, err);
 }
 
 static int write_mesh(const char *path, const struct nodal_step *step, struct error *err) {
@@ -75,16 +94,13 @@ static int write_mesh(const char *path, const struct nodal_step *step, struct er
 
 /* Writes the files of the last load. */
 static int write_last(const struct press_paths *paths, const struct nodal_step *step,
-                      const char *unit_name, struct error *err) {
-    const char *const list[] = {paths->pressures, paths->gap, paths->contact};
-    const double *const values[] = {step->p, step->gap, step->contact};
-    char pressure[40];
-    const char *const names[] = {pressure, "gap", "contact"};
+                      const struct press_units *units, struct error *err) {
+    const char *const list[MAP_COUNT] = {paths->pressures, paths->gap, paths->contact};
+    const double *const values[MAP_COUNT] = {step->p, step->gap, step->contact};
     int status = 0;
-    snprintf(pressure, sizeof pressure, "pressure, %s", unit_name);
-    for (size_t f = 0; f < sizeof list / sizeof *list && status == 0; f++)
+    for (enum press_map f = 0; f < MAP_COUNT && status == 0; f++)
         if (list[f] != NULL)
-            status = write_map(list[f], names[f], f == 0, &step->grid, values[f], err);
+            status = write_map(list[f], f, units, &step->grid, values[f], err);
     if (status == 0 && paths->mesh != NULL)
         status = write_mesh(paths->mesh, step, err);
     return status;
@@ -95,6 +111,7 @@ struct press_files {
     const struct press_paths *paths;
     const struct press_loads *loads;
     const double *z; /* heights as they are pressed */
+    struct press_units units;
     struct step_folder folder;
     struct contact_step step;
 };
@@ -111,8 +128,7 @@ static int write_load(void *context, const struct map_press *press, size_t load,
     if (status == 0)
         status = step_folder_put(&files->folder, &files->step.step, err);
     if (status == 0 && last)
-        status =
-            write_last(files->paths, &files->step.step, loads->modulus > 0 ? "Pa" : "E* h'", err);
+        status = write_last(files->paths, &files->step.step, &files->units, err);
     return status;
 }
 
@@ -290,7 +306,10 @@ static int press_loads(const struct press_order *order, struct pressed *pressed,
 static int press_first(const struct press_order *order, struct pressed *pressed,
                        const struct height_map *map, struct error *err) {
     const struct press_paths *paths = &order->options->paths;
-    struct press_files files = {.paths = paths, .loads = &order->loads, .z = map->z};
+    struct press_files files = {.paths = paths,
+                                .loads = &order->loads,
+                                .z = map->z,
+                                .units = {map->xy_unit, map->z_unit, order->loads.modulus > 0}};
     const struct press_watch watch = {write_load, &files};
     int status = step_folder_open(&files.folder, paths->steps, paths->nodes, err);
     if (status == 0) {

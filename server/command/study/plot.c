@@ -3,6 +3,7 @@
 #include "server/command/access/access_source.h"
 #include "server/command/map/map_file.h"
 #include "server/command/output_file.h"
+#include "server/show/map/map_png.h"
 #include "server/show/plot/picture.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -106,6 +107,19 @@ static int show(struct access *access, const char *id, const struct options *opt
 
 /* --- a map in a file --- */
 
+/* Returns whether a map may be of pressures: many of its values are exactly 0, and none is below.
+ */
+static bool map_is_clipped(const struct height_map *map) {
+    static const size_t PART = 50; /* a fiftieth of the points */
+    size_t points = grid_points(&map->grid), zeros = 0;
+    for (size_t n = 0; n < points; n++) {
+        if (map->z[n] < 0)
+            return false;
+        zeros += map->z[n] == 0;
+    }
+    return zeros > 1 && zeros > points / PART; /* heights may begin at one zero */
+}
+
 static int draw_map(const char *path, const struct options *options, struct error *err) {
     const char *slash = strrchr(path, '/');
     struct height_map map = {0};
@@ -114,11 +128,17 @@ static int draw_map(const char *path, const struct options *options, struct erro
         return status;
     char subject[64];
     snprintf(subject, sizeof subject, "%zu x %zu points", map.grid.nx, map.grid.ny);
+    bool clipped = map_is_clipped(&map);
+    if (clipped)
+        map_blank_open(&map.grid, map.z);
     const struct map_picture picture = {.name = slash != NULL ? slash + 1 : path,
                                         .subject = subject,
                                         .x_label = "x",
                                         .y_label = "y",
                                         .z_label = "z",
+                                        .xy_unit = map.xy_unit,
+                                        .z_unit = map.z_unit,
+                                        .note = clipped ? "blank: 0" : NULL,
                                         .grid = &map.grid,
                                         .z = map.z,
                                         .boundary = BOUNDARY_OPEN,
@@ -140,7 +160,12 @@ static int run(const void *values, const char *const *arguments) {
         return EXIT_USAGE;
     if (options->quantity == NULL) {
         if (height_map_format_of(arguments[0]) == HEIGHT_MAP_FORMATS)
-            return usage_error("plot", "--quantity is missing: the name of curves or of a scalar");
+            return usage_error("plot",
+                               "--quantity is missing: the name of curves or of a scalar; a "
+                               "map is drawn from a file in .npy, .csv or .xyz");
+        if (options->width != NULL)
+            return usage_error("plot", "--width belongs to curves and densities of a study; maps "
+                                       "are drawn for screens");
         return draw_map(arguments[0], options, &err) != 0 ? command_fail("plot", &err) : EXIT_DONE;
     }
     int status = access_open(&access, &options->place, ACCESS_READ, &err);

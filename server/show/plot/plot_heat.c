@@ -170,8 +170,9 @@ void heat_level(const struct heat_scale *scale, size_t level, char style[HEAT_ST
     char colour[HEAT_COLOUR_SIZE];
     colour_of(scale, level, colour);
     snprintf(style, HEAT_STYLE_SIZE, "stroke=\"%s\" stroke-width=\"12\"", colour);
-    snprintf(label, HEAT_LABEL_SIZE, "%.4g to %.4g", scale->bounds[level],
-             scale->bounds[level + 1]);
+    double low = scale->bounds[level], high = scale->bounds[level + 1];
+    snprintf(label, HEAT_LABEL_SIZE, "%s%.4g to %s%.4g", low < 0 ? "−" : "", fabs(low),
+             high < 0 ? "−" : "", fabs(high));
 }
 
 void heat_legend(struct plot_pen *pen, const struct heat_scale *scale, const char *heading) {

@@ -1,8 +1,10 @@
 #include "server/show/plot/plot_map.h"
 #include "jobs/maps/map_parameters.h"
 #include "server/show/plot/plot_heat.h"
+#include "server/show/quantity.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { MARKS_MOST = 1000, GROUPS_MOST = 1000, CELLS_A_SIDE = 128 };
 enum { BELOW = 70, TRACE_TOP = FRAME_BOTTOM + BELOW, TRACE_BOTTOM = TRACE_TOP + 150 };
@@ -184,7 +186,8 @@ static int draw_surface(struct map_plot *plot, struct error *err) {
     return has_trace(picture) ? draw_row(plot, err) : 0;
 }
 
-int plot_map(const struct map_picture *picture, FILE *file, struct error *err) {
+/* Draws a picture whose values and labels are those that are drawn. */
+static int draw_as_it_is(const struct map_picture *picture, FILE *file, struct error *err) {
     struct map_plot plot = {.picture = picture, .pen = {.file = file}};
     int status = picture->unmarked ? 0 : find_summits(&plot, err);
     if (status == 0) {
@@ -197,8 +200,54 @@ int plot_map(const struct map_picture *picture, FILE *file, struct error *err) {
     if (status == 0) {
         if (!picture->unmarked)
             draw_summits(&plot);
+        if (picture->note != NULL)
+            pen_note(&plot.pen, picture->note);
         fputs("</svg>\n", file);
     }
     summit_list_clear(&plot.summits);
+    return status;
+}
+
+/* --- units --- */
+
+/* Writes "x (nm)", for values up to `most` in that unit. Returns what is drawn as one. */
+static double label_with_unit(const char *label, const char *unit, double most,
+                              char out[PLOT_LABEL_SIZE]) {
+    char name[32] = "";
+    double scale = 1;
+    if (unit != NULL && (strcmp(unit, "m") == 0 || strcmp(unit, "Pa") == 0))
+        scale = unit_readable(unit, most, name, sizeof name);
+    else if (unit != NULL)
+        snprintf(name, sizeof name, "%s", unit);
+    snprintf(out, PLOT_LABEL_SIZE, *name != '\0' ? "%.100s (%s)" : "%.100s", label, name);
+    return scale;
+}
+
+int plot_map(const struct map_picture *picture, FILE *file, struct error *err) {
+    char x_label[PLOT_LABEL_SIZE], y_label[PLOT_LABEL_SIZE], z_label[PLOT_LABEL_SIZE];
+    size_t points = grid_points(picture->grid);
+    double range[2], longer = fmax(picture->grid->lx, picture->grid->ly);
+    struct map_picture own = *picture;
+    struct grid grid = *picture->grid;
+    range_of(points, picture->z, range);
+    double xy = label_with_unit(picture->x_label, picture->xy_unit, longer, x_label);
+    (void)label_with_unit(picture->y_label, picture->xy_unit, longer, y_label);
+    double z = label_with_unit(picture->z_label, picture->z_unit,
+                               fmax(fabs(range[0]), fabs(range[1])), z_label);
+    double *values = array_create(points, sizeof *values);
+    if (values == NULL)
+        return error_memory(err, points * sizeof *values, "a picture");
+    for (size_t n = 0; n < points; n++)
+        values[n] = picture->z[n] / z;
+    grid.lx /= xy;
+    grid.ly /= xy;
+    own.grid = &grid;
+    own.z = values;
+    own.trace = picture->trace / xy;
+    own.x_label = x_label;
+    own.y_label = y_label;
+    own.z_label = z_label;
+    int status = draw_as_it_is(&own, file, err);
+    free(values);
     return status;
 }

@@ -13,7 +13,7 @@ const char *const PEN_COLOURS[PLOT_LINES] = {"#0072b2", "#d55e00", "#009e73", "#
                                              "#7f3b08", "#6a51a3", "#999999", "#a50026"};
 
 static void make_title(const char *name, const char *subject, char title[PLOT_LABEL_SIZE]) {
-    snprintf(title, PLOT_LABEL_SIZE, "%.110s: %.80s", name, subject);
+    snprintf(title, PLOT_LABEL_SIZE, "%.110s%s%.80s", name, *subject != '\0' ? ": " : "", subject);
 }
 
 void pen_subject(const struct plot_pen *pen, const char *name, const char *subject) {
@@ -128,6 +128,6 @@ void pen_legend(struct plot_pen *pen, const char *label, const char *style) {
 void pen_note(struct plot_pen *pen, const char *text) {
     fprintf(pen->file, "<text x=\"%d\" y=\"%d\" class=\"note\">", pen->frame.right + 16,
             FRAME_TOP + 16 + 20 * pen->rows++);
-    svg_text(pen->file, text);
+    svg_label(pen->file, text);
     fputs("</text>\n", pen->file);
 }

@@ -46,8 +46,12 @@ static void plots_are_the_same_near_and_far(void **state) {
     static const struct {
         const char *query, *options[8], *word;
     } PLOTS[] = {
-        {"quantity=summit_density", {"--quantity", "summit_density"}, "summit density over hurst"},
-        {"quantity=psd&case=1", {"--quantity", "psd", "--case", "1"}, "two: PSD"},
+        {"quantity=summit_density",
+         {"--quantity", "summit_density"},
+         "summit density over Hurst exponent"},
+        {"quantity=psd&case=1",
+         {"--quantity", "psd", "--case", "1"},
+         "two: power spectral density"},
         {"quantity=summit_joint_pdf&case=1",
          {"--quantity", "summit_joint_pdf", "--case", "1"},
          "summit joint PDF, case 1"},
@@ -171,7 +175,7 @@ static void files_have_densities(void **state) {
     for (int c = 0; c < 2; c++) {
         char path[64], word[32];
         snprintf(path, sizeof path, "out/case-%d-summit_joint_pdf.svg", c);
-        snprintf(word, sizeof word, "hurst: %s<", c == 0 ? "0.2" : "0.8");
+        snprintf(word, sizeof word, "H = %s<", c == 0 ? "0.2" : "0.8");
         assert_true(contains(path, "class=\"heat\""));
         assert_true(contains(path, ">theory: "));
         assert_true(contains(path, word));
@@ -213,6 +217,15 @@ static void maps_of_files_are_drawn(void **state) {
     char *png = slurp("map.png");
     assert_memory_equal(png, "\x89PNG", 4);
     free(png);
+    /* zeros of many points are no contact: blank, as in pictures of press */
+    spit("pressures.csv", "0,0,2\n0,4,0\n");
+    assert_int_equal(
+        run_rugo("map", (const char *[]){"plot", "pressures.csv", "--out", "p.svg", NULL}), 0);
+    assert_true(contains("p.svg", ">blank: 0<"));
+    assert_false(contains("map.svg", "blank: 0"));
+    assert_int_equal(run_rugo("map", (const char *[]){"plot", "map.csv", "--width", "one", NULL}),
+                     2);
+    assert_true(contains("map.err", "--width belongs to curves"));
     assert_int_equal(run_rugo("nomap", (const char *[]){"plot", "nowhere.npy", NULL}), 2);
     assert_true(contains("nomap.err", "nowhere.npy"));
 }

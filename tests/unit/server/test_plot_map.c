@@ -224,9 +224,47 @@ static void pressures_are_blank_where_there_is_no_contact(void **state) {
     assert_true(none[0] == 0 && line[0] == 0);
 }
 
+/* Values in metres and pascals are drawn with prefixes, which the labels have. */
+static void units_are_readable(void **state) {
+    (void)state;
+    const struct grid grid = {.nx = 32, .ny = 32, .lx = 12e-6, .ly = 12e-6};
+    double *z = waves_of(&grid, 2);
+    for (size_t n = 0; n < grid_points(&grid); n++)
+        z[n] *= 3e9;
+    const struct map_picture picture = {.name = "map",
+                                        .subject = "",
+                                        .x_label = "x",
+                                        .y_label = "y",
+                                        .z_label = "pressure",
+                                        .xy_unit = "m",
+                                        .z_unit = "Pa",
+                                        .note = "blank: no contact",
+                                        .grid = &grid,
+                                        .z = z,
+                                        .unmarked = true};
+    char *text = NULL;
+    size_t size = 0;
+    struct error err = {0};
+    FILE *file = open_memstream(&text, &size);
+    assert_non_null(file);
+    assert_int_equal(plot_map(&picture, file, &err), 0);
+    assert_int_equal(fclose(file), 0);
+    assert_int_equal(count_of(text, ">map<"), 2); /* a title without a subject */
+    assert_int_equal(count_of(text, ">x (\xc2\xb5m)<"), 1);
+    assert_int_equal(count_of(text, ">y (\xc2\xb5m)<"), 1);
+    assert_int_equal(count_of(text, ">pressure (GPa)<"), 1);
+    assert_int_equal(count_of(text, ">10</text>"), 2); /* of 12 micrometres */
+    assert_int_equal(count_of(text, ">blank: no contact<"), 1);
+    assert_null(strstr(text, "e-0"));
+    assert_null(strstr(text, "e+0"));
+    free(text);
+    free(z);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_trace_has_its_peaks),
+        cmocka_unit_test(units_are_readable),
         cmocka_unit_test(a_row_is_drawn_below),
         cmocka_unit_test(a_surface_has_its_summits),
         cmocka_unit_test(extremes_of_long_traces_are_seen),
