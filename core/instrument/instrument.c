@@ -1,6 +1,7 @@
 #include "core/instrument/formats.h"
 #include "core/map/height_map_file.h"
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -35,17 +36,52 @@ static const struct instrument_format *format_of(const char *name, const char *d
     return INSTRUMENT_TEXT.owns(data, size) ? &INSTRUMENT_TEXT : NULL;
 }
 
+/* Writes ".npy, .csv, .xyz, .gwy ...": the endings that files may have, each once. */
+static void list_endings(char *out, size_t size) {
+    size_t used = 0;
+    for (size_t f = 0; f < HEIGHT_MAP_FORMATS; f++)
+        used += (size_t)snprintf(out + used, size - used, "%s.%s", f > 0 ? ", " : "",
+                                 HEIGHT_MAP_NAMES[f]);
+    for (size_t f = 0; INSTRUMENT_FORMATS[f] != NULL; f++)
+        for (const char *at = INSTRUMENT_FORMATS[f]->endings; *at != '\0';) {
+            char ending[16];
+            size_t word = strcspn(at, " ");
+            snprintf(ending, sizeof ending, ", .%.*s", (int)word, at);
+            at += word + strspn(at + word, " ");
+            if (strstr(out, ending) == NULL && used < size)
+                used += (size_t)snprintf(out + used, size - used, "%s", ending);
+        }
+}
+
+/* A file that no mark and no ending tells from others is read as text; one that is none is of a
+ * format that is not known. */
+static int check_text(const char *name, const char *data, size_t size, struct error *err) {
+    char endings[256];
+    const char *slash = strrchr(name, '/'), *dot = strrchr(slash != NULL ? slash : name, '.');
+    if (size == 0 || memchr(data, 0, size) == NULL)
+        return 0;
+    list_endings(endings, sizeof endings);
+    return error_set(err, ERROR_INPUT,
+                     "neither its first bytes nor its ending%s%.20s belong to a format that is "
+                     "known; allowed: %s, and text",
+                     dot != NULL ? " " : "", dot != NULL ? dot : "", endings);
+}
+
 int instrument_read(struct height_map *out, const char *name, const char *data, size_t size,
                     double dx, const struct instrument_request *request, const char **format,
                     struct error *err) {
     const struct instrument_format *foreign = format_of(name, data, size);
     enum height_map_format own = height_map_format_of(name);
+    bool guessed = own == HEIGHT_MAP_FORMATS && (size == 0 || data[0] != '\x93');
     if (own == HEIGHT_MAP_FORMATS)
         own = size > 0 && data[0] == '\x93' ? HEIGHT_MAP_NPY : HEIGHT_MAP_CSV;
     if (dx != 0 && !(dx > 0 && isfinite(dx)))
         return error_set(err, ERROR_INPUT, "the spacing of points must be above 0, not %g", dx);
-    int status = foreign != NULL ? foreign->read(out, data, size, request, err)
-                                 : height_map_parse(out, own, data, size, dx, err);
+    int status = foreign == NULL && guessed ? check_text(name, data, size, err) : 0;
+    if (status != 0)
+        return status;
+    status = foreign != NULL ? foreign->read(out, data, size, request, err)
+                             : height_map_parse(out, own, data, size, dx, err);
     if (status != 0)
         return status;
     if (foreign != NULL && dx > 0) {

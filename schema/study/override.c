@@ -35,10 +35,12 @@ static int put(cJSON *object, const char *name, cJSON *value, struct error *err)
 int override_apply(cJSON *document, const char *text, struct error *err) {
     const char *equals = strchr(text, '=');
     if (equals == NULL || equals == text)
-        return error_set(err, ERROR_INPUT, "\"%.100s\" is not PATH=VALUE", text);
+        return error_set(err, ERROR_INPUT, "\"%.100s\" is not PATH=VALUE, as in surface/hurst=0.8",
+                         text);
     if (equals[1] == '\0')
         return error_set(err, ERROR_INPUT,
-                         "\"%.100s\" has no value behind the =; an empty text is written \"\"",
+                         "\"%.100s\" has no value behind the =: a number, a word or JSON, as in "
+                         "surface/hurst=0.8 or surface/hurst=[0.2,0.8]; an empty text is \"\"",
                          text);
     char *path = strndup(text, (size_t)(equals - text));
     if (path == NULL)

@@ -83,7 +83,9 @@ int command_end(const char *command, int status, const char *file, const struct 
 }
 
 int output_flush(struct error *err) {
-    if (ferror(stdout) == 0 && fflush(stdout) == 0)
+    errno = 0; /* an earlier write may have failed, whose errno is gone */
+    bool flushed = fflush(stdout) == 0;
+    if (flushed && ferror(stdout) == 0)
         return 0;
     return error_set(err, ERROR_SYSTEM, "cannot write the output: %s",
                      strerror(errno != 0 ? errno : EIO));

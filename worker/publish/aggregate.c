@@ -336,6 +336,8 @@ int quantity_absent(const struct case_result *result, const char *quantity, stru
             snprintf(names + length, sizeof names - length, "%s%s", length > 0 ? ", " : "", name);
         near_name_see(&near, name);
     }
+    for (size_t s = 0; s < result->scalar_count; s++)
+        near_name_see(&near, result->scalars[s].name);
     return error_set(err, ERROR_INPUT, "no quantity '%.64s' in this study%s; it has %s", quantity,
                      near_name_hint(&near, hint), names[0] != '\0' ? names : "none");
 }

@@ -539,11 +539,12 @@ int plot_quantity(const struct study_result *study, const struct plot_request *r
     char y[PLOT_LABEL_SIZE];
     snprintf(y, sizeof y, "%s%.120s", first->minuend != NULL ? "difference of " : "",
              view_label(view, first->y_label));
-    const struct plot_words words = {.subject = subject,
-                                     .x = view_label(view, first->x_label),
-                                     .y = y,
-                                     .one = is_one_of(study) ? &study->cases[0] : NULL,
-                                     .y_bare = first->y_label};
+    const struct plot_words words = {
+        .subject = subject,
+        .x = view_label(view, first->x_label),
+        .y = y,
+        .one = is_one_of(study) || study->cases[0].difference ? &study->cases[0] : NULL,
+        .y_bare = first->y_label};
     status = plot_lines_draw(&lines, study, request, &words, file, err);
     plot_lines_clear(&lines);
     return status;

@@ -124,15 +124,18 @@ static void give(struct plot_lines *lines, enum plot_channel_type type, size_t f
 
 static int refuse(const struct plot_lines *lines, const char *channel, const char *name,
                   struct error *err) {
-    char names[256] = "";
+    char names[256] = "", hint[NEAR_HINT_SIZE];
+    struct near_name near = {.typed = name};
     for (size_t f = 0; f < lines->factor_count; f++) {
         size_t used = strlen(names);
+        if (lines->factors[f].pointer != NULL)
+            plot_near_parameter(&near, lines->kind, lines->factors[f].pointer);
         snprintf(names + used, sizeof names - used, "%s%s", used > 0 ? ", " : "",
                  factor_name(&lines->factors[f]));
     }
     return error_set(err, ERROR_INPUT,
-                     "%s: \"%.60s\" does not differ between the lines; what differs: %s", channel,
-                     name, *names != '\0' ? names : "nothing");
+                     "%s: \"%.60s\" does not differ between the lines%s; what differs: %s", channel,
+                     name, near_name_hint(&near, hint), *names != '\0' ? names : "nothing");
 }
 
 static int give_named(struct plot_lines *lines, const struct lines_request *request,

@@ -187,26 +187,28 @@ void plot_legend_lines(struct legend *legend, const struct plot_lines *lines, en
     add_levels(legend, lines);
 }
 
+/* Adds "H = 0.8", or "distribution: Weibull min". */
+static void add_parameter(struct legend *legend, const char *kind,
+                          const struct result_parameter *value) {
+    char text[PLOT_LABEL_SIZE], name[81], words[81];
+    plot_parameter_words(kind, value->pointer, name, sizeof name);
+    plot_in_words(value->text != NULL ? value->text : "", words, sizeof words);
+    if (value->text != NULL)
+        snprintf(text, sizeof text, "%s: %s", name, words);
+    else
+        snprintf(text, sizeof text, "%.60s = %.5g", plot_symbol(kind, value->pointer),
+                 value->number);
+    legend_add(legend, text, "");
+}
+
 void plot_legend_case(struct legend *legend, const struct study_result *study,
                       const struct case_result *one) {
-    char text[PLOT_LABEL_SIZE], name[81];
     for (size_t n = 0; n < swept_count(study); n++) {
         const char *pointer = swept_pointer(study, n);
         const struct result_parameter *value =
             pointer != NULL ? result_parameter(one, pointer) : NULL;
-        if (value == NULL || value->list)
-            continue;
-        if (value->text != NULL) {
-            plot_parameter_words(study->kind, value->pointer, name, sizeof name);
-            plot_in_words(value->text, text, sizeof text);
-            char row[PLOT_LABEL_SIZE];
-            snprintf(row, sizeof row, "%s: %.80s", name, text);
-            legend_add(legend, row, "");
-            continue;
-        }
-        snprintf(text, sizeof text, "%.60s = %.5g", plot_symbol(study->kind, value->pointer),
-                 value->number);
-        legend_add(legend, text, "");
+        if (value != NULL && !value->list)
+            add_parameter(legend, study->kind, value);
     }
 }
 

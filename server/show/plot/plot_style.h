@@ -24,7 +24,8 @@ enum plot_marks plot_marks_of(const struct plot_lines *lines, const struct plot_
  * line that there is. */
 void plot_legend_lines(struct legend *legend, const struct plot_lines *lines, enum plot_marks marks,
                        const struct plot_words *words);
-/* Adds what distinguishes a case from the others of its study, a row each: "H = 0.8". */
+/* Adds what distinguishes a case from the others of its study, a row each: "H = 0.8"; of a
+ * difference of cases "shape: 2 less 3". */
 void plot_legend_case(struct legend *legend, const struct study_result *study,
                       const struct case_result *one);
 /* Adds what open circles are, and what is left out. */

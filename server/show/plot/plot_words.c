@@ -139,6 +139,14 @@ const char *plot_symbol(const char *kind, const char *pointer) {
     return row != NULL && row->symbol != NULL ? row->symbol : last_name(pointer);
 }
 
+void plot_near_parameter(struct near_name *near, const char *kind, const char *pointer) {
+    near_name_see(near, last_name(pointer));
+    if (strcmp(plot_symbol(kind, pointer), near->typed) == 0) {
+        near->name = last_name(pointer);
+        near->distance = 0;
+    }
+}
+
 void plot_parameter_words(const char *kind, const char *pointer, char *out, size_t size) {
     const struct parameter *row = row_of(kind, pointer);
     if (row != NULL && row->title != NULL)

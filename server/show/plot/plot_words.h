@@ -2,6 +2,7 @@
 #ifndef RUGO_SERVER_SHOW_PLOT_PLOT_WORDS_H
 #define RUGO_SERVER_SHOW_PLOT_PLOT_WORDS_H
 
+#include "schema/near_name.h"
 #include <stddef.h>
 #include <stdio.h>
 
@@ -15,6 +16,9 @@ void svg_label(FILE *file, const char *label);
 /* Returns the symbol of a kind's parameter for svg_label, "H" of "/surface/hurst"; its last name
  * where it has none. Borrowed from either. */
 const char *plot_symbol(const char *kind, const char *pointer);
+/* Shows the name of such a parameter to a name that was typed; the parameter whose symbol was
+ * typed, as pictures have it, is the nearest. */
+void plot_near_parameter(struct near_name *near, const char *kind, const char *pointer);
 /* Writes what an axis over such a parameter says, for svg_label: "Hurst exponent H", with the unit
  * in brackets where it has one. */
 void plot_parameter_label(const char *kind, const char *pointer, char *out, size_t size);

@@ -148,7 +148,28 @@ static void print_off(const struct shown_cases *shown, const char *name, const c
                 what, 100 * most, name, (unsigned long long)worst->case_number);
 }
 
+/* Says in which cases surfaces stopped before their errors were as small as was asked for. */
+static void print_stopped(const struct shown_cases *shown, FILE *file) {
+    enum { NAMED_MOST = 6 };
+    size_t count = 0;
+    for (size_t c = 0; c < shown->count; c++) {
+        const struct scalar *within = result_scalar(shown->list[c], "generator_converged");
+        if (within == NULL || !(within->value < 1) || ++count > NAMED_MOST)
+            continue;
+        fprintf(file, "%s%llu",
+                count == 1 ? "Iterated surfaces end above /surface/heights/tolerance in cases "
+                           : ", ",
+                (unsigned long long)shown->list[c]->case_number);
+        if (within->value > 0)
+            fprintf(file, " (%.2g %% of them)", 100 * (1 - within->value));
+    }
+    if (count > NAMED_MOST)
+        fprintf(file, " and %zu more", count - NAMED_MOST);
+    fputs(count > 0 ? ": eps_h, eps_s are what they reach.\n" : "", file);
+}
+
 void print_heights(const struct shown_cases *shown, FILE *file) {
+    print_stopped(shown, file);
     print_off(shown, "eps_h", "Heights are", file);
     print_off(shown, "eps_s", "The spectrum is", file);
 }

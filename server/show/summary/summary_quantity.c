@@ -484,7 +484,8 @@ void summary_of_quantity(const struct quantity_table *words, const struct shown_
             print_case(words, shown, c, report, file);
     else
         print_rows(words, shown, report, file);
-    fprintf(file, "\n%s\n", words->legend);
+    fputc('\n', file);
+    print_folded(file, words->legend);
     print_total_legend(file);
     if (any_law(words, shown))
         print_law_legend(file);

@@ -46,6 +46,7 @@ static void error_headings(const struct error_columns *columns, struct text_tabl
     for (int source = 0; source < ERROR_SOURCES; source++)
         if (columns->shown[1 + source])
             table_cell(table, "%s %%", ERROR_SOURCE_ROWS[source].name);
+    table_fold(table);
     table_cell(table, "size %%");
     if (columns->shown[LAW_COLUMN])
         table_cell(table, "law %%");

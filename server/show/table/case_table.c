@@ -4,6 +4,7 @@
 #include "schema/result/result.h"
 #include "schema/result/swept.h"
 #include "schema/study/parameter.h"
+#include "server/show/plot/plot_words.h"
 #include "server/show/table/shown_cases.h"
 #include "server/show/view.h"
 #include <errno.h>
@@ -586,12 +587,13 @@ static int refuse_parameter(const struct case_table *table, const char *name, st
     struct near_name near = {.typed = name};
     const cJSON *swept;
     cJSON_ArrayForEach(swept, table->study.swept) if (cJSON_IsString(swept)) {
-        near_name_see(&near, last_name(swept->valuestring));
+        plot_near_parameter(&near, table->study.kind, swept->valuestring);
         list_name(names, sizeof names, last_name(swept->valuestring));
     }
     for (size_t c = 0; c < table->study.case_count; c++)
         for (size_t p = 0; p < table->study.cases[c].parameter_count; p++)
-            near_name_see(&near, last_name(table->study.cases[c].parameters[p].pointer));
+            plot_near_parameter(&near, table->study.kind,
+                                table->study.cases[c].parameters[p].pointer);
     return error_set(err, ERROR_INPUT,
                      "where: \"%.60s\" is no parameter of the study's cases%s; it sweeps %s", name,
                      near_name_hint(&near, hint), *names != '\0' ? names : "none");
@@ -652,7 +654,10 @@ static int refuse(const struct conditions *all, const struct case_table *table, 
             snprintf(last, sizeof last, "%s", text);
         }
         if (!any)
-            return error_set(err, ERROR_INPUT, "where: no case has %s = %.60s; there is %s",
+            return error_set(err, ERROR_INPUT,
+                             *one->value != '\0'
+                                 ? "where: no case has %s = %.60s; there is %s"
+                                 : "where: %s has no value behind the =%s; there is %s",
                              one->pointer, one->value, values);
     }
     return error_set(err, ERROR_INPUT, "where: no case has all of these values at once");

@@ -1,3 +1,4 @@
+#include "core/memory_file.h"
 #include "core/plain_text.h"
 #include "schema/json/json.h"
 #include "schema/result/provenance.h"
@@ -86,8 +87,8 @@ static void text_rows(const struct case_table *table, struct text_table *text) {
  * to 0.2
  * %".
  */
-static void text_legend(const struct case_table *table, const struct table_column *column,
-                        FILE *file) {
+static void put_legend(const struct case_table *table, const struct table_column *column,
+                       FILE *file) {
     double largest = NAN, law = NAN;
     for (size_t r = 0; r < table->row_count; r++) {
         const struct table_value *value = &column->values[r];
@@ -109,7 +110,20 @@ static void text_legend(const struct case_table *table, const struct table_colum
     if (law > 0)
         fprintf(file, "%s the other law of heights up to %.2g %% off",
                 told || column->unit != NULL ? ";" : "", 100 * law);
-    fputc('\n', file);
+}
+
+static void text_legend(const struct case_table *table, const struct table_column *column,
+                        FILE *file) {
+    struct memory_file memory;
+    if (!memory_file_open(&memory)) {
+        fputs("(no memory for what columns are)\n", file);
+        return;
+    }
+    put_legend(table, column, memory.file);
+    char *text = memory_file_close(&memory, NULL);
+    if (text != NULL && *text != '\0')
+        print_folded(file, text);
+    free(text);
 }
 
 /* Names the sources that are not known of some value, by column. */

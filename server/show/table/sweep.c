@@ -45,16 +45,19 @@ static int refuse_x(const struct case_table *table, const char *name, struct err
     char names[240] = "", hint[NEAR_HINT_SIZE];
     struct near_name near = {.typed = name};
     const struct case_result *first = table->row_count > 0 ? table->rows[0] : NULL;
+    bool words = false; /* there is a parameter of this name, which has no numbers */
     for (size_t p = 0; first != NULL && p < first->parameter_count; p++) {
         const char *pointer = first->parameters[p].pointer, *last = last_name(pointer);
         size_t used = strlen(names);
-        near_name_see(&near, last);
+        words = words || is_named(pointer, name);
+        plot_near_parameter(&near, table->study.kind, pointer);
         if (count_numbers(table, pointer) > 1)
             snprintf(names + used, sizeof names - used, "%s%s", used > 0 ? ", " : "", last);
     }
-    return error_set(err, ERROR_INPUT,
-                     "x: \"%.60s\" is no number of the study's cases%s; it sweeps %s", name,
-                     near_name_hint(&near, hint), *names != '\0' ? names : "none");
+    return error_set(
+        err, ERROR_INPUT, "x: \"%.60s\" is no number of the study's cases%s; it sweeps %s", name,
+        words ? ", but words; --colour, --dash and --panel show them" : near_name_hint(&near, hint),
+        *names != '\0' ? names : "no number");
 }
 
 /* Chooses the parameter of this name, or of all the one of most numbers. */

@@ -147,3 +147,16 @@ void table_clear(struct text_table *table) {
     free(table->text);
     *table = (struct text_table){.columns = table->columns, .room = table->room};
 }
+
+void print_folded(FILE *file, const char *text) {
+    while (strlen(text) > TABLE_ROOM) {
+        size_t length = TABLE_ROOM;
+        while (length > 0 && text[length] != ' ')
+            length--;
+        if (length == 0)
+            length = strcspn(text, " ");
+        fprintf(file, "%.*s\n", (int)length, text);
+        text += length + (text[length] == ' ');
+    }
+    fprintf(file, "%s\n", text);
+}

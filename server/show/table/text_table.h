@@ -29,4 +29,8 @@ void table_number(struct text_table *table, double value);
 void table_print(const struct text_table *table, FILE *file);
 void table_clear(struct text_table *table);
 
+/* Prints a text, which ends without a line feed, in lines of at most TABLE_ROOM bytes, folded at
+ * blanks, and a line feed. A longer word has a line of its own. */
+void print_folded(FILE *file, const char *text);
+
 #endif

@@ -46,7 +46,7 @@ static const struct {
     {"$RUGO run absent.json", 2, "absent.json: No such file"},
     {"$RUGO run broken.json", 2, "line 1, column 9"},
     {"$RUGO run --set nothing one.json", 2, "\"nothing\" is not PATH=VALUE"},
-    {"$RUGO run --set surface/hurst= one.json", 2, "has no value behind the ="},
+    {"$RUGO run --set surface/hurst= one.json", 2, "as in surface/hurst=0.8"},
     {"$RUGO run --set hurst=0.5 one.json", 2, "did you mean \"/surface/hurst\"?"},
     {"$RUGO generate one.json -o map.png", 2, "--picture FILE.svg or FILE.png draws the surface"},
     {"$RUGO table", 2, "an argument is missing: rugo table ID"},

@@ -293,13 +293,30 @@ static void wide_rows(void **state) {
     height_map_clear(&map);
 }
 
+/* Files that no mark and no ending tells are read as text; those of bytes name what is read. */
+static void unknown_formats_are_named(void **state) {
+    (void)state;
+    static const char BYTES[] = "1\0002\n";
+    bytes_refused(bytes_of(BYTES, sizeof BYTES - 1), "a.plu", NULL,
+                  "ending .plu belong to a format that is known; allowed: .npy, .csv, .xyz, .gwy");
+    bytes_refused(bytes_of(BYTES, sizeof BYTES - 1), "folder.d/plain", NULL,
+                  "nor its ending belong to a format");
+    bytes_refused(bytes_of(BYTES, sizeof BYTES - 1), "a.csv", NULL, "zero byte");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(by_gwyddion),  cmocka_unit_test(matrices),
-        cmocka_unit_test(sixteen_bits), cmocka_unit_test(blocks),
-        cmocka_unit_test(points),       cmocka_unit_test(profile_of_points),
-        cmocka_unit_test(plain_points), cmocka_unit_test(grids),
-        cmocka_unit_test(refused),      cmocka_unit_test(damaged_zygo),
+        cmocka_unit_test(by_gwyddion),
+        cmocka_unit_test(unknown_formats_are_named),
+        cmocka_unit_test(matrices),
+        cmocka_unit_test(sixteen_bits),
+        cmocka_unit_test(blocks),
+        cmocka_unit_test(points),
+        cmocka_unit_test(profile_of_points),
+        cmocka_unit_test(plain_points),
+        cmocka_unit_test(grids),
+        cmocka_unit_test(refused),
+        cmocka_unit_test(damaged_zygo),
         cmocka_unit_test(wide_rows),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -303,7 +303,7 @@ static void overrides_change_the_document(void **state) {
     study_destroy(&study);
     assert_int_equal(study_read(&study, text, strlen(text), BAD, FAKE_KINDS, 0, &faults, &err),
                      ERROR_INPUT);
-    assert_string_equal(err.text, "\"nothing\" is not PATH=VALUE");
+    assert_string_equal(err.text, "\"nothing\" is not PATH=VALUE, as in surface/hurst=0.8");
     assert_int_equal(study_read(&study, text, strlen(text), THROUGH, FAKE_KINDS, 0, &faults, &err),
                      ERROR_INPUT);
 }

@@ -180,6 +180,7 @@ static void what_there_is_not_is_told(void **state) {
         {"kappa,", NULL, "is no name"},
         {NULL, "hurst", "\"hurst\" is not NAME=VALUE"},
         {NULL, "H=1", "\"H\" is no parameter of the study's cases (did you mean hurst?)"},
+        {NULL, "hurst=", "/surface/hurst has no value behind the =; there is 0.2, 0.8"},
         {NULL, "hurst=0.5", "no case has /surface/hurst = 0.5; there is 0.2, 0.8"},
         {NULL, "hurst=0.5x", "no case has /surface/hurst = 0.5x"},
     };

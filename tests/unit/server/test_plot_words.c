@@ -61,6 +61,16 @@ static void parameters_have_labels(void **state) {
     }
 }
 
+/* The symbol that pictures have leads to the name that commands take. */
+static void symbols_are_near_their_parameters(void **state) {
+    (void)state;
+    struct near_name near = {.typed = "C"};
+    plot_near_parameter(&near, "contact", "/surface/hurst");
+    assert_null(near.name);
+    plot_near_parameter(&near, "contact", "/surface/heights/shape");
+    assert_string_equal(near.name, "shape");
+}
+
 static void names_are_words(void **state) {
     (void)state;
     static const struct {
@@ -86,6 +96,7 @@ int main(void) {
         cmocka_unit_test(labels_are_set),
         cmocka_unit_test(parameters_have_symbols),
         cmocka_unit_test(parameters_have_labels),
+        cmocka_unit_test(symbols_are_near_their_parameters),
         cmocka_unit_test(names_are_words),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

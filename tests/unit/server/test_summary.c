@@ -5,9 +5,11 @@
 #include "server/show/summary/summary_cells.h"
 #include "server/show/summary/summary_status.h"
 #include "server/show/summary/summary_target.h"
+#include "server/show/table/text_table.h"
 #include "tests/support/check.h"
 #include "tests/support/result_builder.h"
 #include <stdio.h>
+#include <string.h>
 
 static char *table_of(const struct study_result *study, const struct study_report *report) {
     char *text = NULL;
@@ -277,6 +279,53 @@ static void a_target_names_its_sources_by_size(void **state) {
     study_result_clear(&study);
 }
 
+/* Iterations that end above their tolerance are named by case, in a line and no column. */
+static void stopped_iterations_are_named(void **state) {
+    (void)state;
+    struct study_result study = built_study("statistics", "heights", 3);
+    for (size_t c = 0; c < 3; c++) {
+        built_parameter(&study.cases[c], "/surface/hurst", NULL, 0.2 * (double)(c + 1));
+        built_scalar(&study.cases[c], "eps_h", 0.002, 0.0001, NAN);
+        built_scalar(&study.cases[c], "generator_converged", 0.5 * (double)c, 0.1, NAN);
+    }
+    char *text = table_of(&study, NULL);
+    check_shown(text,
+                (const char *[]){"\nIterated surfaces end above /surface/heights/tolerance in "
+                                 "cases 0, 1 (50 % of them): eps_h, eps_s are what they "
+                                 "reach.\n",
+                                 NULL});
+    assert_null(strstr(text, "generator_converged"));
+    free(text);
+    study.cases[0].scalars[1].value = study.cases[1].scalars[1].value = 1;
+    text = table_of(&study, NULL);
+    assert_null(strstr(text, "Iterated"));
+    free(text);
+    study_result_clear(&study);
+}
+
+/* Lines below tables are no longer than these; blanks fold them, and nothing gets lost. */
+static void texts_are_folded(void **state) {
+    (void)state;
+    char text[500] = "", *out = NULL;
+    size_t size = 0, longest = 0;
+    for (size_t n = 0; n < 60; n++)
+        strcat(text, n % 7 == 0 ? "a " : "word ");
+    memset(text + strlen(text), 'x', 150); /* longer than a line */
+    FILE *file = open_memstream(&out, &size);
+    assert_non_null(file);
+    print_folded(file, text);
+    fclose(file);
+    for (char *line = out; *line != '\0';) {
+        size_t length = strcspn(line, "\n");
+        longest = length > longest && strchr(line, ' ') != NULL ? length : longest;
+        line[length] = ' '; /* as it was */
+        line += length + 1;
+    }
+    assert_in_range(longest, 100, TABLE_ROOM);
+    assert_memory_equal(out, text, strlen(text));
+    free(out);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(scalars_are_those_of_the_view),
@@ -286,6 +335,8 @@ int main(void) {
         cmocka_unit_test(a_report_tells_errors_by_source),
         cmocka_unit_test(a_target_names_its_sources_by_size),
         cmocka_unit_test(failures_are_told),
+        cmocka_unit_test(stopped_iterations_are_named),
+        cmocka_unit_test(texts_are_folded),
         cmocka_unit_test(numbers_have_the_digits_of_their_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
