@@ -291,8 +291,6 @@ static bool fit(struct plot *plot, const struct study_result *study) {
     if (plot->words->points) {
         frame->x = own;
         widen(&frame->x);
-        if (frame->y.low != 0 && !frame->y.logarithmic && !frame->y.one_plus)
-            frame->y.low -= 0.06 * (frame->y.high - frame->y.low);
     }
     return true;
 }
