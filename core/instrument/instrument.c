@@ -53,8 +53,7 @@ static void list_endings(char *out, size_t size) {
         }
 }
 
-/* A file that no mark and no ending tells from others is read as text; one that is none is of a
- * format that is not known. */
+/* Refuses what is no text: a file without a mark or an ending that is known is read as text. */
 static int check_text(const char *name, const char *data, size_t size, struct error *err) {
     char endings[256];
     const char *slash = strrchr(name, '/'), *dot = strrchr(slash != NULL ? slash : name, '.');

@@ -167,7 +167,7 @@ static void draw(struct plot_pen *pen, const struct study_report *report, size_t
     }
     if (!frame_finish(&pen->frame))
         return;
-    frame_draw(pen->file, &pen->frame, "CPU s a case",
+    frame_draw(pen->file, &pen->frame, "CPU time a case (s)",
                worst_of(report) != NULL ? "largest relative error" : "relative error");
     draw_front(pen, count, laws);
     for (size_t a = 0; a < count; a++)

@@ -157,6 +157,8 @@ void print_folded(FILE *file, const char *text) {
             length = strcspn(text, " ");
         fprintf(file, "%.*s\n", (int)length, text);
         text += length + (text[length] == ' ');
+        if (*text == '\0')
+            return;
     }
     fprintf(file, "%s\n", text);
 }

@@ -293,7 +293,8 @@ static void wide_rows(void **state) {
     height_map_clear(&map);
 }
 
-/* Files that no mark and no ending tells are read as text; those of bytes name what is read. */
+/* A file without a mark or an ending that is known is read as text; one of bytes is refused with
+ * the endings that there are. */
 static void unknown_formats_are_named(void **state) {
     (void)state;
     static const char BYTES[] = "1\0002\n";
