@@ -22,6 +22,7 @@ struct store {
     bool shrinks;            /* a study was purged, and its pages are not given back yet */
     int batch;               /* inside store_begin .. store_commit */
     bool spoiled;            /* the batch holds a part of a change, and is rolled back at its end */
+    struct queue_line *line; /* as it was read last; NULL: not yet */
     struct due_case damaged; /* store_found_damage; study "": none */
     /* Workers that asked for jobs lately and their threads, as counted at seen_ms; 0: not yet. */
     int64_t workers_seen, threads_seen, seen_ms;
@@ -86,10 +87,21 @@ int column_json(sqlite3_stmt *row, int column, cJSON **out, struct error *err);
 int study_row(struct store *store, const char *id, int64_t *row, struct error *err);
 /* Counts the work of a study again, after jobs were added. */
 int study_count_work(struct store *store, int64_t study, struct error *err);
+/* The jobs of all studies that run, as of one moment. */
+struct at_work {
+    bool known;
+    size_t workers;              /* that have them */
+    double jobs, soonest, rests; /* seconds until the first of them ends, and of all */
+};
+/* Reads it unless it is known. */
+int at_work_read(struct store *store, struct at_work *out, struct error *err);
 /* Sets the position in the queue of a study with jobs that wait, from 1 on, and the seconds until
- * the next of its jobs starts: NaN where no worker is at work. */
-int study_line(struct store *store, int64_t study, uint64_t *place, double *starts_in,
-               struct error *err);
+ * the next of its jobs starts: NaN where no worker is at work. The handle keeps the queue until the
+ * store changes, so that many studies cost little more than one. */
+int study_line(struct store *store, int64_t study, const struct at_work *at_work, uint64_t *place,
+               double *starts_in, struct error *err);
+struct queue_line;
+void queue_line_destroy(struct queue_line **line);
 /* Requeues what failed or was cancelled: *jobs of them. Within a change. */
 int study_retry(struct store *store, int64_t study, int64_t *jobs, struct error *err);
 /* Ends the study when none of its jobs waits or runs; raises its revision. */

@@ -61,8 +61,9 @@ static int read_jobs(struct reading *reading, struct error *err) {
     int status = store_query(
         reading->store, &row, err,
         "SELECT j.case_number, coalesce(c.realisations, ?2), c.realisations_done, c.estimate, "
-        "c.seconds, j.count, j.reported, j.claimed_ms, j.reported_ms FROM job j JOIN study_case c "
-        "ON c.study_id = j.study_id AND c.number = j.case_number WHERE j.state = 'running' AND "
+        "c.seconds, j.count, j.reported, j.claimed_ms, j.reported_ms FROM job j INDEXED BY "
+        "job_running CROSS JOIN study_case c ON c.study_id = j.study_id AND c.number = "
+        "j.case_number WHERE j.state = 'running' AND "
         "j.study_id = ?1 ORDER BY j.case_number",
         "ii", reading->study, reading->realisations);
     while (status == 0 && (status = store_step(reading->store, row, err)) == 1) {
@@ -148,7 +149,8 @@ static int read_waiting(const struct reading *reading, double *waiting, struct e
         "SELECT total((coalesce(realisations, ?2) - realisations_done) * CASE WHEN "
         "realisations_done > 0 THEN seconds / realisations_done ELSE estimate * ?3 END) FROM "
         "study_case WHERE study_id = ?1 AND (parent IS NOT NULL OR ?2 > 0) AND jobs_left > 0 AND "
-        "number NOT IN (SELECT case_number FROM job WHERE state = 'running' AND study_id = ?1)",
+        "number NOT IN (SELECT case_number FROM job INDEXED BY job_running WHERE state = 'running' "
+        "AND study_id = ?1)",
         "iid", reading->study, reading->realisations, correction(reading));
     if (status == 0)
         status = store_step(reading->store, row, err);

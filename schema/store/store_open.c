@@ -381,6 +381,7 @@ void store_close(struct store **store) {
     for (size_t i = 0; i < s->statement_count; i++)
         sqlite3_finalize(s->statements[i].statement);
     sqlite3_close(s->db);
+    queue_line_destroy(&s->line);
     free(s->path);
     free(s);
     *store = NULL;

@@ -15,8 +15,8 @@ int study_row(struct store *store, const char *id, int64_t *row, struct error *e
 
 /* Whether a case of the study is neither published nor marked as impossible to publish. */
 #define STUDY_DUE                                                                                  \
-    "EXISTS (SELECT 1 FROM study_case c WHERE c.study_id = study.id AND c.jobs_left = 0 AND "      \
-    "c.revision > c.settled)"
+    "EXISTS (SELECT 1 FROM study_case c INDEXED BY case_due WHERE c.study_id = study.id AND "      \
+    "c.jobs_left = 0 AND c.revision > c.settled)"
 
 int study_settle(struct store *store, int64_t study, struct error *err) {
     return store_run(store, err,
@@ -45,9 +45,10 @@ static const char *state_name(const unsigned char *text) {
     "jobs_running, jobs_waiting, jobs_cancelled, realisations_done, realisations_failed, "         \
     "seconds, "                                                                                    \
     "revision, created, finished, id, "                                                            \
-    "(SELECT coalesce(sum(reported), 0) FROM job WHERE state = 'running' AND study_id = "          \
-    "study.id), "                                                                                  \
-    "(SELECT count(DISTINCT worker) FROM job WHERE state = 'running' AND study_id = study.id), "   \
+    "(SELECT coalesce(sum(reported), 0) FROM job INDEXED BY job_running WHERE state = 'running' "  \
+    "AND study_id = study.id), "                                                                   \
+    "(SELECT count(DISTINCT worker) FROM job INDEXED BY job_running WHERE state = 'running' AND "  \
+    "study_id = study.id), "                                                                       \
     "cases_failed, random, cpu_seconds, jobs_without_cpu, "                                        \
     "CASE WHEN realisations > 0 THEN cases * realisations ELSE (SELECT sum(c.realisations) FROM "  \
     "study_case c WHERE c.study_id = study.id) END, "                                              \
@@ -101,15 +102,13 @@ static int read_status(sqlite3_stmt *row, struct study_status *out, struct error
 }
 
 /* Estimates the time of a study that waits, by the workers that run jobs of any study. */
-static int queue_left(struct store *store, int64_t row, struct study_status *out,
-                      struct work_left *left, struct error *err) {
-    int64_t workers = 0;
-    int status = store_integer(
-        store, &workers, err, "SELECT count(DISTINCT worker) FROM job WHERE state = 'running'", "");
+static int queue_left(struct store *store, int64_t row, struct at_work *at_work,
+                      struct study_status *out, struct work_left *left, struct error *err) {
+    int status = at_work_read(store, at_work, err);
     if (status == 0)
-        status = study_left(store, row, out->realisations, (size_t)workers, left, err);
+        status = study_left(store, row, out->realisations, at_work->workers, left, err);
     if (status == 0)
-        status = study_line(store, row, &out->place, &out->starts_in, err);
+        status = study_line(store, row, at_work, &out->place, &out->starts_in, err);
     left->seconds += out->starts_in;
     if (strcmp(out->state, "queued") != 0)
         out->place = 0;
@@ -117,15 +116,15 @@ static int queue_left(struct store *store, int64_t row, struct study_status *out
 }
 
 /* Reads what depends on other rows: the time left, and the position in the queue. */
-static int read_outlook(struct store *store, int64_t row, struct study_status *out,
-                        struct error *err) {
+static int read_outlook(struct store *store, int64_t row, struct at_work *at_work,
+                        struct study_status *out, struct error *err) {
     struct work_left left = {0};
     int status = 0;
     out->starts_in = NAN;
     if (out->jobs_running > 0)
         status = study_left(store, row, out->realisations, 0, &left, err);
     else if (out->jobs_waiting > 0)
-        status = queue_left(store, row, out, &left, err);
+        status = queue_left(store, row, at_work, out, &left, err);
     else if (out->realisations_total > 0)
         left.share = (double)out->realisations_done / (double)out->realisations_total;
     out->seconds_left = left.seconds;
@@ -161,10 +160,11 @@ static int read_row(struct store *store, const char *id, int64_t *row, struct st
 static int read_study(struct store *store, const char *id, bool outlook, struct study_status *out,
                       struct error *err) {
     struct study_status read = {.share = NAN, .seconds_left = NAN, .starts_in = NAN};
+    struct at_work at_work = {0};
     int64_t row = 0;
     int status = read_row(store, id, &row, &read, err);
     if (status == 0 && outlook)
-        status = read_outlook(store, row, &read, err);
+        status = read_outlook(store, row, &at_work, &read, err);
     if (status != 0)
         study_status_clear(&read);
     else
@@ -226,34 +226,57 @@ static int listed_row(struct store *store, const char *id, int64_t *row, struct 
     return status == ERROR_ABSENT ? study_row(store, id, row, err) : status;
 }
 
-int store_list(struct store *store, const char *after, size_t limit, struct study_status **out,
-               size_t *count, struct error *err) {
-    int64_t row = 0;
-    int status = after != NULL && *after != '\0' ? listed_row(store, after, &row, err) : 0;
-    if (status != 0)
-        return status;
-    struct study_status *list = array_create(limit, sizeof *list);
-    int64_t *rows = array_create(limit, sizeof *rows);
-    size_t n = 0;
+/* Reads the rows of studies behind one, and their numbers. */
+static int list_rows(struct store *store, int64_t after, size_t limit, struct study_status *list,
+                     int64_t *rows, size_t *count, struct error *err) {
     sqlite3_stmt *statement = NULL;
-    if (list == NULL || rows == NULL)
-        status = error_memory(err, limit * sizeof *list, "a list of studies");
-    if (status == 0)
-        status = store_query(store, &statement, err,
+    size_t n = 0;
+    int status = store_query(store, &statement, err,
                              "SELECT " STATUS_COLUMNS
                              " FROM study WHERE id > ? AND id NOT IN " DELETED_STUDIES
                              " ORDER BY id LIMIT ?",
-                             "ii", row, (int64_t)limit);
+                             "ii", after, (int64_t)limit);
     while (status == 0 && n < limit && (status = store_step(store, statement, err)) == 1) {
         rows[n] = sqlite3_column_int64(statement, 19);
         status = read_status(statement, &list[n++], err);
     }
     if (status >= 0 && n != 0)
         sqlite3_reset(statement);
-    for (size_t i = 0; status >= 0 && i < n; i++)
-        status = read_outlook(store, rows[i], &list[i], err);
+    *count = n;
+    return status < 0 ? status : 0;
+}
+
+/* Lists as of one moment, so that the queue is read once. */
+static int list_studies(struct store *store, const char *after, size_t limit,
+                        struct study_status *list, int64_t *rows, size_t *count,
+                        struct error *err) {
+    struct at_work at_work = {0};
+    int64_t row = 0;
+    bool inside = sqlite3_get_autocommit(store->db) == 0;
+    int status = inside ? 0 : read_begin(store, err);
+    if (status != 0)
+        return status;
+    if (after != NULL && *after != '\0')
+        status = listed_row(store, after, &row, err);
+    if (status == 0)
+        status = list_rows(store, row, limit, list, rows, count, err);
+    for (size_t i = 0; status == 0 && i < *count; i++)
+        status = read_outlook(store, rows[i], &at_work, &list[i], err);
+    if (!inside)
+        read_end(store);
+    return status;
+}
+
+int store_list(struct store *store, const char *after, size_t limit, struct study_status **out,
+               size_t *count, struct error *err) {
+    struct study_status *list = array_create(limit, sizeof *list);
+    int64_t *rows = array_create(limit, sizeof *rows);
+    size_t n = 0;
+    int status = list != NULL && rows != NULL
+                     ? list_studies(store, after, limit, list, rows, &n, err)
+                     : error_memory(err, limit * sizeof *list, "a list of studies");
     free(rows);
-    if (status < 0) {
+    if (status != 0) {
         free_list(list, n);
         return status;
     }

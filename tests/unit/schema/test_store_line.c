@@ -1,10 +1,12 @@
 /* Protects: owners take turns at the workers by the time that their jobs take and by their weights,
  * whoever came first and however long a study is; of an owner the study of higher priority is
- * first; and a study that waits has its position and an estimate of when it starts. */
+ * first; and a study that waits has its position and an estimate of when it starts, which is that
+ * of the definition however the queue is read. */
 #include "schema/store/store.h"
 #include "schema/study/study_reader.h"
 #include "tests/support/check.h"
 #include "tests/support/fake_kind.h"
+#include "tests/support/seed.h"
 #include "tests/support/store_text.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -169,6 +171,121 @@ static void a_place_in_line_is_told(void **state) {
     store_close(&store);
 }
 
+/* The definition of place and starts_in, as one query for one study: ?1 is its id, ?2 now. Its
+ * position; the seconds of jobs that begin before it; the number of jobs that run; and the seconds
+ * until the first of them ends, and of all. */
+static const char DEFINITION[] =
+    "WITH turn AS (SELECT owner, weight, begun, max(served, (SELECT max(begun) FROM share)) AS "
+    "start FROM share), waiting AS (SELECT id, public, owner, priority, state, CASE WHEN "
+    "realisations_done > 0 THEN seconds / realisations_done * realisations_waiting ELSE work / "
+    "jobs * jobs_waiting END AS left FROM study WHERE state IN ('queued', 'running') AND "
+    "jobs_waiting > 0), line AS (SELECT w.id, w.public, w.owner, w.state, w.left, t.begun, "
+    "t.start, t.weight, t.start + total(w.left) OVER (PARTITION BY w.owner ORDER BY w.priority "
+    "DESC, w.id ROWS BETWEEN UNBOUNDED PRECEDING AND 1 PRECEDING) / t.weight AS begins FROM "
+    "waiting w JOIN turn t ON t.owner = w.owner), mine AS (SELECT begins, begun, id, state FROM "
+    "line WHERE public = ?1), running AS (SELECT count(*) AS n, min(rest) AS soonest, total(rest) "
+    "AS rests FROM (SELECT max(0, j.count * CASE WHEN c.realisations_done > 0 THEN c.seconds / "
+    "c.realisations_done ELSE c.estimate END - (?2 - coalesce(j.claimed_ms, ?2)) / 1000.0) AS "
+    "rest FROM job j JOIN study_case c ON c.study_id = j.study_id AND c.number = j.case_number "
+    "WHERE j.state = 'running')) SELECT iif(m.state = 'queued', 1 + (SELECT count(*) FROM line l "
+    "WHERE (l.begins, l.begun, l.id) < (m.begins, m.begun, m.id) AND l.state = 'queued'), 0), "
+    "(SELECT total(max(0, min(m.begins - o.start, o.lefts / o.weight)) * o.weight) FROM (SELECT "
+    "start, weight, sum(left) AS lefts FROM line GROUP BY owner) o), r.n, r.soonest, r.rests FROM "
+    "mine m, running r";
+
+static void define(const char *path, const char *id, uint64_t *place, double *starts_in) {
+    sqlite3 *db = sql_open(path);
+    sqlite3_stmt *row = NULL;
+    *place = 0;
+    *starts_in = NAN;
+    assert_int_equal(sqlite3_prepare_v2(db, DEFINITION, -1, &row, NULL), SQLITE_OK);
+    sqlite3_bind_text(row, 1, id, -1, SQLITE_STATIC);
+    sqlite3_bind_int64(row, 2, clock_ms);
+    if (sqlite3_step(row) == SQLITE_ROW) {
+        double before = sqlite3_column_double(row, 1), workers = sqlite3_column_double(row, 2);
+        double soonest = sqlite3_column_double(row, 3), rests = sqlite3_column_double(row, 4);
+        *place = (uint64_t)sqlite3_column_int64(row, 0);
+        if (workers > 0)
+            *starts_in = before > 0 ? fmax(soonest, (rests + before) / workers) : soonest;
+    }
+    sqlite3_finalize(row);
+    sqlite3_close(db);
+}
+
+/* Compares a list with the definition, and each study that waits alone; returns how many are
+ * queued. */
+static int compare_with_definition(struct store *store, const char *path) {
+    struct study_status *list = NULL;
+    size_t count = 0;
+    int queued = 0;
+    assert_int_equal(store_list(store, "", 100, &list, &count, NULL), 0);
+    for (size_t n = 0; n < count; n++) {
+        uint64_t place = 0;
+        double starts_in = NAN;
+        bool waits = list[n].jobs_waiting > 0 && list[n].jobs_running == 0;
+        if (waits) {
+            define(path, list[n].id, &place, &starts_in);
+            check_place(store, list[n].id, place, starts_in);
+        }
+        assert_int_equal(list[n].place, place);
+        assert_true(isnan(starts_in) ? isnan(list[n].starts_in)
+                                     : fabs(list[n].starts_in - starts_in) <= 1e-9);
+        queued += place > 0;
+        study_status_clear(&list[n]);
+    }
+    free(list);
+    return queued;
+}
+
+/* Random studies of several owners, with weights and priorities, of which jobs are claimed, done
+ * and cancelled meanwhile. The line is read by a handle that changes nothing, too. Weights are
+ * powers of two and times whole, so that studies tie. */
+static void places_are_those_of_the_definition(void **state) {
+    (void)state;
+    static const char *const OWNERS[] = {"", "anna", "bert", "carl", "dora"};
+    static const double SECONDS[] = {1, 5, 10};
+    static const char PATH[] = "random.db";
+    char ids[100][STUDY_ID_SIZE], got[STUDY_ID_SIZE];
+    int count = 0, compared = 0;
+    struct store *store = open_store(PATH), *reader = open_store(PATH);
+    srand48((long)seed_of_now());
+    for (int o = 0; o < 5; o++)
+        assert_int_equal(store_share(store, OWNERS[o], ldexp(1, o % 4 - 1), NULL), 0);
+    for (int step = 0; step < 150; step++) {
+        long what = lrand48() % 8;
+        if ((what < 5 || count < 3) && count < 100)
+            submit(store, OWNERS[lrand48() % 5], (int)(lrand48() % 3) - 1, 1 + (int)(lrand48() % 5),
+                   SECONDS[lrand48() % 3], ids[count++]);
+        else if (what < 7)
+            next(store, what == 5, got);
+        else
+            (void)store_cancel(store, ids[lrand48() % count], NULL);
+        clock_ms += lrand48() % 300;
+        if (step % 10 == 9) {
+            compared += compare_with_definition(store, PATH);
+            compared += compare_with_definition(reader, PATH);
+        }
+    }
+    assert_true(compared > 100);
+    store_close(&reader);
+    store_close(&store);
+}
+
+/* A place within a change that is undone is not remembered. */
+static void an_undone_change_leaves_places(void **state) {
+    (void)state;
+    struct store *store = open_store("undone.db");
+    char first[STUDY_ID_SIZE], second[STUDY_ID_SIZE];
+    submit(store, "anna", 0, 2, 0.5, first);
+    submit(store, "anna", 0, 2, 0.5, second);
+    assert_int_equal(store_begin(store, NULL), 0);
+    assert_int_equal(store_cancel(store, first, NULL), 0);
+    check_place(store, second, 1, NAN);
+    store_abandon(store);
+    check_place(store, second, 2, NAN);
+    store_close(&store);
+}
+
 /* A worker of other kinds is given nothing, and takes nobody's turn. */
 static void a_claim_may_name_kinds(void **state) {
     (void)state;
@@ -196,6 +313,8 @@ int main(void) {
         cmocka_unit_test(shares_are_of_time_and_weight),
         cmocka_unit_test(of_one_owner_priority_comes_first),
         cmocka_unit_test(a_place_in_line_is_told),
+        cmocka_unit_test(places_are_those_of_the_definition),
+        cmocka_unit_test(an_undone_change_leaves_places),
         cmocka_unit_test(a_claim_may_name_kinds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
