@@ -67,7 +67,7 @@ struct dispatcher {
     unsigned waiting;      /* threads that wait for an offer */
     uint64_t vain;         /* claims so far that found nothing */
     bool idle;             /* the last claim found nothing */
-    bool due, publishing;  /* cases are to be published; a thread does so */
+    bool due, publishing;  /* cases are to be published; some are just now */
     bool postponed;        /* the last time some cases stayed due */
     bool drained, closing;
     atomic_bool ending;   /* read without the lock by claims that wait */
@@ -562,11 +562,6 @@ static struct lease *stock_take(struct dispatcher *dispatcher) {
 static enum offer offer_now(struct dispatcher *dispatcher, struct lease **out) {
     if (atomic_load(&dispatcher->ending) || dispatcher->status != 0)
         return OFFER_END;
-    if (dispatcher->due && !dispatcher->publishing) {
-        dispatcher->publishing = true;
-        dispatcher->due = false;
-        return OFFER_PUBLISH;
-    }
     if (dispatcher->stock > 0) {
         *out = stock_take(dispatcher);
         return OFFER_JOB;
@@ -589,10 +584,24 @@ enum offer dispatcher_take(struct dispatcher *dispatcher, bool patient, struct l
     return offer;
 }
 
+bool dispatcher_await_due(struct dispatcher *dispatcher) {
+    pthread_mutex_lock(&dispatcher->lock);
+    while (!dispatcher->due && !dispatcher->drained && dispatcher->status == 0 &&
+           !atomic_load(&dispatcher->ending))
+        pthread_cond_wait(&dispatcher->offers, &dispatcher->lock);
+    bool due = dispatcher->due && dispatcher->status == 0 && !atomic_load(&dispatcher->ending);
+    dispatcher->publishing = due;
+    dispatcher->due = dispatcher->due && !due;
+    pthread_mutex_unlock(&dispatcher->lock);
+    return due;
+}
+
 void dispatcher_published(struct dispatcher *dispatcher, bool postponed) {
     pthread_mutex_lock(&dispatcher->lock);
     dispatcher->publishing = false;
     dispatcher->postponed = postponed;
+    dispatcher->pause.ms = 0; /* the queue may be drained, or longer */
+    dispatcher->claim_ms = 0;
     pthread_cond_signal(&dispatcher->news);
     pthread_cond_broadcast(&dispatcher->offers);
     pthread_mutex_unlock(&dispatcher->lock);

@@ -44,11 +44,14 @@ struct lease; /* a job that the process has claimed */
 enum offer {
     OFFER_JOB,
     OFFER_NOTHING, /* for now */
-    OFFER_PUBLISH, /* cases are due in the local store; dispatcher_published is due then */
     OFFER_END,
 };
 /* Waits for a job. Unless patient, returns OFFER_NOTHING once a claim has found none. */
 enum offer dispatcher_take(struct dispatcher *dispatcher, bool patient, struct lease **out);
+
+/* For the thread that publishes: waits until cases are due in the local store. Returns false once
+ * nothing more will be. dispatcher_published is due after each time. */
+bool dispatcher_await_due(struct dispatcher *dispatcher);
 /* postponed: some cases stay due, which cannot be published now. */
 void dispatcher_published(struct dispatcher *dispatcher, bool postponed);
 

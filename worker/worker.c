@@ -26,6 +26,8 @@ struct worker_pool {
     pthread_cond_t changed; /* signalled when a thread ends */
     atomic_bool ending;
     atomic_uint computing; /* threads that run a job, not those that wait for an answer */
+    pthread_t publisher;   /* publishes what is due in a local store */
+    bool publishes;        /* it was started */
     unsigned at_work;      /* threads that have not ended; protected by the lock */
 };
 
@@ -165,27 +167,6 @@ static void job_work(struct worker_thread *thread, struct lease *lease) {
 
 /* --- a thread --- */
 
-static bool is_ending(void *context) {
-    struct worker_thread *thread = context;
-    return atomic_load(&thread->pool->ending);
-}
-
-/* Publishes what is due. A failure loses nothing, as results are stored by now and cases stay
- * due. */
-static void thread_publish(struct worker_thread *thread) {
-    struct store *store = NULL;
-    struct error err = {0};
-    struct publish_counts counts = {0};
-    const struct store_options existing = {.existing = true};
-    int status = store_open(&store, thread->pool->options->source.database, &existing, &err);
-    if (status == 0)
-        status = publish_due(store, is_ending, thread, &counts, &err);
-    if (status != 0 && status != ERROR_STOPPED)
-        thread_log(thread, LEVEL_WARNING, NULL, "cases are not published: %s", err.text);
-    store_close(&store);
-    dispatcher_published(thread->pool->dispatcher, status != 0 || counts.postponed > 0);
-}
-
 /* Takes and runs jobs until the pool ends or the queue is drained. */
 static void thread_work(struct worker_thread *thread) {
     for (;;) {
@@ -197,9 +178,6 @@ static void thread_work(struct worker_thread *thread) {
             break;
         case OFFER_NOTHING:
             runner_drop(thread); /* frees its memory while the thread waits */
-            break;
-        case OFFER_PUBLISH:
-            thread_publish(thread);
             break;
         default:
             return;
@@ -216,6 +194,42 @@ static void *worker_thread_main(void *context) {
     thread->pool->at_work--;
     pthread_cond_broadcast(&thread->pool->changed);
     pthread_mutex_unlock(&thread->pool->lock);
+    return NULL;
+}
+
+/* --- the thread that publishes --- */
+
+static bool is_ending(void *context) {
+    struct worker_pool *pool = context;
+    return atomic_load(&pool->ending);
+}
+
+/* Publishes what is due; returns whether some stays due. A failure loses nothing, as results are
+ * stored by now and cases stay due. The next time the store is opened anew then. */
+static bool pool_publish(struct worker_pool *pool, struct store **store) {
+    const struct store_options existing = {.existing = true};
+    struct error err = {0};
+    struct publish_counts counts = {0};
+    int status =
+        *store != NULL ? 0 : store_open(store, pool->options->source.database, &existing, &err);
+    if (status == 0)
+        status = publish_due(*store, is_ending, pool, &counts, &err);
+    if (status != 0 && status != ERROR_STOPPED) {
+        const struct log_about about = {.worker = pool->name};
+        log_line(LEVEL_WARNING, &about, "cases are not published: %s", err.text);
+    }
+    if (status != 0 || counts.postponed > 0)
+        store_close(store);
+    return status != 0 || counts.postponed > 0;
+}
+
+/* The thread's body; context is the pool. */
+static void *publisher_main(void *context) {
+    struct worker_pool *pool = context;
+    struct store *store = NULL;
+    while (dispatcher_await_due(pool->dispatcher))
+        dispatcher_published(pool->dispatcher, pool_publish(pool, &store));
+    store_close(&store);
     return NULL;
 }
 
@@ -285,20 +299,35 @@ static int thread_start(struct worker_thread *thread, struct error *err) {
     return started ? 0 : error_set(err, ERROR_SYSTEM, "cannot start a worker thread");
 }
 
+/* Starts the threads; *started of the workers'. */
+static int worker_pool_start(struct worker_pool *pool, struct worker_thread *threads,
+                             unsigned *started, struct error *err) {
+    int status = 0;
+    if (pool->options->source.database != NULL) {
+        pool->publishes = pthread_create(&pool->publisher, NULL, publisher_main, pool) == 0;
+        if (!pool->publishes)
+            status = error_set(err, ERROR_SYSTEM, "cannot start the thread that publishes");
+    }
+    while (*started < pool->options->threads && status == 0) {
+        threads[*started] = (struct worker_thread){.pool = pool, .number = *started};
+        status = thread_start(&threads[*started], err);
+        *started += status == 0;
+    }
+    return status;
+}
+
 static int worker_pool_work(struct worker_pool *pool, struct worker_thread *threads,
                             struct error *err) {
     unsigned started = 0;
-    int status = 0;
-    while (started < pool->options->threads && status == 0) {
-        threads[started] = (struct worker_thread){.pool = pool, .number = started};
-        status = thread_start(&threads[started], err);
-        started += status == 0;
-    }
+    int status = worker_pool_start(pool, threads, &started, err);
     if (status != 0)
         worker_pool_end(pool);
     bool stopped = worker_pool_watch(pool);
     for (unsigned n = 0; n < started; n++)
         pthread_join(threads[n].handle, NULL);
+    worker_pool_end(pool);
+    if (pool->publishes)
+        pthread_join(pool->publisher, NULL);
     if (status == 0)
         status = dispatcher_status(pool->dispatcher, err);
     if (status == 0 && stopped)

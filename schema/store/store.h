@@ -292,19 +292,27 @@ int store_unpublish(struct store *store, const struct due_case *damaged, struct 
 /* Sets *due to whether any case is due. */
 int store_is_due(struct store *store, bool *due, struct error *err);
 struct publication {
-    /* Publishes one case by store_publish. ERROR_INPUT and ERROR_NUMERIC mark the case; after any
-     * other error, which may pass, it stays due. */
-    int (*publish)(void *context, struct store *store, const struct due_case *due,
+    /* Reads and merges what publish then writes. Cases are prepared one after the other, outside of
+     * any change, until that took some hundredths of a second or there are 64, and published in one
+     * change. place: its number in that group. After an error, the case is not published. NULL:
+     * cases are published one by one. */
+    int (*prepare)(void *context, struct store *store, const struct due_case *due, size_t place,
                    struct error *err);
-    bool (*stop)(void *context); /* called before each case; may be NULL */
+    /* Publishes one case by store_publish. ERROR_INPUT and ERROR_NUMERIC, of either call, mark the
+     * case; after any other error, which may pass, it stays due. */
+    int (*publish)(void *context, struct store *store, const struct due_case *due, size_t place,
+                   struct error *err);
+    void (*clear)(void *context); /* called after each group; may be NULL */
+    bool (*stop)(void *context);  /* called before each case; may be NULL */
     void *context;
 };
+enum { PUBLICATION_GROUP = 64 };
 struct publish_counts {
     uint64_t published, failed;
     uint64_t postponed;  /* cases that stay due */
     struct error reason; /* of the last one postponed */
 };
-/* Calls publish once for each case that is due, in the order of studies. ERROR_STOPPED when stop
+/* Offers each case that is due once, in the order of studies. ERROR_STOPPED when stop
  * says so. */
 int store_publish_due(struct store *store, const struct publication *publication,
                       struct publish_counts *counts, struct error *err);

@@ -2,6 +2,8 @@
  * impossible to publish. The condition is that of the index case_due, word for word. */
 #include "schema/store/store_internal.h"
 #include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
 
 #define DUE "jobs_left = 0 AND revision > settled"
 
@@ -76,33 +78,113 @@ static bool is_final(int status) {
     return status == ERROR_INPUT || status == ERROR_NUMERIC;
 }
 
-static int offer(struct store *store, const struct publication *publication,
-                 const struct due_case *due, struct publish_counts *counts, struct error *err) {
-    struct error reason = {0};
-    int status = publication->publish(publication->context, store, due, &reason);
-    if (is_final(status)) {
-        counts->failed++;
-        return fail_publication(store, due, reason.text, err);
+static const double GROUP_SECONDS = 0.02; /* of preparation, beyond which no further one is begun */
+
+struct offered {
+    struct due_case due;
+    int status; /* of its preparation, then of its publication */
+    struct error reason;
+};
+
+static double seconds_now(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* Finds and prepares the next cases. A publication that prepares nothing has them one by one. */
+static int gather(struct store *store, const struct publication *publication, struct cursor *cursor,
+                  struct offered *group, size_t *count, struct error *err) {
+    const size_t most = publication->prepare != NULL ? PUBLICATION_GROUP : 1;
+    const double until = seconds_now() + GROUP_SECONDS;
+    int status = 1;
+    *count = 0;
+    while (*count < most && (*count == 0 || seconds_now() < until) &&
+           (status = find_due(store, cursor, err)) == 1) {
+        struct offered *next = &group[*count];
+        if (publication->stop != NULL && publication->stop(publication->context))
+            return error_set(err, ERROR_STOPPED, "stopped");
+        *next = (struct offered){.due = cursor->due};
+        if (publication->prepare != NULL)
+            next->status = publication->prepare(publication->context, store, &next->due, *count,
+                                                &next->reason);
+        ++*count;
     }
-    if (status != 0) {
-        counts->postponed++;
-        counts->reason = reason;
-    } else {
-        counts->published++;
+    return status < 0 ? status : 0;
+}
+
+/* Publishes a case, or marks it. Returns the error of the mark alone. */
+static int offer(struct store *store, const struct publication *publication,
+                 struct offered *offered, size_t place, struct error *err) {
+    if (offered->status == 0)
+        offered->status = publication->publish(publication->context, store, &offered->due, place,
+                                               &offered->reason);
+    return is_final(offered->status)
+               ? fail_publication(store, &offered->due, offered->reason.text, err)
+               : 0;
+}
+
+static int offer_each(struct store *store, const struct publication *publication,
+                      struct offered *group, size_t count, struct error *err) {
+    int status = 0;
+    for (size_t n = 0; n < count && status == 0; n++)
+        status = offer(store, publication, &group[n], n, err);
+    return status;
+}
+
+/* Publishes a group in one change. If that fails, none of them is published. */
+static int offer_group(struct store *store, const struct publication *publication,
+                       struct offered *group, size_t count, struct error *err) {
+    struct error failed = {0};
+    if (count < 2 || store->batch != 0) /* the caller's change has them */
+        return offer_each(store, publication, group, count, err);
+    int status = store_begin(store, &failed);
+    if (status == 0) {
+        status = offer_each(store, publication, group, count, &failed);
+        if (status == 0)
+            status = store_commit(store, &failed);
+        else
+            store_abandon(store);
+    }
+    for (size_t n = 0; n < count && status != 0; n++) {
+        group[n].status = ERROR_SYSTEM;
+        group[n].reason = failed;
     }
     return 0;
 }
 
+static void count_group(const struct offered *group, size_t count, struct publish_counts *counts) {
+    for (size_t n = 0; n < count; n++) {
+        if (is_final(group[n].status)) {
+            counts->failed++;
+        } else if (group[n].status != 0) {
+            counts->postponed++;
+            counts->reason = group[n].reason;
+        } else {
+            counts->published++;
+        }
+    }
+}
+
 int store_publish_due(struct store *store, const struct publication *publication,
                       struct publish_counts *counts, struct error *err) {
+    struct offered *group = array_create(PUBLICATION_GROUP, sizeof *group);
     struct cursor cursor = {0};
+    size_t count = 1;
     int status = 0;
     *counts = (struct publish_counts){0};
-    while (status == 0 && (status = find_due(store, &cursor, err)) == 1)
-        if (publication->stop != NULL && publication->stop(publication->context))
-            status = error_set(err, ERROR_STOPPED, "stopped");
-        else
-            status = offer(store, publication, &cursor.due, counts, err);
+    if (group == NULL)
+        return error_memory(err, PUBLICATION_GROUP * sizeof *group, "cases that are due");
+    while (status == 0 && count > 0) {
+        status = gather(store, publication, &cursor, group, &count, err);
+        if (status == 0)
+            status = offer_group(store, publication, group, count, err);
+        if (status == 0)
+            count_group(group, count, counts);
+        if (publication->clear != NULL)
+            publication->clear(publication->context);
+    }
+    free(group);
     return status;
 }
 

@@ -394,40 +394,53 @@ int aggregate_case(struct store *store, const struct aggregate *aggregate, uint6
     return status;
 }
 
-/* Merges the blocks of a case and publishes the result, with the values of single realisations. */
-static int publish_merged(struct store *store, const struct aggregate *aggregate,
-                          uint64_t case_number, const struct case_info *info,
-                          struct case_result *result, struct error *err) {
-    struct job_merger *merger = NULL;
-    int status = aggregate_merge(store, aggregate, case_number, info, &merger, result, err);
-    if (status == 0) {
-        const struct point_texts texts = realisation_values(merger);
-        status = store_publish_points(store, aggregate->about.id, case_number, info->revision,
-                                      result, &texts, err);
-    }
-    merger_destroy(&merger);
+void merged_case_clear(struct merged_case *merged) {
+    merger_destroy(&merged->merger);
+    result_clear(&merged->result);
+    *merged = (struct merged_case){0};
+}
+
+int aggregate_prepare(struct store *store, const char *study, uint64_t case_number,
+                      struct merged_case *out, struct error *err) {
+    struct aggregate aggregate;
+    struct case_info info = {0};
+    *out = (struct merged_case){.case_number = case_number};
+    int status = aggregate_begin(store, study, &aggregate, err);
+    if (status != 0) /* an unknown kind is no fault of the case: another program knows it */
+        return status == ERROR_INPUT ? (err->code = ERROR_STATE) : status;
+    snprintf(out->study, sizeof out->study, "%s", aggregate.about.id);
+    status = store_case(store, study, case_number, &info, err);
+    out->revision = info.revision;
+    bool found = false;
+    if (status == 0)
+        status = answer_case(store, &aggregate, case_number, &info, &out->result, &found,
+                             &out->nothing, err);
+    if (status == 0 && !found)
+        status =
+            aggregate_merge(store, &aggregate, case_number, &info, &out->merger, &out->result, err);
+    case_info_clear(&info);
+    aggregate_end(&aggregate);
     return status;
+}
+
+int aggregate_write(struct store *store, const struct merged_case *merged, struct error *err) {
+    if (merged->nothing)
+        return 0;
+    if (merged->merger == NULL)
+        return store_publish(store, merged->study, merged->case_number, merged->revision,
+                             &merged->result, err);
+    const struct point_texts texts = realisation_values(merged->merger);
+    return store_publish_points(store, merged->study, merged->case_number, merged->revision,
+                                &merged->result, &texts, err);
 }
 
 int aggregate_publish(struct store *store, const char *study, uint64_t case_number,
                       struct error *err) {
-    struct aggregate aggregate;
-    struct case_info info = {0};
-    struct case_result result = {0};
-    int status = aggregate_begin(store, study, &aggregate, err);
-    if (status != 0) /* an unknown kind is no fault of the case: another program knows it */
-        return status == ERROR_INPUT ? (err->code = ERROR_STATE) : status;
-    status = store_case(store, study, case_number, &info, err);
-    bool found = false, grown = false;
+    struct merged_case merged;
+    int status = aggregate_prepare(store, study, case_number, &merged, err);
     if (status == 0)
-        status = answer_case(store, &aggregate, case_number, &info, &result, &found, &grown, err);
-    if (status == 0 && !found)
-        status = publish_merged(store, &aggregate, case_number, &info, &result, err);
-    else if (status == 0 && !grown)
-        status = store_publish(store, study, case_number, info.revision, &result, err);
-    result_clear(&result);
-    case_info_clear(&info);
-    aggregate_end(&aggregate);
+        status = aggregate_write(store, &merged, err);
+    merged_case_clear(&merged);
     return status;
 }
 

@@ -41,9 +41,22 @@ int aggregate_merge(struct store *store, const struct aggregate *aggregate, uint
                     struct case_result *result, struct error *err);
 int aggregate_case_report(struct store *store, const struct aggregate *aggregate,
                           uint64_t case_number, struct case_report *out, struct error *err);
-/* Merges and publishes a case. A case that asks for an error and has not reached it gets its next
- * round instead. ERROR_INPUT, ERROR_NUMERIC: its results cannot be merged; ERROR_STATE: its kind is
- * unknown to this program. */
+/* A case that is merged, and not published yet. */
+struct merged_case {
+    char study[STUDY_ID_SIZE];
+    uint64_t case_number, revision;
+    struct case_result result; /* owned */
+    struct job_merger *merger; /* owned; NULL: values of realisations are not published */
+    bool nothing;              /* it got its next round instead: nothing is to be published */
+};
+/* Merges a case into *out, which the caller clears, also after a failure. A case that asks for an
+ * error and has not reached it gets its next round instead. ERROR_INPUT, ERROR_NUMERIC: its results
+ * cannot be merged; ERROR_STATE: its kind is unknown to this program. */
+int aggregate_prepare(struct store *store, const char *study, uint64_t case_number,
+                      struct merged_case *out, struct error *err);
+int aggregate_write(struct store *store, const struct merged_case *merged, struct error *err);
+void merged_case_clear(struct merged_case *merged);
+/* Does both. */
 int aggregate_publish(struct store *store, const char *study, uint64_t case_number,
                       struct error *err);
 

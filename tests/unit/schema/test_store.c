@@ -81,7 +81,8 @@ static int complete(struct store *store, const struct claimed_job *job, bool *fi
 
 /* Publishes an empty result of each case that is due. */
 static int publish_empty(void *context, struct store *store, const struct due_case *due,
-                         struct error *err) {
+                         size_t place, struct error *err) {
+    (void)place;
     const struct case_result empty = {.case_number = due->case_number};
     (void)context;
     return store_publish(store, due->study, due->case_number, due->revision, &empty, err);
@@ -352,8 +353,9 @@ static int count_blocks(void *context, const struct block_result *result, struct
 }
 
 /* Sees what is due, and publishes nothing. */
-static int see_due(void *context, struct store *store, const struct due_case *due,
+static int see_due(void *context, struct store *store, const struct due_case *due, size_t place,
                    struct error *err) {
+    (void)place;
     uint64_t *seen = context;
     (void)store;
     (void)err;
@@ -481,6 +483,82 @@ static void results_and_views(void **state) {
     assert_true(json_number_at(document, "/realisations", 0) == 20);
     cJSON_Delete(document);
     assert_int_equal(store_document(store, "0123456789abcdef", &document, NULL), ERROR_ABSENT);
+    store_close(&store);
+}
+
+/* --- cases that are published together --- */
+
+struct group {
+    const char *path;
+    size_t prepared, published, cleared;
+    bool moves; /* the file, before the change is committed */
+};
+
+static int prepare_some(void *context, struct store *store, const struct due_case *due,
+                        size_t place, struct error *err) {
+    struct group *group = context;
+    (void)store;
+    assert_int_equal(place, group->prepared++);
+    if (due->case_number == 1)
+        return error_set(err, ERROR_INPUT, "for good");
+    return due->case_number == 2 ? error_set(err, ERROR_SYSTEM, "for now") : 0;
+}
+
+/* Nobody sees a part of a group. */
+static int publish_group(void *context, struct store *store, const struct due_case *due,
+                         size_t place, struct error *err) {
+    struct group *group = context;
+    assert_int_equal(sql_integer(group->path, "SELECT count(*) FROM published"), 0);
+    assert_int_equal(place, due->case_number);
+    group->published++;
+    if (group->moves && due->case_number == 4)
+        assert_int_equal(rename(group->path, "elsewhere.db"), 0);
+    return publish_empty(NULL, store, due, place, err);
+}
+
+static void clear_group(void *context) {
+    struct group *group = context;
+    group->cleared++;
+}
+
+/* What was prepared is published in one change, or none of it is. A case that cannot be published
+ * is marked, and holds up no other. */
+static void a_group_is_published_as_one(void **state) {
+    (void)state;
+    static const char PATH[] = "together.db";
+    struct store *store = open_store(PATH);
+    struct study *study = read_study("{\"name\":\"n\",\"kind\":\"boxes\",\"realisations\":1,"
+                                     "\"box\":{\"width\":[0.1,0.2,0.3,0.4,0.5]}}");
+    char id[STUDY_ID_SIZE];
+    bool first, done;
+    struct claimed_job job;
+    assert_int_equal(store_submit(store, study, NULL, id, NULL, NULL), 0);
+    study_destroy(&study);
+    while (claim(store, "w", &job) == 1) {
+        assert_int_equal(complete(store, &job, &first, &done, NULL), 0);
+        claimed_job_clear(&job);
+    }
+    struct group group = {.path = PATH, .moves = true};
+    const struct publication publication = {
+        .prepare = prepare_some, .publish = publish_group, .clear = clear_group, .context = &group};
+    struct publish_counts counts;
+    assert_int_equal(store_publish_due(store, &publication, &counts, NULL), 0);
+    assert_int_equal(counts.published + counts.failed, 0);
+    assert_int_equal(counts.postponed, 5);
+    assert_true(strstr(counts.reason.text, "moved") != NULL);
+    assert_int_equal(rename("elsewhere.db", PATH), 0);
+    assert_int_equal(due_cases(store), 31);
+
+    group = (struct group){.path = PATH};
+    assert_int_equal(store_publish_due(store, &publication, &counts, NULL), 0);
+    assert_int_equal(group.prepared, 5);
+    assert_int_equal(group.published, 3);
+    assert_true(group.cleared > 0);
+    assert_int_equal(counts.published, 3);
+    assert_int_equal(counts.failed, 1);
+    assert_int_equal(counts.postponed, 1);
+    assert_string_equal(counts.reason.text, "for now");
+    assert_int_equal(due_cases(store), 4);
     store_close(&store);
 }
 
@@ -638,6 +716,7 @@ int main(void) {
         cmocka_unit_test(a_key_gives_the_same_study),
         cmocka_unit_test(group_commit_keeps_its_members_apart),
         cmocka_unit_test(results_and_views),
+        cmocka_unit_test(a_group_is_published_as_one),
         cmocka_unit_test(other_files_are_refused_with_a_word),
         cmocka_unit_test(leases_of_another_boot_are_void),
         cmocka_unit_test(processes_share_a_file),

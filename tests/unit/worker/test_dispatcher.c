@@ -5,6 +5,7 @@
 #include "worker/publish/publish.h"
 
 #include "jobs/runner.h"
+#include <pthread.h>
 #include <time.h>
 
 enum { LEASE_MS = 4000 }; /* renewed after a third of it */
@@ -130,28 +131,44 @@ static void running_jobs_are_given_back(void **state) {
     scene_close(&scene);
 }
 
+struct publishing {
+    struct scene *scene;
+    int times;
+};
+
+/* The body of the thread that publishes. */
+static void *publish_all(void *context) {
+    struct publishing *publishing = context;
+    struct store *store = NULL;
+    struct error err = {0};
+    assert_int_equal(store_open(&store, publishing->scene->fixture.database, NULL, &err), 0);
+    while (dispatcher_await_due(publishing->scene->dispatcher)) {
+        assert_int_equal(publish_due(store, NULL, NULL, NULL, &err), 0);
+        publishing->times++;
+        dispatcher_published(publishing->scene->dispatcher, false);
+    }
+    store_close(&store);
+    return NULL;
+}
+
 /* A drained queue ends the offers, once what is due is published. */
 static void a_drained_queue_is_the_end(void **state) {
     (void)state;
     struct scene scene;
-    enum offer offer;
+    struct publishing publishing = {.scene = &scene};
     struct lease *lease = NULL;
-    int jobs = 0, publishings = 0;
+    pthread_t publisher;
+    int jobs = 0;
+    bool due = true;
     scene_open(&scene, 1, true);
-    while ((offer = dispatcher_take(scene.dispatcher, true, &lease)) != OFFER_END) {
-        if (offer == OFFER_JOB) {
-            run(&scene, lease);
-            jobs++;
-        } else {
-            struct error err = {0};
-            assert_int_equal(offer, OFFER_PUBLISH);
-            assert_int_equal(publish_due(scene.fixture.store, NULL, NULL, NULL, &err), 0);
-            publishings++;
-            dispatcher_published(scene.dispatcher, false);
-        }
-    }
+    assert_int_equal(pthread_create(&publisher, NULL, publish_all, &publishing), 0);
+    for (; dispatcher_take(scene.dispatcher, true, &lease) == OFFER_JOB; jobs++)
+        run(&scene, lease);
+    assert_int_equal(store_is_due(scene.fixture.store, &due, NULL), 0);
+    assert_false(due);
+    pthread_join(publisher, NULL);
     assert_int_equal(jobs, 48);
-    assert_true(publishings > 0);
+    assert_true(publishing.times > 0);
     expect(&scene, 0, 0, 48);
     scene_close(&scene);
 }
