@@ -95,11 +95,12 @@ struct at_work {
 };
 /* Reads it unless it is known. */
 int at_work_read(struct store *store, struct at_work *out, struct error *err);
-/* Sets the position in the queue of a study with jobs that wait, from 1 on, and the seconds until
- * the next of its jobs starts: NaN where no worker is at work. The handle keeps the queue until the
- * store changes, so that many studies cost little more than one. */
-int study_line(struct store *store, int64_t study, const struct at_work *at_work, uint64_t *place,
-               double *starts_in, struct error *err);
+/* Sets place and starts_in of a study with jobs that wait, of which `of` has owner and priority:
+ * its position in the queue, from 1 on, and the seconds until the next of its jobs starts. The
+ * handle keeps the queue until the store changes, so that many studies cost little more than one.
+ */
+int study_line(struct store *store, int64_t study, const struct at_work *at_work,
+               struct study_status *of, struct error *err);
 struct queue_line;
 void queue_line_destroy(struct queue_line **line);
 /* Requeues what failed or was cancelled: *jobs of them. Within a change. */

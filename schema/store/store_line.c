@@ -20,25 +20,26 @@ int study_count_work(struct store *store, int64_t study, struct error *err) {
 /* --- the line: all studies with jobs that wait --- */
 
 struct line_owner {
+    char name[OWNER_SIZE];
     double start, begun, weight; /* of its clock */
     double lefts;                /* seconds of all that it has in line */
+    size_t first, end;           /* its studies */
 };
 
 struct line_study {
-    int64_t id;
-    size_t owner;
+    int64_t id, priority;
     bool queued;
-    double begins; /* when its first job does, on the clock of its owner */
+    size_t queued_before; /* of those before it in line->studies */
+    double begins;        /* when its first job does, on the clock of its owner */
 };
 
-/* The line at one moment: studies by owners, priority and age; those that are queued once more, by
- * their places. It is read once for all who ask about that moment. */
+/* The line at one moment: studies by owners, priority and age. It is read once for all who ask
+ * about that moment. */
 struct queue_line {
     int64_t version, changes; /* of the file, and of this handle, when it was read; -1: not known */
     struct line_owner *owners;
     struct line_study *studies;
-    const struct line_study **by_id, **by_place;
-    size_t owner_count, count, queued_count, room;
+    size_t owner_count, count, queued;
 };
 
 void queue_line_destroy(struct queue_line **line) {
@@ -47,103 +48,103 @@ void queue_line_destroy(struct queue_line **line) {
         return;
     free(gone->owners);
     free(gone->studies);
-    free(gone->by_id);
-    free(gone->by_place);
     free(gone);
     *line = NULL;
 }
 
-/* Makes room for one more study, and one more owner. */
-static int line_grow(struct queue_line *line, struct error *err) {
-    size_t room = line->room > 0 ? 2 * line->room : 64;
-    if (line->count < line->room)
+/* Makes room for one more of so many. */
+static int line_grow(void **all, size_t count, size_t size, struct error *err) {
+    enum { LEAST = 64 };
+    size_t room = count < LEAST ? LEAST : 2 * count;
+    bool full = count == 0 || (count >= LEAST && (count & (count - 1)) == 0);
+    if (!full)
         return 0;
-    struct line_study *studies = realloc(line->studies, room * sizeof *studies);
-    if (studies != NULL)
-        line->studies = studies;
-    struct line_owner *owners = realloc(line->owners, room * sizeof *owners);
-    if (owners != NULL)
-        line->owners = owners;
-    if (studies == NULL || owners == NULL)
-        return error_memory(err, room * sizeof *studies, "the queue");
-    line->room = room;
+    void *larger = realloc(*all, room * size);
+    if (larger == NULL)
+        return error_memory(err, room * size, "the queue");
+    *all = larger;
     return 0;
 }
 
-/* Takes a row: study, whether it is the first of its owner, state, seconds left, and the clock. */
-static int line_add(struct queue_line *line, sqlite3_stmt *row, bool new_owner, struct error *err) {
-    int status = line_grow(line, err);
-    if (status != 0)
-        return status;
-    if (new_owner)
-        line->owners[line->owner_count++] =
-            (struct line_owner){.start = sqlite3_column_double(row, 4),
-                                .begun = sqlite3_column_double(row, 5),
-                                .weight = sqlite3_column_double(row, 6)};
-    struct line_owner *owner = &line->owners[line->owner_count - 1];
-    line->studies[line->count++] =
-        (struct line_study){.id = sqlite3_column_int64(row, 0),
-                            .owner = line->owner_count - 1,
-                            .queued = sqlite3_column_int(row, 2) != 0,
-                            .begins = owner->start + owner->lefts / owner->weight};
-    owner->lefts += sqlite3_column_double(row, 3);
-    return 0;
-}
-
-/* The seconds of each study with jobs that wait, as measured where any job was done, and the clock
- * of its owner. */
-#define WAITING                                                                                    \
-    "SELECT s.id, s.owner, s.state = 'queued', CASE WHEN s.realisations_done > 0 THEN s.seconds "  \
-    "/ s.realisations_done * s.realisations_waiting ELSE s.work / s.jobs * s.jobs_waiting END, "   \
-    "max(t.served, (SELECT max(begun) FROM share)), t.begun, t.weight FROM share t CROSS JOIN "    \
-    "study s INDEXED BY study_line ON s.owner = t.owner WHERE s.state IN ('queued', 'running') "   \
-    "AND s.jobs_waiting > 0 ORDER BY t.owner, s.priority DESC, s.id"
-
-static int line_read(struct store *store, struct queue_line *line, struct error *err) {
-    char owner[OWNER_SIZE] = "";
+static int line_read_owners(struct store *store, struct queue_line *line, struct error *err) {
     sqlite3_stmt *row = NULL;
-    int status = store_query(store, &row, err, WAITING, "");
+    int status = store_query(store, &row, err,
+                             "SELECT owner, max(served, (SELECT max(begun) FROM share)), begun, "
+                             "weight FROM share ORDER BY owner",
+                             "");
     while (status == 0 && (status = store_step(store, row, err)) == 1) {
-        const char *name = (const char *)sqlite3_column_text(row, 1);
-        status = line_add(line, row, line->count == 0 || strcmp(owner, name) != 0, err);
-        snprintf(owner, sizeof owner, "%s", name);
-        if (status != 0)
+        void *owners = line->owners;
+        status = line_grow(&owners, line->owner_count, sizeof *line->owners, err);
+        line->owners = owners;
+        if (status != 0) {
             sqlite3_reset(row);
+            return status;
+        }
+        struct line_owner *owner = &line->owners[line->owner_count++];
+        *owner = (struct line_owner){.start = sqlite3_column_double(row, 1),
+                                     .begun = sqlite3_column_double(row, 2),
+                                     .weight = sqlite3_column_double(row, 3)};
+        snprintf(owner->name, sizeof owner->name, "%s", (const char *)sqlite3_column_text(row, 0));
     }
     return status;
 }
 
-static int compare_ids(const void *a, const void *b) {
-    const struct line_study *x = *(const struct line_study *const *)a,
-                            *y = *(const struct line_study *const *)b;
-    return (x->id > y->id) - (x->id < y->id);
-}
-
-static int compare_places(const void *a, const void *b, void *context) {
-    const struct queue_line *line = context;
-    const struct line_study *x = *(const struct line_study *const *)a,
-                            *y = *(const struct line_study *const *)b;
-    double p = line->owners[x->owner].begun, q = line->owners[y->owner].begun;
-    if (x->begins != y->begins)
-        return x->begins < y->begins ? -1 : 1;
-    if (p != q)
-        return p < q ? -1 : 1;
-    return (x->id > y->id) - (x->id < y->id);
-}
-
-static int line_sort(struct queue_line *line, struct error *err) {
-    line->by_id = array_create(line->count + 1, sizeof *line->by_id);
-    line->by_place = array_create(line->count + 1, sizeof *line->by_place);
-    if (line->by_id == NULL || line->by_place == NULL)
-        return error_memory(err, line->count * sizeof *line->by_id, "the queue");
-    for (size_t n = 0; n < line->count; n++) {
-        line->by_id[n] = &line->studies[n];
-        if (line->studies[n].queued)
-            line->by_place[line->queued_count++] = &line->studies[n];
-    }
-    qsort(line->by_id, line->count, sizeof *line->by_id, compare_ids);
-    qsort_r(line->by_place, line->queued_count, sizeof *line->by_place, compare_places, line);
+/* Takes a row: study, whether it is queued, seconds left, priority. */
+static int line_add(struct queue_line *line, sqlite3_stmt *row, size_t of, struct error *err) {
+    struct line_owner *owner = &line->owners[of];
+    void *studies = line->studies;
+    int status = line_grow(&studies, line->count, sizeof *line->studies, err);
+    line->studies = studies;
+    if (status != 0)
+        return status;
+    line->studies[line->count++] =
+        (struct line_study){.id = sqlite3_column_int64(row, 0),
+                            .priority = sqlite3_column_int64(row, 3),
+                            .queued = sqlite3_column_int(row, 1) != 0,
+                            .queued_before = line->queued,
+                            .begins = owner->start + owner->lefts / owner->weight};
+    line->queued += sqlite3_column_int(row, 1) != 0;
+    owner->lefts += sqlite3_column_double(row, 2);
     return 0;
+}
+
+/* The seconds of each study of an owner with jobs that wait, as measured where any job was done. */
+#define WAITING                                                                                    \
+    "SELECT id, state = 'queued', CASE WHEN realisations_done > 0 THEN seconds / "                 \
+    "realisations_done * realisations_waiting ELSE work / jobs * jobs_waiting END, priority "      \
+    "FROM study INDEXED BY study_line WHERE state IN ('queued', 'running') AND owner = ?1 AND "    \
+    "jobs_waiting "                                                                                \
+    "> 0 ORDER BY priority DESC, id"
+
+/* Asks whether to stop seldom, as the rows are many and small. */
+static int line_read_studies(struct store *store, struct queue_line *line, size_t of,
+                             struct error *err) {
+    enum { UNTIL_ASKED = 256 };
+    sqlite3_stmt *row = NULL;
+    int status = store_query(store, &row, err, WAITING, "t", line->owners[of].name), code = 0;
+    while (status == 0) {
+        if (line->count % UNTIL_ASKED == 0)
+            status = store_step(store, row, err);
+        else if ((code = sqlite3_step(row)) == SQLITE_ROW)
+            status = 1;
+        else
+            status = code == SQLITE_DONE ? 0 : store_error(store, err);
+        if (status != 1)
+            break;
+        status = line_add(line, row, of, err);
+    }
+    sqlite3_reset(row);
+    return status;
+}
+
+static int line_read(struct store *store, struct queue_line *line, struct error *err) {
+    int status = line_read_owners(store, line, err);
+    for (size_t o = 0; status == 0 && o < line->owner_count; o++) {
+        line->owners[o].first = line->count;
+        status = line_read_studies(store, line, o, err);
+        line->owners[o].end = line->count;
+    }
+    return status;
 }
 
 /* Brings the line of the handle up to date. One that is read within a change is not kept, as the
@@ -162,8 +163,6 @@ static int line_renew(struct store *store, struct error *err) {
     line->version = changing ? -1 : version;
     line->changes = changes;
     status = line_read(store, line, err);
-    if (status == 0)
-        status = line_sort(line, err);
     if (status != 0)
         queue_line_destroy(&line);
     store->line = line;
@@ -211,36 +210,69 @@ static double seconds_before(const struct queue_line *line, const struct line_st
     return before;
 }
 
-/* Returns how many queued studies begin before it. */
-static size_t studies_before(struct queue_line *line, const struct line_study *study) {
-    size_t low = 0, high = line->queued_count;
+/* Returns how many queued studies of an owner begin before a study of another, or the same, does.
+ * They begin in their order; those that begin at once, as some take no time, are compared each. */
+static size_t queued_before(const struct queue_line *line, const struct line_owner *owner,
+                            const struct line_study *study, double begun) {
+    size_t low = owner->first, high = owner->end, count = 0;
     while (low < high) {
         size_t middle = low + (high - low) / 2;
-        if (compare_places(&line->by_place[middle], &study, line) < 0)
+        if (line->studies[middle].begins < study->begins)
             low = middle + 1;
         else
             high = middle;
     }
-    return low;
+    count = (low < line->count ? line->studies[low].queued_before : line->queued) -
+            (owner->first < line->count ? line->studies[owner->first].queued_before : line->queued);
+    for (; low < owner->end && line->studies[low].begins == study->begins; low++)
+        count +=
+            line->studies[low].queued &&
+            (owner->begun < begun || (owner->begun == begun && line->studies[low].id < study->id));
+    return count;
 }
 
-int study_line(struct store *store, int64_t study, const struct at_work *at_work, uint64_t *place,
-               double *starts_in, struct error *err) {
-    const struct line_study wanted = {.id = study}, *key = &wanted;
-    *place = 0;
-    *starts_in = NAN;
+static int compare_names(const void *name, const void *owner) {
+    return strcmp(name, ((const struct line_owner *)owner)->name);
+}
+
+/* Finds a study that waits: by priority, then by age. */
+static const struct line_study *line_find(const struct queue_line *line,
+                                          const struct line_owner *owner, int64_t priority,
+                                          int64_t id) {
+    size_t low = owner->first, high = owner->end;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        const struct line_study *at = &line->studies[middle];
+        if (at->priority > priority || (at->priority == priority && at->id < id))
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < owner->end && line->studies[low].id == id ? &line->studies[low] : NULL;
+}
+
+int study_line(struct store *store, int64_t study, const struct at_work *at_work,
+               struct study_status *of, struct error *err) {
+    of->place = 0;
+    of->starts_in = NAN;
     int status = line_renew(store, err);
-    if (status != 0 || store->line->count == 0)
+    if (status != 0 || store->line->owner_count == 0)
         return status;
-    const struct line_study **found = bsearch(&key, store->line->by_id, store->line->count,
-                                              sizeof *store->line->by_id, compare_ids);
+    const struct queue_line *line = store->line;
+    const struct line_owner *owner =
+        bsearch(of->owner, line->owners, line->owner_count, sizeof *line->owners, compare_names);
+    const struct line_study *found =
+        owner != NULL ? line_find(line, owner, of->priority, study) : NULL;
     if (found == NULL)
         return 0;
-    double before = seconds_before(store->line, *found);
-    *place = 1 + studies_before(store->line, *found);
+    of->place = 1;
+    for (size_t o = 0; o < line->owner_count; o++)
+        of->place += queued_before(line, &line->owners[o], found, owner->begun);
+    double before = seconds_before(line, found);
     if (at_work->jobs > 0)
-        *starts_in = before > 0 ? fmax(at_work->soonest, (at_work->rests + before) / at_work->jobs)
-                                : at_work->soonest;
+        of->starts_in = before > 0
+                            ? fmax(at_work->soonest, (at_work->rests + before) / at_work->jobs)
+                            : at_work->soonest;
     return 0;
 }
 

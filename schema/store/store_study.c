@@ -108,7 +108,7 @@ static int queue_left(struct store *store, int64_t row, struct at_work *at_work,
     if (status == 0)
         status = study_left(store, row, out->realisations, at_work->workers, left, err);
     if (status == 0)
-        status = study_line(store, row, at_work, &out->place, &out->starts_in, err);
+        status = study_line(store, row, at_work, out, err);
     left->seconds += out->starts_in;
     if (strcmp(out->state, "queued") != 0)
         out->place = 0;
