@@ -419,7 +419,7 @@ int access_cancel(struct access *access, const char *id, cJSON **out, struct err
 
 int access_retry(struct access *access, const char *id, cJSON **out, struct error *err) {
     return access->client != NULL ? change_study(access, "POST", id, "/retry", "retried", out, err)
-                                  : api_retry(access->store, id, out, err);
+                                  : api_retry_publish(access->store, id, out, err);
 }
 
 int access_delete(struct access *access, const char *id, cJSON **out, struct error *err) {

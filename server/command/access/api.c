@@ -35,7 +35,7 @@ int api_submit(struct store *store, const struct study *study, const char *key, 
     struct study_status now = {0};
     int status = store_submit(store, study, key, id, existing, err);
     if (status == 0)
-        status = store_status(store, id, &now, err);
+        status = store_status_counted(store, id, &now, err);
     if (status != 0)
         return status;
     bool complete;
@@ -217,10 +217,12 @@ int api_cancel(struct store *store, const char *id, cJSON **out, struct error *e
     return status != 0 ? status : api_status(store, id, out, err);
 }
 
-int api_retry(struct store *store, const char *id, cJSON **out, struct error *err) {
+/* Cases whose mark is gone are due: no worker may come to publish them. */
+static int retry(struct store *store, const char *id, bool publishes, cJSON **out,
+                 struct error *err) {
     uint64_t count;
     int status = store_retry(store, id, &count, err);
-    if (status == 0) /* cases whose mark is gone: no worker may come to publish them */
+    if (status == 0 && publishes)
         status = publish_due(store, NULL, NULL, NULL, err);
     if (status == 0)
         status = api_status(store, id, out, err);
@@ -232,11 +234,19 @@ int api_retry(struct store *store, const char *id, cJSON **out, struct error *er
     return status;
 }
 
+int api_retry(struct store *store, const char *id, cJSON **out, struct error *err) {
+    return retry(store, id, false, out, err);
+}
+
+int api_retry_publish(struct store *store, const char *id, cJSON **out, struct error *err) {
+    return retry(store, id, true, out, err);
+}
+
 /* Results of a kind that this program does not know would be of another form. */
 static int extend(struct store *store, const char *id, uint64_t realisations, uint64_t *jobs,
                   struct error *err) {
     struct study_status now = {0};
-    int status = store_status(store, id, &now, err);
+    int status = store_status_counted(store, id, &now, err);
     const struct job_kind *kind = status == 0 ? kind_find(now.kind) : NULL;
     study_status_clear(&now);
     return status != 0 ? status
@@ -260,7 +270,7 @@ int api_extend(struct store *store, const char *id, uint64_t realisations, cJSON
 
 int api_delete(struct store *store, const char *id, cJSON **out, struct error *err) {
     struct study_status now = {0};
-    int status = store_status(store, id, &now, err);
+    int status = store_status_counted(store, id, &now, err);
     if (status == 0)
         status = store_delete(store, id, err);
     if (status == 0) {

@@ -14,7 +14,10 @@ int api_list(struct store *store, const char *after, size_t limit, cJSON **out, 
 int api_cancel(struct store *store, const char *id, cJSON **out, struct error *err);
 /* {id, name, state: "deleted"}; its rows are left to store_purge. */
 int api_delete(struct store *store, const char *id, cJSON **out, struct error *err);
+/* Progress with the number of jobs retried. What is due then is left to a publisher. */
 int api_retry(struct store *store, const char *id, cJSON **out, struct error *err);
+/* Publishes it, too. */
+int api_retry_publish(struct store *store, const char *id, cJSON **out, struct error *err);
 /* Progress with the number of jobs queued; see store_extend. */
 int api_extend(struct store *store, const char *id, uint64_t realisations, cJSON **out,
                struct error *err);

@@ -156,7 +156,7 @@ struct study_change {
 
 static int check_owner(struct store *store, struct study_change *change, struct error *err) {
     struct study_status now = {0};
-    int status = store_status(store, change->id, &now, err);
+    int status = store_status_counted(store, change->id, &now, err);
     if (status != 0)
         return status;
     change->refused = !change->exchange->admin && *now.owner != '\0' &&
