@@ -294,13 +294,13 @@ int store_is_due(struct store *store, bool *due, struct error *err);
 struct publication {
     /* Reads and merges what publish then writes. Cases are prepared one after the other, outside of
      * any change, until that took some hundredths of a second or there are 64, and published in one
-     * change. place: its number in that group. After an error, the case is not published. NULL:
-     * cases are published one by one. */
-    int (*prepare)(void *context, struct store *store, const struct due_case *due, size_t place,
+     * change. number is that of the case in this group. After an error, the case is not published.
+     * NULL: cases are published one by one. */
+    int (*prepare)(void *context, struct store *store, const struct due_case *due, size_t number,
                    struct error *err);
     /* Publishes one case by store_publish. ERROR_INPUT and ERROR_NUMERIC, of either call, mark the
      * case; after any other error, which may pass, it stays due. */
-    int (*publish)(void *context, struct store *store, const struct due_case *due, size_t place,
+    int (*publish)(void *context, struct store *store, const struct due_case *due, size_t number,
                    struct error *err);
     void (*clear)(void *context); /* called after each group; may be NULL */
     bool (*stop)(void *context);  /* called before each case; may be NULL */

@@ -115,9 +115,9 @@ static int gather(struct store *store, const struct publication *publication, st
 
 /* Publishes a case, or marks it. Returns the error of the mark alone. */
 static int offer(struct store *store, const struct publication *publication,
-                 struct offered *offered, size_t place, struct error *err) {
+                 struct offered *offered, size_t number, struct error *err) {
     if (offered->status == 0)
-        offered->status = publication->publish(publication->context, store, &offered->due, place,
+        offered->status = publication->publish(publication->context, store, &offered->due, number,
                                                &offered->reason);
     return is_final(offered->status)
                ? fail_publication(store, &offered->due, offered->reason.text, err)

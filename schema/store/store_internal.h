@@ -95,10 +95,9 @@ struct at_work {
 };
 /* Reads it unless it is known. */
 int at_work_read(struct store *store, struct at_work *out, struct error *err);
-/* Sets place and starts_in of a study with jobs that wait, of which `of` has owner and priority:
- * its position in the queue, from 1 on, and the seconds until the next of its jobs starts. The
- * handle keeps the queue until the store changes, so that many studies cost little more than one.
- */
+/* Sets the position in the queue of a study with jobs that wait, and the seconds until the next of
+ * them starts, in `of`, which has its owner and priority. The handle keeps the queue until the
+ * store changes, so that many studies cost little more than one. */
 int study_line(struct store *store, int64_t study, const struct at_work *at_work,
                struct study_status *of, struct error *err);
 struct queue_line;

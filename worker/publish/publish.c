@@ -18,18 +18,18 @@ static int log_failure(const struct due_case *due, int status, const struct erro
     return status;
 }
 
-static int prepare_one(void *context, struct store *store, const struct due_case *due, size_t place,
-                       struct error *err) {
+static int prepare_one(void *context, struct store *store, const struct due_case *due,
+                       size_t number, struct error *err) {
     struct caller *caller = context;
     int status =
-        aggregate_prepare(store, due->study, due->case_number, &caller->merged[place], err);
+        aggregate_prepare(store, due->study, due->case_number, &caller->merged[number], err);
     return log_failure(due, status, err);
 }
 
-static int publish_one(void *context, struct store *store, const struct due_case *due, size_t place,
-                       struct error *err) {
+static int publish_one(void *context, struct store *store, const struct due_case *due,
+                       size_t number, struct error *err) {
     struct caller *caller = context;
-    return log_failure(due, aggregate_write(store, &caller->merged[place], err), err);
+    return log_failure(due, aggregate_write(store, &caller->merged[number], err), err);
 }
 
 static void clear_all(void *context) {

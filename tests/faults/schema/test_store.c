@@ -114,8 +114,8 @@ static int look(struct store_life *life, const char *id, struct error *err) {
 
 /* A curve whose bytes are packed, in one row of the views. */
 static int publish_matrix(void *context, struct store *store, const struct due_case *due,
-                          size_t place, struct error *err) {
-    (void)place;
+                          size_t number, struct error *err) {
+    (void)number;
     static const double x[20], theory[400], y[1], error[1];
     static const uint32_t cells[1];
     struct case_result result = {.case_number = due->case_number, .realisations = 20};

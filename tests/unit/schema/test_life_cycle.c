@@ -247,9 +247,9 @@ static void race(struct world *world, int study) {
         expect(world, "a change meanwhile", change(world, any_handle(world)), 0);
 }
 
-static int publish(void *context, struct store *store, const struct due_case *due, size_t place,
+static int publish(void *context, struct store *store, const struct due_case *due, size_t number,
                    struct error *err) {
-    (void)place;
+    (void)number;
     struct world *world = context;
     int study = 0, c = (int)due->case_number;
     while (strcmp(world->ids[study], due->study) != 0)

@@ -81,8 +81,8 @@ static int complete(struct store *store, const struct claimed_job *job, bool *fi
 
 /* Publishes an empty result of each case that is due. */
 static int publish_empty(void *context, struct store *store, const struct due_case *due,
-                         size_t place, struct error *err) {
-    (void)place;
+                         size_t number, struct error *err) {
+    (void)number;
     const struct case_result empty = {.case_number = due->case_number};
     (void)context;
     return store_publish(store, due->study, due->case_number, due->revision, &empty, err);
@@ -353,9 +353,9 @@ static int count_blocks(void *context, const struct block_result *result, struct
 }
 
 /* Sees what is due, and publishes nothing. */
-static int see_due(void *context, struct store *store, const struct due_case *due, size_t place,
+static int see_due(void *context, struct store *store, const struct due_case *due, size_t number,
                    struct error *err) {
-    (void)place;
+    (void)number;
     uint64_t *seen = context;
     (void)store;
     (void)err;
@@ -495,10 +495,10 @@ struct group {
 };
 
 static int prepare_some(void *context, struct store *store, const struct due_case *due,
-                        size_t place, struct error *err) {
+                        size_t number, struct error *err) {
     struct group *group = context;
     (void)store;
-    assert_int_equal(place, group->prepared++);
+    assert_int_equal(number, group->prepared++);
     if (due->case_number == 1)
         return error_set(err, ERROR_INPUT, "for good");
     return due->case_number == 2 ? error_set(err, ERROR_SYSTEM, "for now") : 0;
@@ -506,14 +506,14 @@ static int prepare_some(void *context, struct store *store, const struct due_cas
 
 /* Nobody sees a part of a group. */
 static int publish_group(void *context, struct store *store, const struct due_case *due,
-                         size_t place, struct error *err) {
+                         size_t number, struct error *err) {
     struct group *group = context;
     assert_int_equal(sql_integer(group->path, "SELECT count(*) FROM published"), 0);
-    assert_int_equal(place, due->case_number);
+    assert_int_equal(number, due->case_number);
     group->published++;
     if (group->moves && due->case_number == 4)
         assert_int_equal(rename(group->path, "elsewhere.db"), 0);
-    return publish_empty(NULL, store, due, place, err);
+    return publish_empty(NULL, store, due, number, err);
 }
 
 static void clear_group(void *context) {

@@ -39,8 +39,8 @@ static void claim(struct store *store, const char *id, struct claimed_job *job) 
 }
 
 static int publish_sample(void *context, struct store *store, const struct due_case *due,
-                          size_t place, struct error *err) {
-    (void)place;
+                          size_t number, struct error *err) {
+    (void)number;
     struct case_result result = {0};
     (void)context;
     sample_result(&result);

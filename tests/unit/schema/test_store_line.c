@@ -171,7 +171,7 @@ static void a_place_in_line_is_told(void **state) {
     store_close(&store);
 }
 
-/* The definition of place and starts_in, as one query for one study: ?1 is its id, ?2 now. Its
+/* What defines the position of a study and when it starts, as one query: ?1 is its id, ?2 now. Its
  * position; the seconds of jobs that begin before it; the number of jobs that run; and the seconds
  * until the first of them ends, and of all. */
 static const char DEFINITION[] =
@@ -271,7 +271,7 @@ static void places_are_those_of_the_definition(void **state) {
     store_close(&store);
 }
 
-/* A place within a change that is undone is not remembered. */
+/* A position within a change that is undone is not remembered. */
 static void an_undone_change_leaves_places(void **state) {
     (void)state;
     struct store *store = open_store("undone.db");
