@@ -147,25 +147,37 @@ static int line_read(struct store *store, struct queue_line *line, struct error 
     return status;
 }
 
+static int line_create(struct store *store, struct queue_line **out, struct error *err) {
+    struct queue_line *line = array_create(1, sizeof *line);
+    int status = line != NULL ? 0 : error_memory(err, sizeof *line, "the queue");
+    if (status == 0)
+        status = store_integer(store, &line->version, err, "PRAGMA data_version", "");
+    if (status == 0)
+        status = line_read(store, line, err);
+    if (status != 0)
+        queue_line_destroy(&line);
+    *out = line;
+    return status;
+}
+
 /* Brings the line of the handle up to date. One that is read within a change is not kept, as the
  * change may be undone. */
 static int line_renew(struct store *store, struct error *err) {
     bool changing = sqlite3_txn_state(store->db, NULL) == SQLITE_TXN_WRITE;
+    bool alone = sqlite3_get_autocommit(store->db) != 0;
     int64_t changes = sqlite3_total_changes64(store->db), version = 0;
     int status = store_integer(store, &version, err, "PRAGMA data_version", "");
     if (status != 0 || (store->line != NULL && !changing && store->line->version == version &&
                         store->line->changes == changes))
         return status;
     queue_line_destroy(&store->line);
-    struct queue_line *line = array_create(1, sizeof *line);
-    if (line == NULL)
-        return error_memory(err, sizeof *line, "the queue");
-    line->version = changing ? -1 : version;
-    line->changes = changes;
-    status = line_read(store, line, err);
-    if (status != 0)
-        queue_line_destroy(&line);
-    store->line = line;
+    if (alone && (status = read_begin(store, err)) != 0)
+        return status;
+    status = line_create(store, &store->line, err);
+    if (alone)
+        read_end(store);
+    if (status == 0)
+        store->line->changes = changing ? -1 : changes;
     return status;
 }
 
