@@ -109,19 +109,22 @@ static int line_add(struct queue_line *line, sqlite3_stmt *row, size_t of, struc
 }
 
 /* The seconds of each study of an owner with jobs that wait, as measured where any job was done. */
-#define WAITING                                                                                    \
+#define WAITING(from)                                                                              \
     "SELECT id, state = 'queued', CASE WHEN realisations_done > 0 THEN seconds / "                 \
     "realisations_done * realisations_waiting ELSE work / jobs * jobs_waiting END, priority "      \
-    "FROM study INDEXED BY study_line WHERE state IN ('queued', 'running') AND owner = ?1 AND "    \
-    "jobs_waiting "                                                                                \
-    "> 0 ORDER BY priority DESC, id"
+    "FROM study INDEXED BY " from " AND owner = ?1 AND jobs_waiting > 0"
+#define LINE                                                                                       \
+    WAITING("study_queued WHERE state = 'queued'")                                                 \
+    " UNION ALL " WAITING(                                                                         \
+        "study_line WHERE state = 'running' AND state IN ('queued', 'running')") " ORDER BY 4 "    \
+                                                                                 "DESC, 1"
 
 /* Asks whether to stop seldom, as the rows are many and small. */
 static int line_read_studies(struct store *store, struct queue_line *line, size_t of,
                              struct error *err) {
     enum { UNTIL_ASKED = 256 };
     sqlite3_stmt *row = NULL;
-    int status = store_query(store, &row, err, WAITING, "t", line->owners[of].name), code = 0;
+    int status = store_query(store, &row, err, LINE, "t", line->owners[of].name), code = 0;
     while (status == 0) {
         if (line->count % UNTIL_ASKED == 0)
             status = store_step(store, row, err);

@@ -179,10 +179,12 @@ static int ask_all(struct growth *growth, struct error *err) {
     int status = find_waiting(growth, err);
     for (int what = LIST_DONE; status == 0 && what <= CONTENTS; what++) {
         double us[REPEATS] = {0};
+        if (what == STATUS && growth->waits[0] == '\0')
+            continue;
         for (int r = 0; status == 0 && r < REPEATS; r++) {
             status = store_probe(growth->store, err);
             double start = seconds();
-            if (status == 0 && (what != STATUS || growth->waits[0] != '\0'))
+            if (status == 0)
                 status = ask(growth, (enum operation)what, err);
             us[r] = 1e6 * (seconds() - start);
         }
