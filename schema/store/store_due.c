@@ -132,6 +132,20 @@ static int offer_each(struct store *store, const struct publication *publication
     return status;
 }
 
+/* Postpones all of a group whose change failed: for the first reason that one of them had, which
+ * may have undone the others, or that of the change. */
+static void postpone(struct offered *group, size_t count, const struct error *failed) {
+    const struct error *reason = failed;
+    for (size_t n = count; n > 0; n--)
+        if (group[n - 1].status != 0 && !is_final(group[n - 1].status))
+            reason = &group[n - 1].reason;
+    const struct error first = *reason;
+    for (size_t n = 0; n < count; n++) {
+        group[n].status = ERROR_SYSTEM;
+        group[n].reason = first;
+    }
+}
+
 /* Publishes a group in one change. If that fails, none of them is published. */
 static int offer_group(struct store *store, const struct publication *publication,
                        struct offered *group, size_t count, struct error *err) {
@@ -146,10 +160,8 @@ static int offer_group(struct store *store, const struct publication *publicatio
         else
             store_abandon(store);
     }
-    for (size_t n = 0; n < count && status != 0; n++) {
-        group[n].status = ERROR_SYSTEM;
-        group[n].reason = failed;
-    }
+    if (status != 0)
+        postpone(group, count, &failed);
     return 0;
 }
 

@@ -9,6 +9,7 @@
 #include "tests/unit/worker/small_study.h"
 #include "worker/publish/aggregate.h"
 #include "worker/publish/comparison.h"
+#include "worker/publish/publish.h"
 #include "worker/worker.h"
 
 static struct fixture fixture;
@@ -16,6 +17,32 @@ static struct fixture fixture;
 static int publish(void *context, struct error *err) {
     (void)context;
     return aggregate_publish(fixture.store, fixture.study, 1, err);
+}
+
+/* Both cases, in one change. */
+static int publish_group(void *context, struct error *err) {
+    struct publish_counts counts = {0};
+    int status = 0;
+    (void)context;
+    for (uint64_t c = 0; c < 2 && status == 0; c++) {
+        struct due_case one = {.case_number = c};
+        struct case_info info = {0};
+        snprintf(one.study, sizeof one.study, "%s", fixture.study);
+        status = store_case(fixture.store, fixture.study, c, &info, err);
+        one.revision = info.revision;
+        if (status == 0)
+            status = store_unpublish(fixture.store, &one, err);
+        case_info_clear(&info);
+    }
+    if (status == 0)
+        status = publish_due(fixture.store, NULL, NULL, &counts, err);
+    if (status == 0 && counts.postponed > 0) {
+        *err = counts.reason;
+        status = counts.reason.code;
+    }
+    if (status == 0)
+        assert_int_equal(counts.published, 2);
+    return status;
 }
 
 static int print_table(const struct study_result *study, struct error *err) {
@@ -93,6 +120,8 @@ static void published(void **state) {
     struct result_filter one = {.case_number = -1, .part = {.quantity = "psd"}, .complete = true};
     (void)state;
     each_allocation(&(struct failing_call){.name = "publish", publish, .may_succeed = 1});
+    each_allocation(
+        &(struct failing_call){.name = "publish a group", publish_group, .may_succeed = 1});
     each_allocation(&(struct failing_call){.name = "curves", curves, &all, .may_succeed = 1});
     each_allocation(&(struct failing_call){.name = "a curve", curves, &one, .may_succeed = 1});
     each_allocation(&(struct failing_call){.name = "difference", difference, .may_succeed = 1});
