@@ -88,9 +88,11 @@ $(BUILD)/flags: FORCE
 FORCE:
 
 # The commit that is built, as a C file that is rewritten when it changes: the program alone links it, so that a commit
-# relinks one file. An archive without git, or one unpacked inside another repository, has the commit "unknown".
+# relinks one file. An archive of git has it in .commit; another copy without git, or one unpacked inside another
+# repository, has the commit "unknown".
 COMMIT ?= $(shell [ -z "$$(git rev-parse --show-prefix 2>&1)" ] && \
-            git describe --always --dirty --abbrev=12 --exclude='*' 2>/dev/null || echo unknown)
+            git describe --always --dirty --abbrev=12 --exclude='*' 2>/dev/null || \
+            sed -n 's/^\([0-9a-f]\{12\}\)[0-9a-f]\{28\}$$/\1/p' .commit 2>/dev/null | grep . || echo unknown)
 $(BUILD)/commit.c: FORCE
 	@mkdir -p $(@D); echo 'extern const char PROGRAM_COMMIT[]; const char PROGRAM_COMMIT[] = "$(COMMIT)";' | \
 	    cmp -s - $@ || echo 'extern const char PROGRAM_COMMIT[]; const char PROGRAM_COMMIT[] = "$(COMMIT)";' >$@
@@ -313,7 +315,7 @@ nightly: all
 	$(MAKE) check-documents check-install check-python check-units check-openapi check-contract check-figures check-results tour
 	-@tests/install-deps "" "slurmctld slurmd slurm-client munge" munged slurmctld slurmd sbatch
 	$(MAKE) slurm-test
-	$(MAKE) check-static
+	$(MAKE) check-static check-dist
 	$(MAKE) BUILD=$(BUILD)-O2 CFLAGS=-O2 run-unit
 	-@tests/install-deps "" clang clang
 	! command -v clang >/dev/null || $(MAKE) BUILD=$(BUILD)-clang CC=clang CFLAGS=-O2 run-unit
@@ -456,6 +458,18 @@ install: all
 uninstall:
 	rm -f $(addprefix $(DESTDIR),$(INSTALLED))
 	rm -rf $(DESTDIR)$(pythondir)/rugo/__pycache__
+
+# The last commit as an archive, of the same bytes each time.
+DIST = $(abspath $(BUILD))/dist
+dist:
+	@mkdir -p $(DIST)
+	@[ -z "$$(git status --porcelain)" ] || echo "dist: what is not committed is left out" >&2
+	@git -c tar.umask=0022 archive --format=tar --prefix=rugo-$(VERSION)/ -o $(DIST)/rugo-$(VERSION).tar HEAD
+	@gzip -9nf $(DIST)/rugo-$(VERSION).tar
+	@cd $(DIST) && sha256sum rugo-$(VERSION).tar.gz >SHA256SUMS && cat SHA256SUMS
+check-dist: deps dist
+	@MAKE="$(MAKE) --no-print-directory" tests/check-dist $(DIST)/rugo-$(VERSION).tar.gz
+.PHONY: dist check-dist
 
 # Into a prefix of its own: header, libraries and pkg-config agree, and the example runs with each library.
 check-install: all
