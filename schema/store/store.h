@@ -6,8 +6,9 @@
  * IMMEDIATE), or a savepoint within store_begin .. store_commit (group commit). A handle waits for
  * another process's lock for a limited time; then ERROR_SYSTEM "the database is busy".
  *
- * A handle whose file was moved, deleted or replaced commits nothing: ERROR_SYSTEM, until the file
- * is back.
+ * A handle whose database, log or shared memory was moved, deleted, replaced or cut commits
+ * nothing: ERROR_SYSTEM, until the file is back. A database of several names is not opened, nor one
+ * beside the log of another: ERROR_INPUT.
  *
  * Leases run on CLOCK_BOOTTIME, not on the wall clock, and are void after a reboot. */
 #ifndef RUGO_SCHEMA_STORE_STORE_H
@@ -34,6 +35,13 @@ struct store_options {
 int store_open(struct store **out, const char *path, const struct store_options *options,
                struct error *err);
 void store_close(struct store **store);
+/* Fails with ERROR_SYSTEM where the database, its log or its shared memory no longer has the name
+ * under which it was opened. Safe from any thread. */
+int store_check_names(const struct store *store, struct error *err);
+/* Fails likewise where the database is shorter than it says. Reads through `store`, NULL where no
+ * handle can be opened any more; `opened`, which another thread may use, is a handle of the same
+ * file that may have seen its length before. */
+int store_check_size(struct store *store, struct store *opened, struct error *err);
 /* Makes whatever reads call stop repeatedly from now on; non-zero ends the reading with
  * ERROR_STOPPED. NULL: reads go on to their end. Not for a handle within a change. */
 void store_set_stop(struct store *store, int (*stop)(void *context), void *context);

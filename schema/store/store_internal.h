@@ -5,13 +5,24 @@
 #include "schema/digest.h"
 #include "schema/store/store.h"
 #include <sqlite3.h>
+#include <stdatomic.h>
+#include <sys/types.h>
 #include <time.h>
 
 enum { STATEMENTS = 128, NOTED = 1024, BOOT_SIZE = 40, BUSY_MS = 30000 /* waited for a lock */ };
+enum { STORE_FILES = 3 /* database, log, shared memory */, STORE_PATH_SIZE = 4224 };
+
+struct store_file {
+    bool known; /* it was there when the store had been opened */
+    dev_t device;
+    ino_t inode;
+};
 
 struct store {
     sqlite3 *db;
     char *path;
+    struct store_file files[STORE_FILES]; /* store_files.c; constant once the store is open */
+    _Atomic int64_t size;                 /* bytes of the database when it was last looked at */
     struct store_options options;
     char boot[BOOT_SIZE];       /* of this boot of the machine; leases of another are void */
     time_t time;                /* of time_text */
@@ -64,6 +75,18 @@ int change_end(struct store *store, int status, struct error *err);
 /* Between the two the handle reads the store of one moment. */
 int read_begin(struct store *store, struct error *err);
 void read_end(struct store *store);
+
+/* Refuses, before anything is opened, a database of several names, and a log without a database. */
+int files_check_before(const char *path, struct error *err);
+/* Refuses, before anything is read, a log that cannot be that of the opened database. Afterwards
+ * the handle has the lock of a reader, which SQLite takes over. *moved: another file has the name
+ * of the one that was opened, and has to be opened instead. */
+int files_check_opened(struct store *store, bool *moved, struct error *err);
+/* Notes which files the store has; files_check sees whether they have their names and length. */
+void files_note(struct store *store);
+int files_check(struct store *store, struct error *err);
+/* A busy handler of SQLite: pauses, and returns 0 where it has waited for BUSY_MS. */
+int store_wait(void *context, int tries);
 
 /* Compares tables, indices and views with those of a new store: *fault is a sentence about the
  * first that differs, or "". SQLite keeps them as text without a checksum, of which a bit may

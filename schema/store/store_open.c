@@ -15,7 +15,7 @@
 /* --- opening --- */
 
 /* Others hold the lock for a fraction of a millisecond: short random sleeps starve no process. */
-static int wait_politely(void *context, int tries) {
+int store_wait(void *context, int tries) {
     (void)context;
     unsigned nanoseconds;
     if (getrandom(&nanoseconds, sizeof nanoseconds, 0) < 0)
@@ -55,7 +55,7 @@ static void set_limits(sqlite3 *db) {
     sqlite3_db_config(db, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
     sqlite3_db_config(db, SQLITE_DBCONFIG_ENABLE_LOAD_EXTENSION, 0, NULL);
     sqlite3_limit(db, SQLITE_LIMIT_ATTACHED, 1); /* VACUUM attaches its target */
-    sqlite3_busy_handler(db, wait_politely, NULL);
+    sqlite3_busy_handler(db, store_wait, NULL);
 }
 
 /* The clock of leases restarts at a reboot: leases of before run out at once. */
@@ -344,13 +344,23 @@ static int open_file(struct store *store, struct error *err) {
     if (!exists)
         flags |= SQLITE_OPEN_CREATE;
     int status = check_file_system(store->path, err);
-    if (status != 0)
-        return status;
-    int code = sqlite3_open_v2(store->path, &store->db, flags, NULL);
-    if (code != SQLITE_OK)
-        return error_set(err, code == SQLITE_NOMEM ? ERROR_MEMORY : ERROR_SYSTEM,
-                         "database %s cannot be opened: %s", store->path, sqlite3_errstr(code));
-    return configure(store, err);
+    if (status == 0)
+        status = files_check_before(store->path, err);
+    bool moved = true;
+    for (int tries = 0; status == 0 && moved && tries < 10; tries++) {
+        sqlite3_close(store->db);
+        store->db = NULL;
+        int code = sqlite3_open_v2(store->path, &store->db, flags, NULL);
+        if (code != SQLITE_OK)
+            return error_set(err, code == SQLITE_NOMEM ? ERROR_MEMORY : ERROR_SYSTEM,
+                             "database %s cannot be opened: %s", store->path, sqlite3_errstr(code));
+        status = files_check_opened(store, &moved, err);
+    }
+    if (status == 0)
+        status = configure(store, err);
+    if (status == 0)
+        files_note(store);
+    return status;
 }
 
 int store_open(struct store **out, const char *path, const struct store_options *options,

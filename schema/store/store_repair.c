@@ -21,6 +21,7 @@ int store_take_alone(struct store *store, struct error *err) {
             "database %s is open in another process, such as a server or a worker: end "
             "that first",
             store->path);
+    files_note(store); /* it has no log now */
     return code == SQLITE_OK ? 0 : store_error(store, err);
 }
 

@@ -23,6 +23,19 @@ int store_error(struct store *store, struct error *err) {
     case SQLITE_FULL:
         return error_set(err, ERROR_SYSTEM, "the disk of database %s is full", store->path);
     case SQLITE_READONLY:
+    case SQLITE_CANTOPEN:
+        if (code == SQLITE_READONLY_ROLLBACK)
+            return error_set(err, ERROR_SYSTEM,
+                             "database %.150s was left in the midst of a change, which has to be "
+                             "undone first from %.150s-journal: open it once by a command that "
+                             "writes, such as rugo repair --db %.150s",
+                             store->path, store->path, store->path);
+        if (store->options.read_only)
+            return error_set(err, ERROR_SYSTEM,
+                             "database %.150s cannot be read here: readers, too, need %.150s-wal "
+                             "and -shm beside it, and permission to write them. Read as its owner, "
+                             "or read a copy by rugo snapshot",
+                             store->path, store->path);
         return error_set(err, ERROR_SYSTEM, "database %s cannot be written: read-only",
                          store->path);
     case SQLITE_CORRUPT:
@@ -232,23 +245,14 @@ int change_begin(struct store *store, struct error *err) {
     return store_run(store, err, store->batch != 0 ? "SAVEPOINT change" : "BEGIN IMMEDIATE", "");
 }
 
-/* Refuses to write to a file that lost its name, whose contents would be lost. Where another file
- * has that name, its write-ahead log would be damaged. */
-static int check_not_moved(struct store *store, struct error *err) {
-    int moved = 0;
-    sqlite3_file_control(store->db, "main", SQLITE_FCNTL_HAS_MOVED, &moved);
-    return moved == 0 ? 0
-                      : error_set(err, ERROR_SYSTEM,
-                                  "database %s was moved, deleted or replaced while it was open: "
-                                  "nothing is written until that very file is back",
-                                  store->path);
-}
-
 int change_end(struct store *store, int status, struct error *err) {
     if (status == 0 && store->batch == 0)
-        status = check_not_moved(store, err);
+        status = files_check(store, err);
     if (status == 0)
         status = store_run(store, err, store->batch != 0 ? "RELEASE change" : "COMMIT", "");
+    if (status == 0 &&
+        store->batch == 0) /* nothing is acknowledged that is in a file without name */
+        status = files_check(store, err);
     /* After a full disk SQLite may have rolled back by itself: then there is nothing left to undo.
      * A change of a batch that cannot be undone alone takes the batch with it, at its end where it
      * cannot be undone yet. */

@@ -49,6 +49,9 @@ static int check_reader(struct service *service, struct error *err) {
     struct store *reader;
     bool due;
     int status = service_reader(service, &reader, err);
+    int size = store_check_size(reader, service->store, err);
+    if (status == 0)
+        status = size;
     if (status == 0)
         status = store_is_due(reader, &due, err);
     service_give_back(service, reader);
@@ -57,7 +60,7 @@ static int check_reader(struct service *service, struct error *err) {
 
 void service_health(struct service *service, struct health *out) {
     *out = (struct health){0};
-    int place = service_check_file(service, next_reason(out));
+    int place = store_check_names(service->store, next_reason(out));
     count_reason(out, place);
     count_reason(out, check_room(service, next_reason(out)));
     count_reason(out, check_writer(service, next_reason(out)));

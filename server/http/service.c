@@ -9,7 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 /* --- copies of the store that are being sent, and what is left of them --- */
@@ -56,15 +55,6 @@ static void wake_publisher(void *publisher) {
     publisher_wake(publisher);
 }
 
-static int note_file(struct service *service, struct error *err) {
-    struct stat info;
-    if (stat(service->database, &info) != 0)
-        return error_set(err, ERROR_SYSTEM, "database %s: %s", service->database, strerror(errno));
-    service->device = info.st_dev;
-    service->inode = info.st_ino;
-    return 0;
-}
-
 int service_open(struct service *service, const char *database, int64_t lease_ms,
                  struct error *err) {
     struct store_options options = {.lease_ms = lease_ms};
@@ -73,8 +63,6 @@ int service_open(struct service *service, const char *database, int64_t lease_ms
     service->lease_ms = lease_ms;
     pthread_mutex_init(&service->mutex, NULL);
     int status = store_open(&service->store, database, &options, err);
-    if (status == 0)
-        status = note_file(service, err);
     if (status == 0)
         status = writer_create(&service->writer, service->store, err);
     if (status == 0)
@@ -104,24 +92,9 @@ void service_close(struct service *service) {
     pthread_mutex_destroy(&service->mutex);
 }
 
-int service_check_file(const struct service *service, struct error *err) {
-    struct stat info;
-    if (stat(service->database, &info) != 0)
-        return error_set(err, ERROR_SYSTEM,
-                         "database %s is gone (%s): put that very file back, or start the server "
-                         "anew",
-                         service->database, strerror(errno));
-    if (info.st_dev != service->device || info.st_ino != service->inode)
-        return error_set(err, ERROR_SYSTEM,
-                         "database %s is another file than the one that is served: put that back, "
-                         "or start the server anew",
-                         service->database);
-    return 0;
-}
-
 int service_reader(struct service *service, struct store **out, struct error *err) {
     *out = NULL;
-    int status = service_check_file(service, err);
+    int status = store_check_names(service->store, err);
     if (status != 0)
         return status;
     pthread_mutex_lock(&service->mutex);

@@ -23,8 +23,6 @@ struct service {
     int64_t lease_ms;          /* of a silent worker */
     size_t map_bytes;          /* of the largest file of a map that is taken; 0: none is */
     atomic_bool stopping;
-    dev_t device; /* of the file that is served, with inode: no other is read or written */
-    ino_t inode;
 
     pthread_mutex_t mutex; /* guards the readers kept */
     struct store *readers[READERS_KEPT];
@@ -44,9 +42,8 @@ int service_open(struct service *service, const char *database, int64_t lease_ms
                  struct error *err);
 void service_close(struct service *service);
 
-/* Fails with ERROR_SYSTEM where the served file is not the one that was opened. */
-int service_check_file(const struct service *service, struct error *err);
-/* Lends a read-only handle to one thread at a time, which gives it back. stop, which may be NULL,
+/* Lends a read-only handle to one thread at a time, which gives it back, unless the store is not
+ * the one that was opened (store_check_names). stop, which may be NULL,
  * is asked while it reads (store_set_stop). */
 int service_reader(struct service *service, struct store **out, struct error *err);
 int service_reader_until(struct service *service, int (*stop)(void *context), void *context,

@@ -1,10 +1,10 @@
 /* `rugo verify` and `rugo repair`: whether a store is whole, and what makes it whole again. */
 #include "worker/publish/verify.h"
 #include "server/command/command.h"
+#include "server/command/service/kept_name.h"
 #include "worker/clock.h"
 #include <inttypes.h>
 #include <stdio.h>
-#include <time.h>
 #include <unistd.h>
 
 struct options {
@@ -126,13 +126,11 @@ static void print_repair(const struct repair_report *report) {
 
 /* The store as it was is kept beside it. */
 static int keep_copy(struct store *store, const char *database, struct error *err) {
-    char path[4200], moment[20];
-    time_t now = time(NULL);
-    struct tm utc = {0};
-    gmtime_r(&now, &utc);
-    strftime(moment, sizeof moment, "%Y%m%dT%H%M%SZ", &utc);
-    snprintf(path, sizeof path, "%s.before-repair-%s", database, moment);
-    int status = store_snapshot(store, path, NULL, NULL, err);
+    char path[KEPT_PATH_SIZE], beside[KEPT_PATH_SIZE];
+    snprintf(beside, sizeof beside, "%s.before-repair-", database);
+    int status = kept_name(path, beside, "", err);
+    if (status == 0)
+        status = store_snapshot(store, path, NULL, NULL, err);
     if (status == 0)
         printf("the database as it was is kept in %s\n", path);
     return status;
