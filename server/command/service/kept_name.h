@@ -3,16 +3,11 @@
 #define RUGO_SERVER_COMMAND_SERVICE_KEPT_NAME_H
 
 #include "core/error.h"
-#include <stdbool.h>
 
 enum { KEPT_PATH_SIZE = 4200 };
 /* Writes BEFORE20261126T190000ZBEHIND or, where there is such a file,
  * BEFORE20261126T190000Z-2BEHIND and so on, in the order of their making. ERROR_INPUT where that is
  * too long. */
 int kept_name(char path[KEPT_PATH_SIZE], const char *before, const char *behind, struct error *err);
-/* Returns whether a name is one of those. */
-bool is_kept_name(const char *name, const char *before, const char *behind);
-/* Orders two of them by age, the older first, as strcmp does. */
-int kept_name_compare(const char *one, const char *other);
 
 #endif

@@ -114,7 +114,7 @@ static void a_store_of_two_names_is_refused(void **state) {
     check_refused("timeout 60 $RUGO serve --db t.db --listen 127.0.0.1:0", "s.db, or copy it");
     assert_int_equal(unlink("t.db"), 0);
     check_studies("s.db", "1");
-    /* a symbolic link is another way to the same files */
+    /* a symbolic link leads to the same files */
     assert_int_equal(symlink("s.db", "t.db"), 0);
     start("t.db");
     assert_int_equal(submit(), 201);
@@ -203,6 +203,9 @@ static void readers_are_given_the_reason(void **state) {
     check_refused("$RUGO status --db s.db", "which has to be undone first from s.db-journal");
     assert_int_equal(run_shell("$RUGO repair --db s.db"), 0);
     check_studies("s.db", "0");
+    /* three repairs, mostly within a second, keep three copies */
+    assert_int_equal(run_shell("$RUGO repair --db s.db && $RUGO repair --db s.db"), 0);
+    assert_int_equal(run_shell("test $(ls s.db.before-repair-* | wc -l) = 3"), 0);
     assert_int_equal(run_shell("rm -f s.db.before-*"), 0);
 }
 
