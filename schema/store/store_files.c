@@ -178,10 +178,9 @@ int store_check_names(const struct store *store, struct error *err) {
             continue;
         if (f == 0)
             return error_set(err, ERROR_SYSTEM,
-                             "database %.200s was moved, deleted or replaced: %s; nothing is "
-                             "written until that very file is back, or the program is started "
-                             "anew",
-                             store->path, gone ? "it is gone" : "it is another file");
+                             "database %.200s is %s: nothing is written until that very file is "
+                             "back, or the program is started anew",
+                             store->path, gone ? "gone" : "another file than the one opened");
         return error_set(err, ERROR_SYSTEM,
                          "%s of database %.150s was moved, deleted or replaced: %.150s is %s. Put "
                          "it back, or end this program in order, not by kill -9: it writes what is "
