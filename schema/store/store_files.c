@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <time.h>
 
@@ -108,6 +109,17 @@ static uint32_t big_endian(const unsigned char *bytes, size_t count) {
     for (size_t b = 0; b < count; b++)
         value = value << 8 | bytes[b];
     return value;
+}
+
+/* Others hold the lock for a fraction of a millisecond: short random sleeps starve no process. */
+int store_wait(void *context, int tries) {
+    (void)context;
+    unsigned nanoseconds;
+    if (getrandom(&nanoseconds, sizeof nanoseconds, 0) < 0)
+        nanoseconds = 0;
+    struct timespec pause = {0, 100000 + (long)(nanoseconds % 400000)};
+    nanosleep(&pause, NULL);
+    return tries < BUSY_MS * 10 / 3; /* a pause is 0.3 ms on average */
 }
 
 /* The lock is that of a reader. Nobody makes, takes away or gives up a log meanwhile. SQLite takes

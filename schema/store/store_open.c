@@ -6,24 +6,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/random.h>
 #include <sys/stat.h>
 #include <sys/vfs.h>
-#include <time.h>
 #include <unistd.h>
 
 /* --- opening --- */
-
-/* Others hold the lock for a fraction of a millisecond: short random sleeps starve no process. */
-int store_wait(void *context, int tries) {
-    (void)context;
-    unsigned nanoseconds;
-    if (getrandom(&nanoseconds, sizeof nanoseconds, 0) < 0)
-        nanoseconds = 0;
-    struct timespec pause = {0, 100000 + (long)(nanoseconds % 400000)};
-    nanosleep(&pause, NULL);
-    return tries < BUSY_MS * 10 / 3; /* a pause is 0.3 ms on average */
-}
 
 static int check_file_system(const char *path, struct error *err) {
     struct statfs info;
