@@ -237,7 +237,7 @@ enum {
     THREADS_MOST = 1024,
     STOP_POLL_MS = 100,
     TICK_MS = 500,
-    GRACE_MS = 2000 /* how long a realisation that runs may go on after a stop */
+    GRACE_MS = 2000 /* how long a realisation that runs may go on after a stop, unless given */
 };
 
 /* Makes all threads end as soon as they can. */
@@ -273,7 +273,7 @@ static bool worker_pool_watch(struct worker_pool *pool) {
         }
         if (stop && !stopped) {
             stopped = true;
-            give_back_ms = clock_ms() + GRACE_MS;
+            give_back_ms = clock_ms() + (options->grace_ms > 0 ? options->grace_ms : GRACE_MS);
             worker_pool_end(pool);
         }
         struct error failed;

@@ -363,6 +363,9 @@ int store_grow(struct store *store, const char *study, uint64_t case_number,
 struct part_file;
 int store_copy(struct store *store, const struct part_file *part, bool (*stop)(void *context),
                void *context, struct error *err);
+/* Returns ERROR_SYSTEM where an open file of so many bytes is, by its header, no whole database of
+ * Rugo of any version: what a stranger sent. */
+int store_file_check(int file, uint64_t size, struct error *err);
 /* Copies the store to a new file, which appears when it is complete and on the disk. */
 int store_snapshot(struct store *store, const char *path, bool (*stop)(void *context),
                    void *context, struct error *err);

@@ -1,8 +1,10 @@
 /* Answers of the routes: documents, texts, problems. */
 #include "core/plain_text.h"
+#include "core/rugo.h"
 #include "schema/json/field.h"
 #include "server/http/compress.h"
 #include "server/http/exchange.h"
+#include "worker/link/client.h"
 #include "worker/log.h"
 #include <stdlib.h>
 #include <string.h>
@@ -18,6 +20,7 @@ static void finish(struct exchange *exchange, unsigned status, const char *type,
     exchange->response = response;
     if (type != NULL)
         answer_header(exchange, "Content-Type", type);
+    answer_header(exchange, VERSION_HEADER, RUGO_VERSION);
     answer_header(exchange, "X-Content-Type-Options", "nosniff");
     answer_header(exchange, "Referrer-Policy", "no-referrer");
     answer_header(

@@ -3,6 +3,7 @@
 #include "schema/hex.h"
 #include "schema/json/json.h"
 #include "worker/clock.h"
+#include "worker/link/contact.h"
 #include <arpa/inet.h>
 #include <curl/curl.h>
 #include <errno.h>
@@ -137,6 +138,7 @@ struct client {
     char *url;           /* scheme://host:port, no slash behind it */
     char *authorisation; /* the header line with the token, or NULL; never printed */
     char detail[CURL_ERROR_SIZE];
+    struct contact contact;
     bool lost; /* the last request was at least begun, and has no answer */
 };
 
@@ -151,7 +153,9 @@ struct sink {
     CURL *curl;
     struct reply *reply;
     size_t capacity; /* bytes allocated for reply->body */
-    FILE *file;      /* takes the body of a 2xx reply instead; NULL: none */
+    FILE *file;      /* takes the body of a 200 instead; NULL: none */
+    bool exact;      /* such a body has the length that was announced, or is not taken */
+    uint64_t size;   /* of what the file has taken */
     const char *fault;
 };
 
@@ -286,6 +290,20 @@ static size_t sink_keep(struct sink *sink, const char *bytes, size_t size) {
     return size;
 }
 
+/* Returns whether the file may take so many bytes more. */
+static bool sink_has_room(struct sink *sink, size_t size) {
+    curl_off_t announced = -1;
+    if (sink->exact)
+        curl_easy_getinfo(sink->curl, CURLINFO_CONTENT_LENGTH_DOWNLOAD_T, &announced);
+    if (sink->exact && announced < 0)
+        sink->fault = "the answer does not say how long it is";
+    else if (sink->exact ? size > (uint64_t)announced - sink->size
+                         : size > REPLY_BYTES_MOST - sink->size)
+        sink->fault =
+            sink->exact ? "more came than was announced" : "the reply is larger than 256 MiB";
+    return sink->fault == NULL;
+}
+
 /* Receives a part of the body, as a CURLOPT_WRITEFUNCTION; to return fewer bytes than given ends
  * the exchange. */
 static size_t sink_write(char *bytes, size_t unit, size_t count, void *context) {
@@ -293,8 +311,11 @@ static size_t sink_write(char *bytes, size_t unit, size_t count, void *context) 
     size_t size = unit * count; /* unit is always 1 */
     long status = 0;
     curl_easy_getinfo(sink->curl, CURLINFO_RESPONSE_CODE, &status);
-    if (sink->file == NULL || status < 200 || status > 299)
+    if (sink->file == NULL || status != 200)
         return sink_keep(sink, bytes, size);
+    if (!sink_has_room(sink, size))
+        return 0;
+    sink->size += size;
     if (fwrite(bytes, 1, size, sink->file) != size) {
         sink->fault = "the file cannot be written";
         return 0;
@@ -358,7 +379,9 @@ static bool request_options(CURL *curl, const struct request *request, const cha
         curl_easy_setopt(curl, CURLOPT_NOPROGRESS, request->stop == NULL ? 1L : 0L) == CURLE_OK &&
         curl_easy_setopt(curl, CURLOPT_XFERINFOFUNCTION, is_stopped) == CURLE_OK &&
         curl_easy_setopt(curl, CURLOPT_XFERINFODATA, (const void *)request) == CURLE_OK &&
-        curl_easy_setopt(curl, CURLOPT_HTTPGET, 1L) == CURLE_OK;
+        curl_easy_setopt(curl, CURLOPT_HTTPGET, 1L) == CURLE_OK &&
+        /* the length that is announced for what is compressed is not that of the file */
+        (!sink->exact || curl_easy_setopt(curl, CURLOPT_ACCEPT_ENCODING, NULL) == CURLE_OK);
     if (good && post) {
         good = curl_easy_setopt(curl, CURLOPT_POST, 1L) == CURLE_OK &&
                curl_easy_setopt(curl, CURLOPT_POSTFIELDS, body) == CURLE_OK &&
@@ -373,12 +396,19 @@ static int perform(struct client *client, struct sink *sink, struct error *err) 
     CURLcode code = curl_easy_perform(client->curl);
     if (code == CURLE_ABORTED_BY_CALLBACK)
         return error_set(err, ERROR_STOPPED, "stopped");
+    if (sink->fault != NULL) { /* of what a stranger sends, only that it is one is of interest */
+        int status = contact_judge(&client->contact, client->curl, client->url, err);
+        if (status != 0)
+            return status;
+    }
     if (code != 0) {
         long sent = 0;
         client->lost =
             curl_easy_getinfo(client->curl, CURLINFO_REQUEST_SIZE, &sent) == CURLE_OK && sent > 0;
         const char *detail = client->detail[0] != '\0' ? client->detail : curl_easy_strerror(code);
         const char *hint = client_trust_hint(code);
+        if (*hint == '\0')
+            hint = contact_fault(&client->contact, client->curl, client->url, code);
         /* another try at a server whose identity is wrong does not help */
         return error_set(err, *hint != '\0' ? ERROR_INPUT : ERROR_SYSTEM, "%s: %s%s", client->url,
                          sink->fault != NULL ? sink->fault : detail, hint);
@@ -386,15 +416,16 @@ static int perform(struct client *client, struct sink *sink, struct error *err) 
     curl_easy_getinfo(client->curl, CURLINFO_RESPONSE_CODE, &sink->reply->status);
     /* a proxy reports so that the server did not answer it */
     client->lost = sink->reply->status == 502 || sink->reply->status == 504;
-    return 0;
+    return contact_judge(&client->contact, client->curl, client->url, err);
 }
 
-/* file: NULL, or takes the body of a 2xx reply. reply is empty after a failure. */
-static int exchange(struct client *client, const struct request *request, FILE *file,
+/* sink says what takes the body of a 200, if not reply, which is empty after a failure. */
+static int exchange(struct client *client, const struct request *request, struct sink *sink,
                     struct reply *reply, struct error *err) {
     *reply = (struct reply){0};
     client->lost = false;
-    struct sink sink = {.curl = client->curl, .reply = reply, .file = file};
+    sink->curl = client->curl;
+    sink->reply = reply;
     struct curl_slist *headers = NULL;
     size_t size = strlen(client->url) + strlen(request->path) + 1;
     char *url = malloc(size);
@@ -405,8 +436,8 @@ static int exchange(struct client *client, const struct request *request, FILE *
         status = error_set(err, ERROR_INPUT, "'%s' is no path of a request", request->path);
     } else {
         snprintf(url, size, "%s%s", client->url, request->path);
-        status = request_options(client->curl, request, url, headers, &sink)
-                     ? perform(client, &sink, err)
+        status = request_options(client->curl, request, url, headers, sink)
+                     ? perform(client, sink, err)
                      : error_set(err, ERROR_SYSTEM, "libcurl refuses a request");
     }
     curl_slist_free_all(headers);
@@ -480,7 +511,8 @@ static int reply_error(const struct reply *reply, struct fault_list *faults, str
 int client_json(struct client *client, const struct request *request, cJSON **out,
                 struct error *err) {
     struct reply reply;
-    int status = exchange(client, request, NULL, &reply, err);
+    struct sink sink = {.file = NULL};
+    int status = exchange(client, request, &sink, &reply, err);
     if (status != 0)
         return status;
     cJSON *value = NULL;
@@ -509,12 +541,16 @@ uint64_t client_header_number(struct client *client, const char *name) {
     return strtoull(header->value, NULL, 10);
 }
 
-int client_download(struct client *client, const char *path, FILE *file, struct error *err) {
+int client_download(struct client *client, const char *path, FILE *file, uint64_t *size,
+                    struct error *err) {
     struct request request = {.method = "GET", .path = path, .accept = "*/*"};
+    struct sink sink = {.file = file, .exact = size != NULL};
     struct reply reply;
-    int status = exchange(client, &request, file, &reply, err);
-    if (status == 0 && (reply.status < 200 || reply.status > 299))
+    int status = exchange(client, &request, &sink, &reply, err);
+    if (status == 0 && reply.status != 200)
         status = reply_error(&reply, NULL, err);
+    if (status == 0 && size != NULL)
+        *size = sink.size;
     reply_clear(&reply);
     return status;
 }

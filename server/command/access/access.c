@@ -322,9 +322,14 @@ static int download(struct access *access, const char *path, struct error *err) 
             close(copy);
         status = error_set(err, ERROR_SYSTEM, "%s: %s", path, strerror(errno));
     } else {
-        status = client_download(access->client, "/v1/snapshot", file, err);
+        uint64_t size = 0;
+        status = client_download(access->client, "/v1/snapshot", file, &size, err);
         if (fclose(file) != 0 && status == 0)
             status = error_set(err, ERROR_SYSTEM, "%s: %s", path, strerror(errno));
+        if (status == 0)
+            status = store_file_check(part.file, size, err);
+        if (status != 0)
+            error_context(err, "no snapshot of %.200s", access->server);
     }
     if (status == 0)
         status = part_file_publish(&part, err);
@@ -490,7 +495,7 @@ static int download_table(struct access *access, const char *id,
                           const struct table_request *request, int format, FILE *file,
                           struct error *err) {
     char *path = table_path(id, request, format);
-    int status = path != NULL ? client_download(access->client, path, file, err)
+    int status = path != NULL ? client_download(access->client, path, file, NULL, err)
                               : error_memory(err, 0, "a request");
     free(path);
     return status;

@@ -123,6 +123,14 @@ static int read_certificate(struct serve *serve, struct error *err) {
 
 /* --- workers of its own --- */
 
+enum {
+    WORKERS_GRACE_MS = 700, /* how long a realisation may go on after a stop */
+    /* What a stop of the server takes at most, without workers and with some: these hand in first
+     * what they have, and may find the disk busy. */
+    PATIENCE_MS = 1600,
+    WORKERS_PATIENCE_MS = 8000,
+};
+
 struct local_workers {
     struct serve *serve;
     pthread_t thread;
@@ -138,6 +146,7 @@ static void *local_workers_thread(void *context) {
                    .token = workers->serve->service.tokens != NULL ? workers->token : NULL,
                    .trust = {.own = true}},
         .threads = workers->serve->options->workers,
+        .grace_ms = WORKERS_GRACE_MS,
         .stop = &stop_requested,
     };
     int status = workers_run(&options, &err);
@@ -261,9 +270,9 @@ static int set_shares(struct serve *serve, struct error *err) {
  * realisation, outlasts a stop: what was answered is on disk, what was published is due again at
  * the next start, and leases run out. */
 static void *last_resort_thread(void *context) {
-    enum { PATIENCE_MS = 1600 };
-    (void)context;
-    for (int64_t now_ms = clock_ms(), until_ms = now_ms + PATIENCE_MS; now_ms < until_ms;
+    const struct serve *serve = context;
+    int64_t patience_ms = serve->options->workers > 0 ? WORKERS_PATIENCE_MS : PATIENCE_MS;
+    for (int64_t now_ms = clock_ms(), until_ms = now_ms + patience_ms; now_ms < until_ms;
          now_ms = clock_ms()) {
         struct timespec left = {(until_ms - now_ms) / 1000, (until_ms - now_ms) % 1000 * 1000000};
         nanosleep(&left, NULL); /* a signal ends it early */
@@ -272,9 +281,9 @@ static void *last_resort_thread(void *context) {
     _exit(EXIT_DONE);
 }
 
-static void begin_end(void) {
+static void begin_end(struct serve *serve) {
     pthread_t thread;
-    if (pthread_create(&thread, NULL, last_resort_thread, NULL) == 0)
+    if (pthread_create(&thread, NULL, last_resort_thread, serve) == 0)
         pthread_detach(thread);
 }
 
@@ -285,7 +294,7 @@ static int watch_until_end(struct serve *serve, struct error *err) {
     if (status == 0) {
         wait_for_end(serve);
         supervisor_tell("STOPPING=1");
-        begin_end();
+        begin_end(serve);
     }
     watchdog_stop(&watchdog);
     return status;

@@ -95,7 +95,8 @@ static int check_result(struct exchange *exchange, int64_t number, const char *t
                         const struct block_result *result, struct error *err) {
     struct store *reader;
     struct claimed_job job = {0};
-    int status = exchange_reader(exchange, &reader, err);
+    /* Not one that stops when the server ends: its own workers hand in what they have by then. */
+    int status = service_reader(exchange->service, &reader, err);
     if (status == 0)
         status = store_job(reader, number, token, &job, err);
     service_give_back(exchange->service, reader);

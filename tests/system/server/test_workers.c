@@ -114,6 +114,30 @@ static void one_connection_keeps_all_leases(void **state) {
     assert_int_equal(process_wait(&server, 20), 0);
 }
 
+/* A server that is asked to end lets its own workers hand in what they have first: no job stays
+ * under a lease, none counts as lost, and what is done is kept. */
+static void own_workers_hand_in_at_the_end(void **state) {
+    (void)state;
+    static const int SIGNALS[] = {SIGTERM, SIGINT};
+    for (size_t s = 0; s < sizeof SIGNALS / sizeof *SIGNALS; s++) {
+        struct process server;
+        unsigned port =
+            serve_start(&server, (const char *[]){"--db", "own.db", "--workers", "2", NULL});
+        if (s == 0)
+            submit(port, LONG);
+        for (int tries = 0; figure(port, "/v1/studies?limit=1", "\"running\":") < 2; tries++) {
+            assert_true(tries < 1200);
+            sleep_ms(50);
+        }
+        int64_t done = sql_integer("own.db", "SELECT count(*) FROM result");
+        process_kill(&server, SIGNALS[s]);
+        assert_int_equal(process_wait(&server, 60), 0);
+        assert_int_equal(sql_integer("own.db", "SELECT count(*)" RUNNING), 0);
+        assert_int_equal(sql_integer("own.db", "SELECT max(losses) FROM job"), 0);
+        assert_true(sql_integer("own.db", "SELECT count(*) FROM result") > done);
+    }
+}
+
 #define CHANGES "\nrugo_changes_total "
 static const char CLAIM[] = "{\"worker\":\"w\",\"sequence\":true}";
 
@@ -308,6 +332,7 @@ static void interrupted_runs_keep_realisations(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(own_workers_hand_in_at_the_end),
         cmocka_unit_test(one_connection_keeps_all_leases),
         cmocka_unit_test(claims_wait_for_jobs),
         cmocka_unit_test(who_has_gone_gets_no_job),

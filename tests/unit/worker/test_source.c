@@ -11,8 +11,8 @@ static const char TOKEN[] = "0123456789abcdef0123456789abcdef";
 
 /* A reply of this status line and body, into text. */
 static const char *reply(char *text, size_t size, const char *status, const char *body) {
-    snprintf(text, size, "HTTP/1.1 %s\r\nContent-Length: %zu\r\n\r\n%s", status, strlen(body),
-             body);
+    snprintf(text, size, "HTTP/1.1 %s\r\nRugo-Version: 1\r\nContent-Length: %zu\r\n\r\n%s", status,
+             strlen(body), body);
     return text;
 }
 
@@ -81,7 +81,8 @@ static void no_content_is_no_job(void **state) {
     struct claimed_job job = {0};
     size_t count = 9;
     bool due = false;
-    struct stub stub = {.manner = ANSWER, .answer = "HTTP/1.1 204 No Content\r\n\r\n"};
+    struct stub stub = {.manner = ANSWER,
+                        .answer = "HTTP/1.1 204 No Content\r\nRugo-Version: 1\r\n\r\n"};
     stub_start(&stub);
     struct source *source = source_of(&stub);
     assert_int_equal(source_claim(source, &WISH, &job, &count, &due, &err), 0);
