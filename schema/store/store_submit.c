@@ -96,21 +96,28 @@ static int queue_cases(struct store *store, const struct study *study, int64_t r
     return status;
 }
 
+/* Of owner and key, a text that no other owner has (migrations/019.sql); NULL without a key. */
+#define OWNED_KEY "? || char(31) || ?"
+
+static const char *owner_of(const struct study *study) {
+    return study->owner != NULL ? study->owner : "";
+}
+
 static int insert_row(struct store *store, const struct study *study, const char *key,
                       const char *id, int64_t *row, struct error *err) {
     char seed[24], program[PROGRAM_SIZE];
-    const char *owner = study->owner != NULL ? study->owner : "";
+    const char *owner = owner_of(study);
     program_write(program);
     snprintf(seed, sizeof seed, "%llu", (unsigned long long)study->seed);
-    int status =
-        store_run(store, err,
-                  "INSERT INTO study (public, name, kind, seed, random, realisations, "
-                  "submit_key, state, cases, jobs, jobs_waiting, created, program, owner, "
-                  "priority) VALUES "
-                  "(?, ?, ?, ?, ?, ?, ?, 'queued', ?, 0, 0, ?, ?, ?, ?)",
-                  "tttttitittti", id, study->name, study->kind->name, seed,
-                  choice_name(STUDY_RANDOM, (int)study->random), (int64_t)study->realisations, key,
-                  (int64_t)study->case_count, store_time(store), program, owner, study->priority);
+    int status = store_run(store, err,
+                           "INSERT INTO study (public, name, kind, seed, random, realisations, "
+                           "submit_key, state, cases, jobs, jobs_waiting, created, program, owner, "
+                           "priority) VALUES "
+                           "(?, ?, ?, ?, ?, ?, " OWNED_KEY ", 'queued', ?, 0, 0, ?, ?, ?, ?)",
+                           "tttttittittti", id, study->name, study->kind->name, seed,
+                           choice_name(STUDY_RANDOM, (int)study->random),
+                           (int64_t)study->realisations, owner, key, (int64_t)study->case_count,
+                           store_time(store), program, owner, study->priority);
     *row = sqlite3_last_insert_rowid(store->db);
     if (status == 0)
         status =
@@ -154,8 +161,8 @@ static int find_key(struct store *store, const struct study *study, const char *
         store_query(store, &statement, err,
                     "SELECT public, source IN (?1, json_set(?1, '$.realisations', realisations)) "
                     "FROM study JOIN study_source ON study_id = study.id WHERE submit_key "
-                    "= ?2",
-                    "tt", study->source, key);
+                    "= ?2 || char(31) || ?3",
+                    "ttt", study->source, owner_of(study), key);
     if (status == 0)
         status = store_step(store, statement, err);
     if (status <= 0)

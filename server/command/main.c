@@ -8,9 +8,11 @@
 #include <fcntl.h>
 #include <gsl/gsl_errno.h>
 #include <malloc.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 static bool wants_help(int argc, char **argv) {
@@ -89,12 +91,36 @@ static void hold_standard_streams(void) {
  * freed, and has to clear it each time. */
 enum { MAPPED_BYTES = 256 * 1024 };
 
+/* What a thread and the first one may need of the stack; where it is smaller, they may crash. */
+enum { STACK_LEAST = 1 << 20, STACK_WANTED = 8 << 20 };
+
+/* Raises a small limit of the stack where that may be done; false where it may not. */
+static bool stack_is_enough(void) {
+    struct rlimit stack;
+    pthread_attr_t attributes;
+    if (getrlimit(RLIMIT_STACK, &stack) != 0 || stack.rlim_cur >= STACK_LEAST)
+        return true;
+    if (stack.rlim_max < STACK_LEAST)
+        return false;
+    stack.rlim_cur = stack.rlim_max < STACK_WANTED ? stack.rlim_max : STACK_WANTED;
+    if (setrlimit(RLIMIT_STACK, &stack) != 0 || pthread_attr_init(&attributes) != 0)
+        return false;
+    bool raised = pthread_attr_setstacksize(&attributes, stack.rlim_cur) == 0 &&
+                  pthread_setattr_default_np(&attributes) == 0;
+    pthread_attr_destroy(&attributes);
+    return raised;
+}
+
 int main(int argc, char **argv) {
     mallopt(M_MMAP_THRESHOLD, MAPPED_BYTES);
     portable_prepare();
     hold_standard_streams();
     signal(SIGPIPE, SIG_IGN); /* a closed pipe and a file at its limit are errors like any other */
     signal(SIGXFSZ, SIG_IGN);
+    if (!stack_is_enough()) {
+        fputs("rugo: the stack may have less than 1 MiB: see ulimit -s\n", stderr);
+        return EXIT_FAILED;
+    }
     int status = dispatch(argc, argv);
     struct error err = {0};
     if (output_flush(&err) != 0 && status == EXIT_DONE) {

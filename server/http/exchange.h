@@ -19,6 +19,8 @@ struct exchange {
     size_t body_size, body_room; /* room without the NUL */
     size_t body_most;            /* bytes that it may have */
     bool has_file;               /* it is a file, which is counted among those (service.h) */
+    bool needs_host;             /* HTTP/1.1, where a request names its server */
+    bool bad_target;             /* it asks for what has a space or a NUL, not escaped */
     int64_t start_ns;
 
     /* Who asks: the name of the token, "" without; and whether it may change the studies of all. */

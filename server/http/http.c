@@ -20,6 +20,7 @@ enum {
     RESERVE = 32,            /* connections beyond the limit */
     CLOSING_MOST = 512,      /* shut ones whose threads have not ended */
     OTHER_FILES = 512,       /* descriptors of the store, its readers, workers' connections */
+    FILES_LEAST = 128,       /* of the store and a few connections beside the reserve */
     LATE_MS = 500,           /* by which a connection may pass its deadline */
     END_MS = 1200,           /* for running requests when the server ends */
 };
@@ -178,10 +179,23 @@ static void note_lease(struct exchange *exchange) {
                           clock_ms() + exchange->service->lease_ms);
 }
 
+/* Stands in the slot of a request, before its headers are read, where its target is none. */
+static char bad_target;
+
+/* The library would refuse a space in the target, and a request without a Host, too; but of some
+ * refusals of its own it sends the head twice. A target ends where its line has the version. */
+static void *on_target(void *context, const char *target, struct MHD_Connection *connection) {
+    (void)context;
+    (void)connection;
+    bool good =
+        strchr(target, ' ') == NULL && strncmp(target + strlen(target) + 1, "HTTP/", 5) == 0;
+    return good ? NULL : &bad_target;
+}
+
 static void on_completed(void *context, struct MHD_Connection *connection, void **slot,
                          enum MHD_RequestTerminationCode code) {
     struct http *http = context;
-    struct exchange *exchange = *slot;
+    struct exchange *exchange = *slot != &bad_target ? *slot : NULL;
     (void)connection;
     if (exchange == NULL)
         return;
@@ -245,11 +259,15 @@ static bool keep_body(struct exchange *exchange, const char *data, size_t size) 
 }
 
 static enum MHD_Result begin(struct http *http, struct MHD_Connection *connection,
-                             const char *method, const char *path, void **slot) {
+                             const char *method, const char *path, const char *version,
+                             void **slot) {
     struct exchange *exchange = exchange_create(http, connection, method, path);
+    bool is_bad = *slot == &bad_target;
     *slot = exchange;
     if (exchange == NULL)
         return MHD_NO;
+    exchange->bad_target = is_bad;
+    exchange->needs_host = strcmp(version, "HTTP/1.1") == 0;
     route_refuse_early(exchange);
     if (exchange->status == 0)
         reserve_body(exchange);
@@ -260,10 +278,9 @@ static enum MHD_Result begin(struct http *http, struct MHD_Connection *connectio
 static enum MHD_Result on_request(void *context, struct MHD_Connection *connection,
                                   const char *path, const char *method, const char *version,
                                   const char *data, size_t *size, void **slot) {
+    if (*slot == NULL || *slot == &bad_target)
+        return begin(context, connection, method, path, version, slot);
     struct exchange *exchange = *slot;
-    (void)version;
-    if (exchange == NULL)
-        return begin(context, connection, method, path, slot);
     if (*size != 0) {
         /* A chunked body past the cap can only be cut. */
         bool kept = keep_body(exchange, data, *size);
@@ -327,8 +344,9 @@ static int start_daemon(struct http *http, struct error *err) {
         MHD_OPTION_CONNECTION_LIMIT, http->options.connections + RESERVE + CLOSING_MOST,
         MHD_OPTION_THREAD_STACK_SIZE, (size_t)STACK, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
         (size_t)HEADERS_MOST, MHD_OPTION_NOTIFY_CONNECTION, on_connection, http,
-        MHD_OPTION_NOTIFY_COMPLETED, on_completed, http, MHD_OPTION_STRICT_FOR_CLIENT, 1,
-        MHD_OPTION_UNESCAPE_CALLBACK, unescape, NULL, MHD_OPTION_LISTEN_BACKLOG_SIZE, 1024u,
+        MHD_OPTION_NOTIFY_COMPLETED, on_completed, http, MHD_OPTION_STRICT_FOR_CLIENT, 0,
+        MHD_OPTION_URI_LOG_CALLBACK, on_target, NULL, MHD_OPTION_UNESCAPE_CALLBACK, unescape, NULL,
+        MHD_OPTION_LISTEN_BACKLOG_SIZE, 1024u,
         /* without TLS the options end here */
         tls ? MHD_OPTION_HTTPS_PRIORITIES : MHD_OPTION_END, CERTIFICATE_PRIORITIES,
         MHD_OPTION_HTTPS_CERT_CALLBACK2, certificate_retrieve, MHD_OPTION_END);
@@ -355,6 +373,10 @@ static int limit_connections(struct http *http, struct error *err) {
     }
     if (files.rlim_cur >= wanted)
         return 0;
+    if (files.rlim_cur < FILES_LEAST)
+        return error_set(err, ERROR_SYSTEM,
+                         "%llu open files are too few for a server, which needs %d: see ulimit -n",
+                         (unsigned long long)files.rlim_cur, FILES_LEAST);
     unsigned left =
         files.rlim_cur > others + RESERVE ? (unsigned)(files.rlim_cur - others) : RESERVE;
     if (left < http->options.connections)

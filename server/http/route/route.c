@@ -128,8 +128,11 @@ static void refuse_route(struct exchange *exchange) {
 
 /* --- what the headers must be --- */
 
+#define LINE_END_FAULT "a line that does not end in CR LF, or a NUL, in the head"
+
 struct headers {
-    unsigned lengths, hosts, encodings, keys;
+    unsigned lengths, hosts, encodings, keys, authorizations;
+    const char *next; /* where the line behind the last one seen begins; NULL before the first */
     bool unknown_encoding;
     const char *fault; /* the first one found; NULL: none */
 };
@@ -164,14 +167,29 @@ static bool is_folded(const char *name, const char *value) {
     return begin - end > BLANKS_MOST;
 }
 
+/* The library takes a bare LF for the end of a line, and a NUL for that of a value. It puts a NUL
+ * for each byte of a line's end: so both of CR LF are NULs, and the next line begins behind them.
+ */
+static bool ends_as_it_should(const struct headers *headers, const char *name) {
+    return headers->next != NULL ? name == headers->next : name[-2] == '\0';
+}
+
+/* Of the last line that shows by the empty line behind it, which ends likewise. */
+static bool last_ends_as_it_should(const struct headers *headers) {
+    return headers->next == NULL ||
+           (headers->next[-1] == '\0' && headers->next[0] == '\0' && headers->next[1] == '\0');
+}
+
 /* value may be NULL. */
-static const char *line_fault(const char *name, const char *value) {
+static const char *line_fault(const struct headers *headers, const char *name, const char *value) {
     if (!is_token(name))
         return "the name of a header is no token; there is no space before its colon";
     if (value != NULL && !is_plain(value))
         return "a control character in a header, such as a CR without LF";
     if (value != NULL && is_folded(name, value))
         return "a header on more than one line";
+    if (!ends_as_it_should(headers, name))
+        return LINE_END_FAULT;
     return NULL;
 }
 
@@ -180,6 +198,7 @@ static enum MHD_Result see_header(void *context, enum MHD_ValueKind kind, const 
     struct headers *headers = context;
     (void)kind;
     headers->lengths += strcasecmp(name, "Content-Length") == 0;
+    headers->authorizations += strcasecmp(name, "Authorization") == 0;
     headers->keys += strcasecmp(name, "Idempotency-Key") == 0;
     headers->hosts += strcasecmp(name, "Host") == 0;
     if (strcasecmp(name, "Transfer-Encoding") == 0) {
@@ -188,18 +207,27 @@ static enum MHD_Result see_header(void *context, enum MHD_ValueKind kind, const 
         headers->unknown_encoding |= value == NULL || strcasecmp(value, "chunked") != 0;
     }
     if (headers->fault == NULL)
-        headers->fault = line_fault(name, value);
+        headers->fault = line_fault(headers, name, value);
+    headers->next = value != NULL ? value + strlen(value) + 2 : NULL;
     return MHD_YES;
 }
 
 /* Returns what is wrong with the headers of a request, a static text; NULL where nothing is:
  * headers that let two readers, such as a proxy and this server, see different requests in the same
  * bytes (RFC 9112, 2.2, 5.1, 5.2 and 6.3). */
-static const char *headers_fault(struct MHD_Connection *connection) {
+static const char *headers_fault(const struct exchange *exchange) {
     struct headers headers = {0};
-    MHD_get_connection_values(connection, MHD_HEADER_KIND, see_header, &headers);
+    MHD_get_connection_values(exchange->connection, MHD_HEADER_KIND, see_header, &headers);
     if (headers.fault != NULL)
         return headers.fault;
+    if (!last_ends_as_it_should(&headers))
+        return LINE_END_FAULT;
+    if (exchange->bad_target)
+        return "a space or a NUL in what is asked for; a space is written %20";
+    if (headers.hosts == 0 && exchange->needs_host)
+        return "no Host";
+    if (headers.authorizations > 1)
+        return "more than one Authorization";
     if (headers.lengths > 1)
         return "more than one Content-Length";
     if (headers.lengths != 0 && headers.encodings != 0)
@@ -214,7 +242,7 @@ static const char *headers_fault(struct MHD_Connection *connection) {
 }
 
 static bool check_headers(struct exchange *exchange) {
-    const char *detail = headers_fault(exchange->connection);
+    const char *detail = headers_fault(exchange);
     if (detail == NULL)
         return true;
     answer_problem(exchange, 400, detail, NULL);

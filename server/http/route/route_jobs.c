@@ -18,7 +18,7 @@ static bool job_number(struct exchange *exchange, const char *id, int64_t *job) 
     char *end;
     errno = 0;
     *job = strtoll(id, &end, 10);
-    bool good = errno == 0 && end != id && *end == '\0' && *job > 0;
+    bool good = *id >= '0' && *id <= '9' && errno == 0 && end != id && *end == '\0' && *job > 0;
     if (!good)
         answer_problem(exchange, 404, "there is no such job", NULL);
     return good;

@@ -263,6 +263,8 @@ static void broken_requests_are_told_what_is_wrong(void **state) {
         {"GET", STRANGER "/events", READ, "", NULL, 404, NULL,
          "there is no study \"0123456789abcdef\""},
         {"DELETE", STRANGER, READ, "", NULL, 403, NULL, "the token's role does not allow this"},
+        {"POST", "/v1/jobs/%201/heartbeat", WORK, JSON, "{" TOKEN ",\"done\":1}", 404, NULL,
+         "there is no such job"},
         {"POST", "/v1/jobs/claim", WORK, JSON, "[1]", 422, "", "a claim must be an object"},
         {"POST", "/v1/jobs/claim", WORK, JSON, "{}", 422, "",
          "\"worker\" must be a string of 1 to 255 bytes"},

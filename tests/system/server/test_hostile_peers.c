@@ -98,6 +98,43 @@ static void wrong_headers_are_refused(void **state) {
     check_raw("HEAD /healthz HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n", "200");
 }
 
+#define RAW(text)                                                                                  \
+    { text, sizeof(text) - 1 }
+#define HEAD "GET /healthz HTTP/1.1\r\nHost: localhost\r\n"
+
+/* What another reader, such as a proxy, may take for another request is refused, with one head. */
+static void doubtful_heads_are_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        size_t size;
+    } HEADS[] = {
+        RAW("GET /healthz HTTP/1.1\nHost: localhost\n\n"),
+        RAW("GET /healthz HTTP/1.1\nHost: localhost\r\n\r\n"),
+        RAW("GET /healthz HTTP/1.1\r\nHost: localhost\nA: b\r\n\r\n"),
+        RAW("POST /v1/check HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+            "Content-Length: 2\n\r\n{}"),
+        RAW(HEAD "A: b\0c\r\n\r\n"),
+        RAW(HEAD "A: b\0\r\nC: d\r\n\r\n"),
+        RAW(HEAD "Authorization: Bearer a\r\nAuthorization: Bearer b\r\n\r\n"),
+        RAW("GET /healthz\0 HTTP/1.1\r\nHost: localhost\r\n\r\n"),
+        RAW("GET /heal thz HTTP/1.1\r\nHost: localhost\r\n\r\n"),
+        RAW("GET /healthz?a=b c HTTP/1.1\r\nHost: localhost\r\n\r\n"),
+        RAW("GET /healthz HTTP/1.1\r\nA: b\r\n\r\n"),
+    };
+    for (size_t h = 0; h < sizeof HEADS / sizeof *HEADS; h++) {
+        char *reply = http_raw(port, HEADS[h].text, HEADS[h].size);
+        if (strncmp(reply, "HTTP/1.1 400", 12) != 0 || strstr(reply, "\"detail\":\"") == NULL ||
+            strstr(reply + 1, "HTTP/1.1 ") != NULL) {
+            print_error("head %zu\ngot %.800s\n", h, reply);
+            fail();
+        }
+        free(reply);
+    }
+    check_raw("GET /healthz HTTP/1.0\r\n\r\n", "200");
+    check_raw(HEAD "A:\r\nB: \r\nCookie: c=d; e=f\r\nConnection: close\r\n\r\n", "200");
+}
+
 /* 413 comes before the body, and reaches a peer who goes on sending. */
 static void large_bodies_are_refused_at_once(void **state) {
     (void)state;
@@ -365,6 +402,7 @@ static int stop(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(doubtful_heads_are_refused),
         cmocka_unit_test(wrong_headers_are_refused),
         cmocka_unit_test(large_bodies_are_refused_at_once),
         cmocka_unit_test(many_large_bodies_are_refused),

@@ -57,6 +57,37 @@ static void roles_bound_what_a_token_may_do(void **state) {
     assert_false(contains(other.err, "token-0000"));
 }
 
+static int submit_with(unsigned port, const char *token, const char *body, char id[17]) {
+    char headers[160], *answer;
+    snprintf(headers, sizeof headers,
+             JSON "Idempotency-Key: monday\r\nAuthorization: Bearer %s\r\n", token);
+    int status = http_exchange(port, "POST", "/v1/studies", headers, body, &answer);
+    sscanf(answer, "{\"id\":\"%16[0-9a-f]", id);
+    free(answer);
+    return status;
+}
+
+/* The key of one owner is no other's, who would get a study that is not his. */
+static void keys_belong_to_their_owner(void **state) {
+    (void)state;
+    static const char ANNA[] = "anna-token-00000", BERT[] = "bert-token-00000";
+    struct process other = {0};
+    char first[17] = "", again[17] = "", others[17] = "";
+    spit_secret("owners", "submit:anna:anna-token-00000\nsubmit:bert:bert-token-00000\n");
+    unsigned port =
+        serve_start(&other, (const char *[]){"--db", "owners.db", "--token-file", "owners", NULL});
+    assert_int_equal(submit_with(port, ANNA, ONE_CASE, first), 201);
+    assert_int_equal(submit_with(port, BERT, ONE_CASE, others), 201);
+    assert_string_not_equal(first, others);
+    assert_int_equal(submit_with(port, ANNA, ONE_CASE, again), 200);
+    assert_string_equal(first, again);
+    assert_int_equal(submit_with(port, BERT, ONE_CASE, again), 200);
+    assert_string_equal(others, again);
+    assert_int_equal(submit_with(port, BERT, SEVERAL_BLOCKS, again), 409);
+    process_kill(&other, SIGTERM);
+    assert_int_equal(process_wait(&other, 15), 0);
+}
+
 static void beyond_loopback_tokens_are_needed(void **state) {
     (void)state;
     assert_int_equal(run_rugo("open", (const char *[]){"serve", "--db", "open.db", "--listen",
@@ -296,6 +327,7 @@ static void a_client_needs_the_token(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(roles_bound_what_a_token_may_do),
+        cmocka_unit_test(keys_belong_to_their_owner),
         cmocka_unit_test(beyond_loopback_tokens_are_needed),
         cmocka_unit_test(one_file_for_both_ends),
         cmocka_unit_test(beyond_loopback_tokens_need_tls),
