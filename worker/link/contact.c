@@ -3,7 +3,11 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { HEAD_SIZE = 256, PROBE_MS = 10000 };
+enum {
+    HEAD_SIZE = 256,
+    PAGE_MS = 10000, /* for a page of an older server */
+    SCHEME_MS = 2000 /* for any answer: the caller may have to ask its request again */
+};
 
 /* The beginning of an answer. */
 struct head {
@@ -25,6 +29,7 @@ static size_t keep_head(char *bytes, size_t unit, size_t count, void *context) {
 /* Asks for a page without a token, over a connection of its own. Returns the status of HTTP, 0
  * where there is none; verify is false where nothing is believed. */
 static long probe(CURL *curl, const char *url, bool verify, struct head *head) {
+    long limit_ms = verify ? PAGE_MS : SCHEME_MS;
     CURL *own = curl_easy_duphandle(curl);
     long status = 0;
     *head = (struct head){.size = 0};
@@ -34,7 +39,7 @@ static long probe(CURL *curl, const char *url, bool verify, struct head *head) {
                 curl_easy_setopt(own, CURLOPT_HTTPHEADER, NULL) == CURLE_OK &&
                 curl_easy_setopt(own, CURLOPT_ERRORBUFFER, NULL) == CURLE_OK &&
                 curl_easy_setopt(own, CURLOPT_NOPROGRESS, 1L) == CURLE_OK &&
-                curl_easy_setopt(own, CURLOPT_TIMEOUT_MS, (long)PROBE_MS) == CURLE_OK &&
+                curl_easy_setopt(own, CURLOPT_TIMEOUT_MS, limit_ms) == CURLE_OK &&
                 curl_easy_setopt(own, CURLOPT_CUSTOMREQUEST, NULL) == CURLE_OK &&
                 curl_easy_setopt(own, CURLOPT_HTTPGET, 1L) == CURLE_OK &&
                 curl_easy_setopt(own, CURLOPT_WRITEFUNCTION, keep_head) == CURLE_OK &&
@@ -85,8 +90,7 @@ int contact_judge(struct contact *contact, CURL *curl, const char *url, struct e
                      url, status);
 }
 
-const char *contact_fault(const struct contact *contact, CURL *curl, const char *url,
-                          CURLcode code) {
+const char *contact_fault(struct contact *contact, CURL *curl, const char *url, CURLcode code) {
     struct head head;
     char other[512];
     bool tls = strncasecmp(url, "https:", 6) == 0;
@@ -97,8 +101,9 @@ const char *contact_fault(const struct contact *contact, CURL *curl, const char 
     bool unclear = tls ? code == CURLE_SSL_CONNECT_ERROR
                        : code == CURLE_GOT_NOTHING || code == CURLE_RECV_ERROR;
     const char *host = strstr(url, "://");
-    if (!unclear || host == NULL)
+    if (!unclear || host == NULL || contact->probed)
         return "";
+    contact->probed = true;
     snprintf(other, sizeof other, "%s%.480s/healthz", tls ? "http" : "https", host);
     if (probe(curl, other, false, &head) == 0)
         return "";

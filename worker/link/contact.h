@@ -9,6 +9,7 @@
 /* What is known of the server by its answers so far. {0} at first. */
 struct contact {
     bool known;  /* it has once answered as Rugo does */
+    bool probed; /* whether it speaks the other scheme was asked, which is done once */
     bool marked; /* its answers have VERSION_HEADER, which older programs do not send */
 };
 
@@ -20,7 +21,6 @@ int contact_judge(struct contact *contact, CURL *curl, const char *url, struct e
 
 /* Returns what is wrong with a server that has never answered and did not answer in HTTP either,
  * by the code of the failure: a text such as "; it speaks TLS", or "" where it may be away. */
-const char *contact_fault(const struct contact *contact, CURL *curl, const char *url,
-                          CURLcode code);
+const char *contact_fault(struct contact *contact, CURL *curl, const char *url, CURLcode code);
 
 #endif

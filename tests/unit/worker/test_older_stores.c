@@ -264,7 +264,7 @@ static int refuse_structure(void *context, const struct flaw *flaw, struct error
 static void a_store_brought_up_is_like_a_new_one(void **state) {
     (void)state;
     static const char *const FIXTURES[] = {"version-1.sql", "version-3.sql", "version-17.sql",
-                                           "early-layout.sql"};
+                                           "version-18.sql", "early-layout.sql"};
     for (size_t f = 0; f < sizeof FIXTURES / sizeof *FIXTURES; f++) {
         const struct verification verification = {.found = refuse_structure};
         struct verify_report report = {0};
@@ -278,6 +278,22 @@ static void a_store_brought_up_is_like_a_new_one(void **state) {
         assert_true(report.counts.cases > 0);
         store_close(&store);
     }
+}
+
+/* A key that was everybody's is its owner's afterwards. */
+static void keys_get_their_owners(void **state) {
+    (void)state;
+    static const char KEYS[] =
+        "SELECT owner || '|' || replace(submit_key, owner || char(31), '') FROM study WHERE "
+        "submit_key LIKE owner || char(31) || '%' AND ?1 IS NULL ORDER BY id";
+    struct store *store = NULL;
+    struct error err;
+    load("version-18.sql", "keys.db");
+    assert_int_equal(store_open(&store, "keys.db", NULL, &err), 0);
+    store_close(&store);
+    char *rows = rows_of("keys.db", KEYS, NULL);
+    assert_string_equal(rows, "|monday\nanna|tuesday\n");
+    free(rows);
 }
 
 static int refuse_flaw(void *context, const struct flaw *flaw, struct error *err) {
@@ -364,6 +380,7 @@ int main(void) {
         cmocka_unit_test(an_early_layout_is_mended),
         cmocka_unit_test(a_reader_reads_it),
         cmocka_unit_test(a_store_brought_up_is_like_a_new_one),
+        cmocka_unit_test(keys_get_their_owners),
         cmocka_unit_test(what_was_not_packed_is_read),
         cmocka_unit_test(the_first_layout_is_refused),
     };
