@@ -49,8 +49,6 @@ int client_change(struct client *client, const struct request *request, const ch
                   cJSON **out, struct error *err);
 /* Returns the number in a header of the last answer; 0 where it has none. */
 uint64_t client_header_number(struct client *client, const char *name);
-/* Every answer of a server of Rugo has it. */
-#define VERSION_HEADER "Rugo-Version"
 /* A study that was found by a name: how many older ones have the same one. */
 #define SAME_NAME_HEADER "Rugo-Same-Name"
 /* Writes the body of a 200 to a file. *size, unless NULL, becomes its length; then an answer that

@@ -1,7 +1,8 @@
 #include "worker/link/contact.h"
-#include "worker/link/client.h"
+#include "worker/link/version_header.h"
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 enum {
     HEAD_SIZE = 256,

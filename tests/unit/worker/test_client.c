@@ -103,8 +103,7 @@ static void broken_answers_are_errors(void **state) {
     (void)state;
     static const char *const answers[] = {
         "HTTP/1.1 200 OK\r\nRugo-Version: 1\r\nContent-Length: 100\r\n\r\n{\"jobs\":", /* cut off */
-        "HTTP/1.1 200 OK\r\nRugo-Version: 1\r\nTransfer-Encoding: "
-        "chunked\r\n\r\n8\r\n{\"jobs\":\r\n",
+        "HTTP/1.1 200 OK\r\nRugo-Version: 1\r\nTransfer-Encoding: chunked\r\n\r\n5\r\n{\"a\":\r\n",
         "HTTP/1.1 200 OK\r\nRugo-Version: 1\r\nContent-Le",
         "",
         "SSH-2.0-OpenSSH_9.2\r\n", /* another service */
