@@ -15,11 +15,19 @@
 #include <sys/random.h>
 #include <sys/stat.h>
 #include <time.h>
+#include <unistd.h>
 
 static const char *const SUFFIXES[STORE_FILES] = {"", "-wal", "-shm"};
 /* In the header of a database: its page size, the version for readers (1: it has no log, 2: it
- * has one), its pages. */
-enum { HEADER_SIZE = 100, LOG_HEADER_SIZE = 32, PAGE_SIZE_AT = 16, VERSION_AT = 19, PAGES_AT = 28 };
+ * has one), its pages, whose it is. */
+enum {
+    HEADER_SIZE = 100,
+    LOG_HEADER_SIZE = 32,
+    PAGE_SIZE_AT = 16,
+    VERSION_AT = 19,
+    PAGES_AT = 28,
+    APPLICATION_AT = 68
+};
 
 static bool name_file(const char *path, const char *suffix, char name[STORE_PATH_SIZE]) {
     return snprintf(name, STORE_PATH_SIZE, "%s%s", path, suffix) < STORE_PATH_SIZE;
@@ -240,4 +248,23 @@ int store_check_size(struct store *store, struct store *opened, struct error *er
 int files_check(struct store *store, struct error *err) {
     int status = store_check_names(store, err);
     return status != 0 ? status : store_check_size(store, store, err);
+}
+
+/* --- what a stranger sent --- */
+
+/* SQLite documents the header in "Database File Format", 1.3. */
+int store_file_check(int file, uint64_t size, struct error *err) {
+    unsigned char head[HEADER_SIZE];
+    if (pread(file, head, HEADER_SIZE, 0) != HEADER_SIZE ||
+        memcmp(head, "SQLite format 3", 16) != 0)
+        return error_set(err, ERROR_SYSTEM, "what came is no database");
+    if (big_endian(head + APPLICATION_AT, 4) != APPLICATION_ID)
+        return error_set(err, ERROR_SYSTEM, "what came is a database of another program");
+    uint64_t page = big_endian(head + PAGE_SIZE_AT, 2);
+    uint64_t bytes = (page == 1 ? 65536 : page) * big_endian(head + PAGES_AT, 4);
+    if (bytes != size)
+        return error_set(err, ERROR_SYSTEM,
+                         "what came has %llu bytes, and is a database of %llu: it is not whole",
+                         (unsigned long long)size, (unsigned long long)bytes);
+    return 0;
 }

@@ -9,6 +9,7 @@
 #include <sys/types.h>
 #include <time.h>
 
+enum { APPLICATION_ID = 0x5255474f /* "RUGO" */ }; /* in the header of a database */
 enum { STATEMENTS = 128, NOTED = 1024, BOOT_SIZE = 40, BUSY_MS = 30000 /* waited for a lock */ };
 enum { STORE_FILES = 3 /* database, log, shared memory */, STORE_PATH_SIZE = 4224 };
 

@@ -79,8 +79,6 @@ static int void_old_leases(struct store *store, struct error *err) {
 
 /* --- versions: whose file it is, and how an older one is migrated --- */
 
-enum { APPLICATION_ID = 0x5255474f /* "RUGO" */ };
-
 /* All files of schema/store/migrations in the order of their names, each ended by a NUL. That of
  * index n makes version n + 1 of version n. Files are added and never edited, as stores of their
  * version exist. */
@@ -176,30 +174,6 @@ static int migrate(struct store *store, int64_t version, struct error *err) {
             status = store_execute(store, pragma, err);
     }
     return status;
-}
-
-static uint32_t big_endian(const unsigned char *bytes, size_t count) {
-    uint32_t value = 0;
-    for (size_t n = 0; n < count; n++)
-        value = value << 8 | bytes[n];
-    return value;
-}
-
-/* SQLite documents the header in "Database File Format", 1.3. */
-int store_file_check(int file, uint64_t size, struct error *err) {
-    enum { HEADER = 100, PAGE_SIZE_AT = 16, PAGES_AT = 28, APPLICATION_AT = 68 };
-    unsigned char head[HEADER];
-    if (pread(file, head, HEADER, 0) != HEADER || memcmp(head, "SQLite format 3", 16) != 0)
-        return error_set(err, ERROR_SYSTEM, "what came is no database");
-    if (big_endian(head + APPLICATION_AT, 4) != APPLICATION_ID)
-        return error_set(err, ERROR_SYSTEM, "what came is a database of another program");
-    uint64_t page = big_endian(head + PAGE_SIZE_AT, 2);
-    uint64_t bytes = (page == 1 ? 65536 : page) * big_endian(head + PAGES_AT, 4);
-    if (bytes != size)
-        return error_set(err, ERROR_SYSTEM,
-                         "what came has %llu bytes, and is a database of %llu: it is not whole",
-                         (unsigned long long)size, (unsigned long long)bytes);
-    return 0;
 }
 
 static int read_version(struct store *store, int64_t *version, struct error *err) {

@@ -96,7 +96,7 @@ static int queue_cases(struct store *store, const struct study *study, int64_t r
     return status;
 }
 
-/* Of owner and key, a text that no other owner has (migrations/019.sql); NULL without a key. */
+/* Of owner and key, a text that no other owner has (migrations/020.sql); NULL without a key. */
 #define OWNED_KEY "? || char(31) || ?"
 
 static const char *owner_of(const struct study *study) {
