@@ -270,9 +270,8 @@ static int set_shares(struct serve *serve, struct error *err) {
  * realisation, outlasts a stop: what was answered is on disk, what was published is due again at
  * the next start, and leases run out. */
 static void *last_resort_thread(void *context) {
-    const struct serve *serve = context;
-    int64_t patience_ms = serve->options->workers > 0 ? WORKERS_PATIENCE_MS : PATIENCE_MS;
-    for (int64_t now_ms = clock_ms(), until_ms = now_ms + patience_ms; now_ms < until_ms;
+    const int64_t *patience_ms = context; /* static: the thread may outlast all else */
+    for (int64_t now_ms = clock_ms(), until_ms = now_ms + *patience_ms; now_ms < until_ms;
          now_ms = clock_ms()) {
         struct timespec left = {(until_ms - now_ms) / 1000, (until_ms - now_ms) % 1000 * 1000000};
         nanosleep(&left, NULL); /* a signal ends it early */
@@ -281,9 +280,11 @@ static void *last_resort_thread(void *context) {
     _exit(EXIT_DONE);
 }
 
-static void begin_end(struct serve *serve) {
+static void begin_end(const struct serve *serve) {
+    static int64_t alone_ms = PATIENCE_MS, with_workers_ms = WORKERS_PATIENCE_MS;
     pthread_t thread;
-    if (pthread_create(&thread, NULL, last_resort_thread, serve) == 0)
+    if (pthread_create(&thread, NULL, last_resort_thread,
+                       serve->options->workers > 0 ? &with_workers_ms : &alone_ms) == 0)
         pthread_detach(thread);
 }
 
