@@ -47,7 +47,9 @@ int store_check_size(struct store *store, struct store *opened, struct error *er
 void store_set_stop(struct store *store, int (*stop)(void *context), void *context);
 
 /* Group commit: all operations between the two are one transaction, in which each is done
- * completely or not at all. If store_commit fails, nothing since store_begin happened. */
+ * completely or not at all. If store_commit fails, nothing since store_begin happened, unless a
+ * file of the store lost its name just then: its error says so, and whether it happened is not
+ * known. */
 int store_begin(struct store *store, struct error *err);
 int store_commit(struct store *store, struct error *err);
 /* Undoes everything since store_begin. */
@@ -58,8 +60,8 @@ int store_probe(struct store *store, struct error *err);
 /* --- studies --- */
 /* Queues a study with its jobs. If another study is the same but for its name and has fewer
  * realisations, its blocks are copied, and only what they lack is queued. key (may be NULL): a
- * second submission with the same key and source returns the id of the first and *existing = true;
- * with another source ERROR_STATE. */
+ * second submission of the same owner with the same key and source returns the id of the first and
+ * *existing = true; with another source ERROR_STATE. */
 int store_submit(struct store *store, const struct study *study, const char *key,
                  char id[STUDY_ID_SIZE], bool *existing, struct error *err);
 

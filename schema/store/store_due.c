@@ -3,7 +3,6 @@
 #include "schema/store/store_internal.h"
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 #define DUE "jobs_left = 0 AND revision > settled"
 
@@ -78,7 +77,7 @@ static bool is_final(int status) {
     return status == ERROR_INPUT || status == ERROR_NUMERIC;
 }
 
-static const double GROUP_SECONDS = 0.02; /* of preparation, beyond which no further one is begun */
+enum { GROUP_MS = 20 }; /* of preparation, beyond which no further one is begun */
 
 struct offered {
     struct due_case due;
@@ -86,20 +85,14 @@ struct offered {
     struct error reason;
 };
 
-static double seconds_now(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 /* Finds and prepares the next cases. A publication that prepares nothing has them one by one. */
 static int gather(struct store *store, const struct publication *publication, struct cursor *cursor,
                   struct offered *group, size_t *count, struct error *err) {
     const size_t most = publication->prepare != NULL ? PUBLICATION_GROUP : 1;
-    const double until = seconds_now() + GROUP_SECONDS;
+    const int64_t until_ms = store_now(store) + GROUP_MS;
     int status = 1;
     *count = 0;
-    while (*count < most && (*count == 0 || seconds_now() < until) &&
+    while (*count < most && (*count == 0 || store_now(store) < until_ms) &&
            (status = find_due(store, cursor, err)) == 1) {
         struct offered *next = &group[*count];
         if (publication->stop != NULL && publication->stop(publication->context))

@@ -63,15 +63,12 @@ static void find_other_name(const char *path, const struct stat *file, char name
 
 /* Under each of its names a database would have a log of its own. */
 static int check_links(const char *path, const struct stat *file, struct error *err) {
-    char real[STORE_PATH_SIZE], other[STORE_PATH_SIZE];
-    char *resolved = realpath(path, NULL);
-    if (file->st_nlink <= 1 || resolved == NULL) {
-        free(resolved);
+    char other[STORE_PATH_SIZE];
+    char *real = file->st_nlink > 1 ? realpath(path, NULL) : NULL;
+    if (real == NULL)
         return 0;
-    }
-    snprintf(real, sizeof real, "%s", resolved);
-    free(resolved);
     find_other_name(real, file, other);
+    free(real);
     return error_set(err, ERROR_INPUT,
                      "database %.150s has %ju names (hard links), and what is written under one is "
                      "lost to the other: remove %.150s%s",
@@ -117,6 +114,12 @@ static uint32_t big_endian(const unsigned char *bytes, size_t count) {
     for (size_t b = 0; b < count; b++)
         value = value << 8 | bytes[b];
     return value;
+}
+
+/* Returns the bytes that a database has by its header. */
+static int64_t bytes_by_header(const unsigned char header[HEADER_SIZE]) {
+    uint32_t page = big_endian(header + PAGE_SIZE_AT, 2);
+    return (int64_t)(page == 1 ? 65536 : page) * big_endian(header + PAGES_AT, 4);
 }
 
 /* Others hold the lock for a fraction of a millisecond: short random sleeps starve no process. */
@@ -223,9 +226,8 @@ static bool is_cut(struct store *store, int64_t size) {
         if (looks > 0)
             nanosleep(&(struct timespec){0, PAUSE_NS}, NULL);
         cut = file->pMethods->xRead(file, header, sizeof header, 0) != SQLITE_OK;
-        uint32_t page = big_endian(header + PAGE_SIZE_AT, 2);
         cut = file->pMethods->xFileSize(file, &now) == SQLITE_OK &&
-              (cut || now < (int64_t)(page == 1 ? 65536 : page) * big_endian(header + PAGES_AT, 4));
+              (cut || now < bytes_by_header(header));
     }
     return cut;
 }
@@ -260,11 +262,10 @@ int store_file_check(int file, uint64_t size, struct error *err) {
         return error_set(err, ERROR_SYSTEM, "what came is no database");
     if (big_endian(head + APPLICATION_AT, 4) != APPLICATION_ID)
         return error_set(err, ERROR_SYSTEM, "what came is a database of another program");
-    uint64_t page = big_endian(head + PAGE_SIZE_AT, 2);
-    uint64_t bytes = (page == 1 ? 65536 : page) * big_endian(head + PAGES_AT, 4);
-    if (bytes != size)
+    int64_t bytes = bytes_by_header(head);
+    if ((uint64_t)bytes != size)
         return error_set(err, ERROR_SYSTEM,
-                         "what came has %llu bytes, and is a database of %llu: it is not whole",
-                         (unsigned long long)size, (unsigned long long)bytes);
+                         "what came has %llu bytes, and is a database of %lld: it is not whole",
+                         (unsigned long long)size, (long long)bytes);
     return 0;
 }

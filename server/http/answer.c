@@ -4,7 +4,7 @@
 #include "schema/json/field.h"
 #include "server/http/compress.h"
 #include "server/http/exchange.h"
-#include "worker/link/version_header.h"
+#include "worker/link/header_names.h"
 #include "worker/log.h"
 #include <stdlib.h>
 #include <string.h>

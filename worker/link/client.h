@@ -49,8 +49,6 @@ int client_change(struct client *client, const struct request *request, const ch
                   cJSON **out, struct error *err);
 /* Returns the number in a header of the last answer; 0 where it has none. */
 uint64_t client_header_number(struct client *client, const char *name);
-/* A study that was found by a name: how many older ones have the same one. */
-#define SAME_NAME_HEADER "Rugo-Same-Name"
 /* Writes the body of a 200 to a file. *size, unless NULL, becomes its length; then an answer that
  * does not announce its length is refused before anything is written, and one that has another
  * length afterwards. Without, at most 256 MiB are taken. */

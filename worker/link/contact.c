@@ -1,5 +1,5 @@
 #include "worker/link/contact.h"
-#include "worker/link/version_header.h"
+#include "worker/link/header_names.h"
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>

@@ -10,6 +10,7 @@
 #include "server/command/service/token_file.h"
 #include "server/show/table/case_table.h"
 #include "worker/link/client.h"
+#include "worker/link/header_names.h"
 #include <ctype.h>
 #include <errno.h>
 #include <stdio.h>

@@ -5,9 +5,8 @@
 #include "core/error.h"
 
 enum { KEPT_PATH_SIZE = 4200 };
-/* Writes BEFORE20261126T190000ZBEHIND or, where there is such a file,
- * BEFORE20261126T190000Z-2BEHIND and so on, in the order of their making. ERROR_INPUT where that is
- * too long. */
-int kept_name(char path[KEPT_PATH_SIZE], const char *before, const char *behind, struct error *err);
+/* Writes BEFORE20261126T190000Z or, where there is such a file, BEFORE20261126T190000Z-2 and so on.
+ * ERROR_INPUT where that is too long. */
+int kept_name(char path[KEPT_PATH_SIZE], const char *before, struct error *err);
 
 #endif

@@ -128,7 +128,7 @@ static void print_repair(const struct repair_report *report) {
 static int keep_copy(struct store *store, const char *database, struct error *err) {
     char path[KEPT_PATH_SIZE], beside[KEPT_PATH_SIZE];
     snprintf(beside, sizeof beside, "%s.before-repair-", database);
-    int status = kept_name(path, beside, "", err);
+    int status = kept_name(path, beside, err);
     if (status == 0)
         status = store_snapshot(store, path, NULL, NULL, err);
     if (status == 0)

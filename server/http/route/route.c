@@ -1,6 +1,6 @@
 /* Who may ask for what, and who answers. */
 #include "server/http/route/route.h"
-#include "worker/link/client.h"
+#include "worker/link/header_names.h"
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>

@@ -4,8 +4,8 @@
  * studies, 10 000 by default. */
 #include "server/command/access/api.h"
 #include "server/show/table/contents.h"
+#include "tests/support/needle_study.h"
 #include "tests/support/queue_load.h"
-#include "tests/support/third_kind.h"
 #include "worker/publish/publish.h"
 #include "worker/publish/verify.h"
 #include <sqlite3.h>
@@ -261,29 +261,11 @@ static int write_bare(struct growth *growth, size_t rows, struct error *err) {
     return code == 0 ? 0 : error_set(err, ERROR_SYSTEM, "the bare writer failed");
 }
 
-/* A study of so many cases of one realisation. */
-static int read_study(struct study **out, unsigned cases, struct error *err) {
-    struct fault_list faults = {0};
-    const size_t size = 200 + 8 * (size_t)cases;
-    char *text = array_create(size, 1);
-    if (text == NULL)
-        return error_memory(err, size, "a study");
-    size_t used = (size_t)snprintf(text, size,
-                                   "{\"name\":\"n\",\"kind\":\"needle\",\"seed\":1,"
-                                   "\"realisations\":1,\"needle\":{\"throws\":[");
-    for (unsigned n = 0; n < cases; n++)
-        used += (size_t)snprintf(text + used, size - used, "%s%u", n > 0 ? "," : "", 10 + n);
-    used += (size_t)snprintf(text + used, size - used, "]}}");
-    int status = kind_read_study(out, text, used, NULL, &faults, err);
-    fault_list_clear(&faults);
-    free(text);
-    return status;
-}
-
 /* Nine tenths of the jobs are done before the store is asked; of a single study all of them. */
 static int measure(struct growth *growth, struct error *err) {
     size_t jobs = growth->studies > 1 ? growth->studies * 9 / 10 : growth->cases;
-    int status = read_study(&growth->study, growth->cases, err);
+    growth->study = needle_study(growth->cases, 1, err);
+    int status = growth->study != NULL ? 0 : ERROR_MEMORY;
     if (status == 0)
         status = store_open(&growth->store, DATABASE, NULL, err);
     if (status == 0)

@@ -3,8 +3,8 @@
  * time, and keeps the longest wait. The jobs are of a test kind that throws needles. RUGO_JOBS=n:
  * so many, a hundred a case; 100 000 by default. */
 #include "server/show/table/contents.h"
+#include "tests/support/needle_study.h"
 #include "tests/support/queue_load.h"
-#include "tests/support/third_kind.h"
 #include "worker/publish/publish.h"
 #include "worker/publish/verify.h"
 #include <math.h>
@@ -25,28 +25,6 @@ struct watch {
     _Atomic double write, read; /* the longest wait since they were set to 0, s */
     char study[STUDY_ID_SIZE];
 };
-
-static struct study *study_of(unsigned cases, unsigned realisations, struct error *err) {
-    struct study *study = NULL;
-    struct fault_list faults = {0};
-    const size_t size = 200 + 8 * (size_t)cases;
-    char *text = array_create(size, 1);
-    if (text == NULL)
-        return NULL;
-    size_t used = (size_t)snprintf(text, size,
-                                   "{\"name\":\"n\",\"kind\":\"needle\",\"seed\":1,"
-                                   "\"realisations\":%u,\"needle\":{\"throws\":[",
-                                   realisations);
-    for (unsigned n = 0; n < cases; n++)
-        used += (size_t)snprintf(text + used, size - used, "%s%u", n > 0 ? "," : "", 10 + n);
-    used += (size_t)snprintf(text + used, size - used, "]}}");
-    if (kind_read_study(&study, text, used, NULL, &faults, err) == 0)
-        for (unsigned c = 0; c < cases; c++)
-            study->cases[c].block = 1; /* a job a realisation */
-    fault_list_clear(&faults);
-    free(text);
-    return study;
-}
 
 /* Writes and reads until it is killed. */
 static void watch_on(struct watch *watch) {
@@ -224,12 +202,12 @@ static int run_steps(struct pauses *pauses, struct error *err) {
 
 /* Prepares the other study, and watches while the steps are run. */
 static int bench(struct pauses *pauses, struct error *err) {
-    struct study *other = study_of(1, 10, err);
+    struct study *other = needle_study(1, 10, err);
     int status = other != NULL ? store_open(&pauses->store, DATABASE, NULL, err) : ERROR_MEMORY;
     if (status == 0)
         status = store_submit(pauses->store, other, NULL, pauses->watch->study, NULL, err);
     study_destroy(&other);
-    pauses->study = status == 0 ? study_of(pauses->jobs / OF_CASE, OF_CASE, err) : NULL;
+    pauses->study = status == 0 ? needle_study(pauses->jobs / OF_CASE, OF_CASE, err) : NULL;
     if (pauses->study == NULL)
         return status != 0 ? status : ERROR_MEMORY;
     printf("a study of %u jobs in %u cases\n%-28s %9s %14s %14s\n", pauses->jobs,
