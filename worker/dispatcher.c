@@ -3,6 +3,7 @@
 #include "worker/link/report.h"
 #include "worker/link/source.h"
 #include "worker/log.h"
+#include "worker/quiet_thread.h"
 #include <math.h>
 #include <stdatomic.h>
 #include <stdint.h>
@@ -676,7 +677,7 @@ static int dispatcher_start(struct dispatcher *dispatcher, struct error *err) {
         return error_set(err, ERROR_SYSTEM, "cannot make a condition");
     }
     pthread_mutex_init(&dispatcher->lock, NULL);
-    if (pthread_create(&dispatcher->thread, NULL, dispatcher_thread_main, dispatcher) != 0) {
+    if (quiet_thread_start(&dispatcher->thread, dispatcher_thread_main, dispatcher) != 0) {
         pthread_mutex_destroy(&dispatcher->lock);
         pthread_cond_destroy(&dispatcher->offers);
         pthread_cond_destroy(&dispatcher->news);

@@ -5,6 +5,7 @@
 #include "worker/dispatcher.h"
 #include "worker/log.h"
 #include "worker/publish/publish.h"
+#include "worker/quiet_thread.h"
 #include "worker/shared_parts.h"
 #include <pthread.h>
 #include <stdarg.h>
@@ -293,7 +294,7 @@ static int thread_start(struct worker_thread *thread, struct error *err) {
     struct worker_pool *pool = thread->pool;
     snprintf(thread->name, sizeof thread->name, "%.200s-%u", pool->name, thread->number);
     pthread_mutex_lock(&pool->lock);
-    bool started = pthread_create(&thread->handle, NULL, worker_thread_main, thread) == 0;
+    bool started = quiet_thread_start(&thread->handle, worker_thread_main, thread) == 0;
     pool->at_work += started;
     pthread_mutex_unlock(&pool->lock);
     return started ? 0 : error_set(err, ERROR_SYSTEM, "cannot start a worker thread");
@@ -304,7 +305,7 @@ static int worker_pool_start(struct worker_pool *pool, struct worker_thread *thr
                              unsigned *started, struct error *err) {
     int status = 0;
     if (pool->options->source.database != NULL) {
-        pool->publishes = pthread_create(&pool->publisher, NULL, publisher_main, pool) == 0;
+        pool->publishes = quiet_thread_start(&pool->publisher, publisher_main, pool) == 0;
         if (!pool->publishes)
             status = error_set(err, ERROR_SYSTEM, "cannot start the thread that publishes");
     }

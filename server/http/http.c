@@ -3,6 +3,7 @@
 #include "server/http/route/route.h"
 #include "worker/clock.h"
 #include "worker/log.h"
+#include "worker/quiet_thread.h"
 #include <arpa/inet.h>
 #include <errno.h>
 #include <stdio.h>
@@ -338,6 +339,8 @@ static int start_daemon(struct http *http, struct error *err) {
     bool tls = http->options.certificate != NULL;
     if (tls)
         flags |= MHD_USE_TLS;
+    sigset_t before;
+    quiet_threads_begin(&before);
     http->daemon = MHD_start_daemon(
         flags, http->options.port, NULL, NULL, on_request, http, MHD_OPTION_EXTERNAL_LOGGER,
         no_library_log, NULL, MHD_OPTION_SOCK_ADDR, (struct sockaddr *)&address,
@@ -350,6 +353,7 @@ static int start_daemon(struct http *http, struct error *err) {
         /* without TLS the options end here */
         tls ? MHD_OPTION_HTTPS_PRIORITIES : MHD_OPTION_END, CERTIFICATE_PRIORITIES,
         MHD_OPTION_HTTPS_CERT_CALLBACK2, certificate_retrieve, MHD_OPTION_END);
+    quiet_threads_end(&before);
     if (http->daemon == NULL)
         return error_set(err, ERROR_SYSTEM, "cannot listen on %s port %u (in use?)",
                          http->options.address, http->options.port);
@@ -400,7 +404,7 @@ static int start(struct http *http, struct error *err) {
         status = error_set(err, ERROR_SYSTEM, "no condition variable");
     if (status == 0)
         status = start_daemon(http, err);
-    if (status == 0 && pthread_create(&http->watchdog, NULL, watchdog_thread, http) != 0) {
+    if (status == 0 && quiet_thread_start(&http->watchdog, watchdog_thread, http) != 0) {
         MHD_stop_daemon(http->daemon);
         status = error_set(err, ERROR_SYSTEM, "cannot start the watchdog's thread");
     }

@@ -2,6 +2,7 @@
 #include "worker/clock.h"
 #include "worker/log.h"
 #include "worker/publish/publish.h"
+#include "worker/quiet_thread.h"
 #include <stdlib.h>
 
 /* Between attempts at cases whose publishing failed for a reason that may pass. */
@@ -115,7 +116,7 @@ int publisher_create(struct publisher **out, const char *database, struct error 
         return error_set(err, ERROR_SYSTEM, "cannot make a condition");
     }
     int status = store_open(&publisher->store, database, NULL, err);
-    if (status == 0 && pthread_create(&publisher->thread, NULL, publisher_thread, publisher) != 0)
+    if (status == 0 && quiet_thread_start(&publisher->thread, publisher_thread, publisher) != 0)
         status = error_set(err, ERROR_SYSTEM, "cannot start the publisher's thread");
     if (status != 0) {
         store_close(&publisher->store);

@@ -1,6 +1,7 @@
 #include "server/http/waiting_room.h"
 #include "schema/store/store.h"
 #include "worker/clock.h"
+#include "worker/quiet_thread.h"
 #include <poll.h>
 #include <pthread.h>
 #include <stdlib.h>
@@ -107,7 +108,7 @@ int waiting_room_create(struct waiting_room **out, const char *database, struct 
     }
     const struct store_options options = {.read_only = true};
     int status = store_open(&room->store, database, &options, err);
-    if (status == 0 && pthread_create(&room->thread, NULL, waiting_room_thread, room) != 0)
+    if (status == 0 && quiet_thread_start(&room->thread, waiting_room_thread, room) != 0)
         status = error_set(err, ERROR_SYSTEM, "cannot start the waiting room's thread");
     if (status != 0) {
         store_close(&room->store);

@@ -1,5 +1,6 @@
 #include "server/http/writer.h"
 #include "worker/clock.h"
+#include "worker/quiet_thread.h"
 #include <errno.h>
 #include <pthread.h>
 #include <sched.h>
@@ -143,7 +144,7 @@ int writer_create(struct writer **out, struct store *store, struct error *err) {
     writer->last = &writer->first;
     pthread_mutex_init(&writer->mutex, NULL);
     if (clock_cond_init(&writer->posted) != 0 ||
-        pthread_create(&writer->thread, NULL, writer_thread, writer) != 0) {
+        quiet_thread_start(&writer->thread, writer_thread, writer) != 0) {
         free(writer);
         return error_set(err, ERROR_SYSTEM, "cannot start the writer's thread");
     }

@@ -6,6 +6,7 @@
 #include "server/http/waiting_room.h"
 #include "worker/clock.h"
 #include "worker/log.h"
+#include "worker/quiet_thread.h"
 #include "worker/worker.h"
 #include <arpa/inet.h>
 #include <limits.h>
@@ -166,7 +167,7 @@ static int local_workers_start(struct local_workers *workers, struct error *err)
     if (serve->options->workers == 0)
         return 0;
     print_url(serve, workers->url, sizeof workers->url);
-    if (pthread_create(&workers->thread, NULL, local_workers_thread, workers) != 0)
+    if (quiet_thread_start(&workers->thread, local_workers_thread, workers) != 0)
         return error_set(err, ERROR_SYSTEM, "cannot start the workers");
     workers->started = true;
     return 0;
@@ -283,8 +284,8 @@ static void *last_resort_thread(void *context) {
 static void begin_end(const struct serve *serve) {
     static int64_t alone_ms = PATIENCE_MS, with_workers_ms = WORKERS_PATIENCE_MS;
     pthread_t thread;
-    if (pthread_create(&thread, NULL, last_resort_thread,
-                       serve->options->workers > 0 ? &with_workers_ms : &alone_ms) == 0)
+    if (quiet_thread_start(&thread, last_resort_thread,
+                           serve->options->workers > 0 ? &with_workers_ms : &alone_ms) == 0)
         pthread_detach(thread);
 }
 

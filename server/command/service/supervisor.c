@@ -1,5 +1,6 @@
 #include "server/command/service/supervisor.h"
 #include "worker/clock.h"
+#include "worker/quiet_thread.h"
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -57,7 +58,7 @@ int watchdog_start(struct watchdog *watchdog, struct error *err) {
     if (clock_cond_init(&watchdog->changed) != 0)
         return error_set(err, ERROR_SYSTEM, "cannot make a condition");
     pthread_mutex_init(&watchdog->lock, NULL);
-    watchdog->started = pthread_create(&watchdog->thread, NULL, watch, watchdog) == 0;
+    watchdog->started = quiet_thread_start(&watchdog->thread, watch, watchdog) == 0;
     if (watchdog->started)
         return 0;
     pthread_mutex_destroy(&watchdog->lock);
