@@ -261,7 +261,10 @@ soak: all fault-deps fuzz-deps
 	@$(MAKE) --no-print-directory -j$$(nproc) $(TESTS_system_faults)
 	@RUGO=$(abspath $(BUILD))/rugo MAKE="$(MAKE)" tests/system/faults/soak $(HOURS) \
 	    $(BUILD)/soak $(TESTS_system_faults)
-.PHONY: fault-deps soak
+# A day of it, for each week: on two processors six hours of faults and 24 hours of CPU of fuzzing.
+endurance:
+	@FUZZ=255 $(MAKE) --no-print-directory soak HOURS=18
+.PHONY: fault-deps soak endurance
 
 # Fuzzing: a target of tests/fuzz/<layer> is a test that replays its corpus (tests/support/fuzz), and with clang's
 # libFuzzer in a build of its own it runs for SECONDS, beginning with its corpus. What it finds stays in $(BUILD)-fuzz.

@@ -15,4 +15,14 @@ static inline uint64_t effort(void) {
     return n < 1 ? 1 : n > EFFORT_MOST ? EFFORT_MOST : (uint64_t)n;
 }
 
+/* By how many rows a test goes on in a table of cases that take long. Sanitizers, which look for
+ * faults of memory and take ten times as long, try each third, and with RUGO_EFFORT each one. */
+static inline size_t case_step(void) {
+#ifdef RUGO_SANITIZED
+    return getenv("RUGO_EFFORT") != NULL ? 1 : 3;
+#else
+    return 1;
+#endif
+}
+
 #endif

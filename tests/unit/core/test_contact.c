@@ -2,6 +2,7 @@
  * loads, states that depend on the load alone, units, symmetries of the grid, failures that do no
  * harm; and the counts of patches and areas on given patterns. */
 #include "tests/support/check.h"
+#include "tests/support/effort.h"
 
 #include "tests/support/contact_scene.h"
 #include <stdio.h>
@@ -394,7 +395,7 @@ static void any_grid(void **state) {
         {5, 7, 1, 3}, {16, 4, 1, 2.5}, {11, 13, 2, .3}, {1 << 8, 1, 1, 1},
     };
     static const double loads[] = {1e-8, 1e-3, 0.1, 0.4, 0.8, 0.999999, 1};
-    for (size_t a = 0; a < sizeof grids / sizeof *grids; a++)
+    for (size_t a = 0; a < sizeof grids / sizeof *grids; a += case_step())
         for (size_t b = 0; b < 3; b++) {
             struct block block = b == 0 ? DEEP : LAYERED;
             block.weighting = b == 1 ? GAP_STANDARD : GAP_DUAL;

@@ -1,5 +1,6 @@
 /* Contact studies through the queue: threads that share a case's compliance, blocks and their order
  * leave the bits of the curves alone (run under ThreadSanitizer too). */
+#include "tests/support/effort.h"
 #include "tests/support/result_tree.h"
 #include "tests/unit/worker/small_study.h"
 #include "worker/publish/aggregate.h"
@@ -43,7 +44,7 @@ static void same_bits(const char *study, bool noted) {
         uint64_t block;
     } table[] = {{1, 12}, {2, 4}, {5, 1}};
     char *first = NULL;
-    for (size_t n = 0; n < sizeof table / sizeof table[0]; n++) {
+    for (size_t n = 0; n < sizeof table / sizeof table[0]; n += case_step()) {
         struct fixture fixture;
         struct error err = {0};
         fixture_open(&fixture);

@@ -118,7 +118,7 @@ static void damage_is_found_and_mended(void **state) {
     struct told told;
     assert_true(verify("whole.db", &told, &err) == 0);
     assert_string_equal(told.text, "");
-    for (size_t d = 0; d < DAMAGE_COUNT; d++) {
+    for (size_t d = 0; d < DAMAGE_COUNT; d += case_step()) {
         const char *what = DAMAGES[d].sql;
         copy_file("whole.db", "damaged.db");
         sql_change("damaged.db", what);
