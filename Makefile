@@ -439,7 +439,7 @@ INSTALLED = $(bindir)/rugo $(libdir)/$(SHARED) $(libdir)/$(SONAME) $(libdir)/lib
             $(libdir)/pkgconfig/rugo.pc $(includedir)/rugo.h $(includedir)/rugo_lists.h $(mandir)/man1/rugo.1 $(completion)/rugo \
             $(pythondir)/rugo.py $(PACKAGE:server/python/%=$(pythondir)/%) $(addprefix $(unitdir)/,$(UNITS)) \
             $(sysusersdir)/rugo.conf
-UNITS     = rugo.service rugo-work@.service
+UNITS     = rugo.service rugo-work@.service rugo-snapshot.service rugo-snapshot.timer
 PACKAGE   = $(wildcard server/python/rugo/*.py) server/python/rugo/py.typed
 install: all
 	$(INSTALL) -d $(sort $(dir $(addprefix $(DESTDIR),$(INSTALLED))))

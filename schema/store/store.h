@@ -28,6 +28,8 @@ struct store;
 struct store_options {
     bool read_only;                   /* ERROR_ABSENT when the file does not exist */
     bool existing;                    /* do not create */
+    bool as_it_is;                    /* with read_only: ERROR_STATE for a file of an older version,
+                                       * which is else brought up to date */
     int64_t lease_ms;                 /* 0: 60 000 */
     int64_t (*now_ms)(void *context); /* lease clock; NULL: CLOCK_BOOTTIME */
     void *context;

@@ -252,20 +252,20 @@ int files_check(struct store *store, struct error *err) {
     return status != 0 ? status : store_check_size(store, store, err);
 }
 
-/* --- what a stranger sent --- */
+/* --- what a stranger sent, or a backup is --- */
 
 /* SQLite documents the header in "Database File Format", 1.3. */
 int store_file_check(int file, uint64_t size, struct error *err) {
     unsigned char head[HEADER_SIZE];
     if (pread(file, head, HEADER_SIZE, 0) != HEADER_SIZE ||
         memcmp(head, "SQLite format 3", 16) != 0)
-        return error_set(err, ERROR_SYSTEM, "what came is no database");
+        return error_set(err, ERROR_SYSTEM, "these bytes are no database");
     if (big_endian(head + APPLICATION_AT, 4) != APPLICATION_ID)
-        return error_set(err, ERROR_SYSTEM, "what came is a database of another program");
+        return error_set(err, ERROR_SYSTEM, "these bytes are a database of another program");
     int64_t bytes = bytes_by_header(head);
     if ((uint64_t)bytes != size)
         return error_set(err, ERROR_SYSTEM,
-                         "what came has %llu bytes, and is a database of %lld: it is not whole",
+                         "these %llu bytes are a part of a database of %lld: it is not whole",
                          (unsigned long long)size, (long long)bytes);
     return 0;
 }

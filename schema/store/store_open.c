@@ -210,6 +210,8 @@ static int version_bring_up(struct store *store, struct error *err) {
     int status = read_version(store, &version, err);
     if (status != 0 || migration_at(version) == NULL)
         return status;
+    if (store->options.as_it_is)
+        return error_set(err, ERROR_STATE, "database %s is of an older program", store->path);
     if (store->options.read_only)
         return upgrade_for_reader(store, err);
     status = change_begin(store, err);

@@ -5,8 +5,8 @@
 #include "core/error.h"
 
 enum { KEPT_PATH_SIZE = 4200 };
-/* Writes BEFORE20261126T190000Z or, where there is such a file, BEFORE20261126T190000Z-2 and so on.
- * ERROR_INPUT where that is too long. */
-int kept_name(char path[KEPT_PATH_SIZE], const char *before, struct error *err);
+/* Writes BEFORE20261126T190000ZAFTER or, where there is such a file, BEFORE20261126T190000Z-2AFTER
+ * and so on. ERROR_INPUT where that is too long. */
+int kept_name(char path[KEPT_PATH_SIZE], const char *before, const char *after, struct error *err);
 
 #endif

@@ -1,30 +1,158 @@
 /* `rugo snapshot`: a consistent copy of the results database, also while others write to it. */
 #include "server/command/access/access.h"
+#include "server/command/service/kept_name.h"
+#include "server/command/service/verify.h"
+#include <ctype.h>
+#include <dirent.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 struct options {
     struct access_options place;
+    unsigned keep; /* 0: all */
 };
-static const struct option_row OPTIONS[] = {ACCESS_ROWS(struct options), {0}};
+enum { KEEP_MOST = 100000 };
+static const struct option_row OPTIONS[] = {
+    ACCESS_ROWS(struct options),
+    {"keep", 0, OPTION_COUNT, 1, KEEP_MOST, offsetof(struct options, keep), "N", NULL,
+     "of the snapshots that it made in FOLDER, keep the newest N"},
+    {0}};
+
+/* Snapshots of one store in a folder: FOLDER/STEM-20261126T190000Z.db. */
+struct series {
+    const char *folder;
+    char stem[256];
+};
+
+static void series_of(struct series *series, const char *folder, const char *database) {
+    const char *slash = database != NULL ? strrchr(database, '/') : NULL;
+    snprintf(series->stem, sizeof series->stem, "%s",
+             slash != NULL      ? slash + 1
+             : database != NULL ? database
+                                : DATABASE);
+    size_t length = strlen(series->stem);
+    if (length > 3 && strcmp(series->stem + length - 3, ".db") == 0)
+        series->stem[length - 3] = '\0';
+    series->folder = folder;
+}
+
+/* Returns whether a file has a name of the series: nobody else's are removed. */
+static bool is_of(const struct series *series, const char *name) {
+    static const char MOMENT[] = "-00000000T000000Z";
+    size_t stem = strlen(series->stem);
+    if (strncmp(name, series->stem, stem) != 0)
+        return false;
+    name += stem;
+    for (const char *m = MOMENT; *m != '\0'; m++, name++)
+        if (*m == '0' ? isdigit((unsigned char)*name) == 0 : *name != *m)
+            return false;
+    if (*name == '-')
+        name += 1 + strspn(name + 1, "0123456789");
+    return strcmp(name, ".db") == 0;
+}
+
+/* Removes all but the newest one and keep - 1 others, of which names show the age. */
+static int remove_oldest(const struct series *series, const char *newest, size_t keep,
+                         struct error *err) {
+    struct dirent **entries = NULL;
+    char path[KEPT_PATH_SIZE];
+    size_t kept = 1;
+    int status = 0, count = scandir(series->folder, &entries, NULL, alphasort);
+    if (count < 0)
+        return error_set(err, ERROR_SYSTEM, "%s: %s", series->folder, strerror(errno));
+    while (count-- > 0) {
+        const char *name = entries[count]->d_name;
+        if (is_of(series, name) && strcmp(name, newest) != 0 && kept++ >= keep &&
+            (snprintf(path, sizeof path, "%s/%s", series->folder, name) >= (int)sizeof path ||
+             unlink(path) != 0))
+            status = error_set(err, ERROR_SYSTEM, "the older snapshot %s/%s is not removed: %s",
+                               series->folder, name, strerror(errno));
+        free(entries[count]);
+    }
+    free(entries);
+    return status;
+}
+
+/* A copy with a flaw is none: it is removed, and older ones stay. That of an older server is left
+ * as it is. */
+static int verify_copy(const char *path, struct error *err) {
+    const struct store_options reading = {.read_only = true, .as_it_is = true};
+    struct verify_report report = {0};
+    struct store *store = NULL;
+    int status = store_open(&store, path, &reading, err);
+    if (status == ERROR_STATE) {
+        printf("%s: not verified, as it is of an older program\n", path);
+        return 0;
+    }
+    if (status == 0)
+        status = verify_and_print(store, path, false, &report, err);
+    store_close(&store);
+    if (status == 0 && report.counts.flaws > 0)
+        status = error_set(err, ERROR_STATE,
+                           "the store has flaws: the snapshot %.200s was removed; see rugo verify "
+                           "and rugo repair",
+                           path);
+    if (status != 0)
+        (void)unlink(path);
+    return status;
+}
+
+static int copy_into_folder(struct access *access, const char *argument,
+                            const struct options *options, struct error *err) {
+    struct series series;
+    char folder[KEPT_PATH_SIZE], before[KEPT_PATH_SIZE], path[KEPT_PATH_SIZE];
+    size_t length = strlen(argument);
+    while (length > 1 && argument[length - 1] == '/')
+        length--;
+    snprintf(folder, sizeof folder, "%.*s", (int)length, argument);
+    series_of(&series, folder, options->place.database);
+    if (snprintf(before, sizeof before, "%s/%s-", folder, series.stem) >= (int)sizeof before)
+        return error_set(err, ERROR_INPUT, "the path %.200s... is too long", folder);
+    int status = kept_name(path, before, ".db", err);
+    if (status == 0)
+        status = access_snapshot(access, path, err);
+    if (status == 0)
+        status = verify_copy(path, err);
+    if (status == 0 && options->keep > 0)
+        status = remove_oldest(&series, path + strlen(folder) + 1, options->keep, err);
+    return status;
+}
+
+static bool is_folder(const char *path) {
+    struct stat info;
+    return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+}
 
 static int run(const void *values, const char *const *arguments) {
     const struct options *options = values;
     struct error err = {0};
     struct access *access = NULL;
+    bool folder = is_folder(arguments[0]);
     if (access_options_check("snapshot", &options->place) != 0)
         return EXIT_USAGE;
+    if (options->keep > 0 && !folder) {
+        fprintf(stderr, "rugo snapshot: --keep is for a folder, which %s is not\n", arguments[0]);
+        return EXIT_USAGE;
+    }
     if (options->place.server == NULL)
         signals_catch();
     int status = access_open(&access, &options->place, ACCESS_READ, &err);
     if (status == 0)
-        status = access_snapshot(access, arguments[0], &err);
+        status = folder ? copy_into_folder(access, arguments[0], options, &err)
+                        : access_snapshot(access, arguments[0], &err);
     access_close(&access);
     return status == 0 ? EXIT_DONE : command_fail("snapshot", &err);
 }
 
 const struct command COMMAND_SNAPSHOT = {
     .name = "snapshot",
-    .arguments = "FILE",
-    .summary = "a consistent copy of the results database",
+    .arguments = "FILE|FOLDER",
+    .summary = "a consistent copy of the results database, in a folder named by its time and "
+               "verified",
     .least = 1,
     .most = 1,
     .options = OPTIONS,

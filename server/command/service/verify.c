@@ -1,5 +1,5 @@
 /* `rugo verify` and `rugo repair`: whether a store is whole, and what makes it whole again. */
-#include "worker/publish/verify.h"
+#include "server/command/service/verify.h"
 #include "server/command/command.h"
 #include "server/command/service/kept_name.h"
 #include "worker/clock.h"
@@ -83,23 +83,29 @@ static void print_counts(const char *database, const struct verify_report *repor
                report->kept);
 }
 
+int verify_and_print(struct store *store, const char *name, bool quick,
+                     struct verify_report *report, struct error *err) {
+    struct telling telling = {.told_ms = clock_ms()};
+    const struct verification verification = {print_flaw, print_progress, &telling};
+    int status = verify_store(store, &verification, quick, report, err);
+    clear_progress(&telling);
+    if (status == 0)
+        print_counts(name, report);
+    return status;
+}
+
 static int run_verify(const void *values, const char *const *arguments) {
     (void)arguments;
     const struct options *options = values;
     const struct store_options reading = {.read_only = true};
-    struct telling telling = {.told_ms = clock_ms()};
-    const struct verification verification = {print_flaw, print_progress, &telling};
     struct verify_report report = {0};
     struct error err = {0};
     struct store *store = NULL;
     signals_catch();
     int status = store_open(&store, options->database, &reading, &err);
     if (status == 0)
-        status = verify_store(store, &verification, options->quick, &report, &err);
+        status = verify_and_print(store, options->database, options->quick, &report, &err);
     store_close(&store);
-    clear_progress(&telling);
-    if (status == 0)
-        print_counts(options->database, &report);
     if (status == 0)
         status = output_flush(&err);
     if (status != 0)
@@ -128,7 +134,7 @@ static void print_repair(const struct repair_report *report) {
 static int keep_copy(struct store *store, const char *database, struct error *err) {
     char path[KEPT_PATH_SIZE], beside[KEPT_PATH_SIZE];
     snprintf(beside, sizeof beside, "%s.before-repair-", database);
-    int status = kept_name(path, beside, err);
+    int status = kept_name(path, beside, "", err);
     if (status == 0)
         status = store_snapshot(store, path, NULL, NULL, err);
     if (status == 0)

@@ -46,6 +46,8 @@ systemctl() {
     "enable --now rugo" | "start rugo") start ;;
     "stop rugo") stop ;;
     "restart rugo") stop && start ;;
+    "enable --now rugo-snapshot.timer") ;;
+    "start rugo-snapshot") rugo snapshot --db "$here/lib/rugo.db" "$here/backups" --keep 7 ;;
     *) echo "systemctl $* is not known"; return 1 ;;
     esac
 }
@@ -59,9 +61,10 @@ rugo submit --server http://127.0.0.1:'"$port"' '"$here"'/study.json >submitted'
 rugo wait --server "https://127.0.0.1:$port" --ca-file "$here/lib/tls/certificate.pem" \
     --token-file "$here/lib/cluster.token" "$(cat "$here/submitted")"
 stop
-[ "$(tr '\n' ' ' <"$here/asked")" = "daemon-reload enable --now rugo stop rugo start rugo restart rugo restart rugo " ]
+[ "$(tr '\n' ' ' <"$here/asked")" = "daemon-reload enable --now rugo enable --now rugo-snapshot.timer start rugo-snapshot \
+stop rugo start rugo restart rugo restart rugo " ]
 # The restored store had the study done, and nothing was so old that it went.
 rugo status --db "$here/lib/rugo.db" "$(cat "$here/submitted")" | grep -q done
-ls "$here"/backups/*-*-*.db "$here/backups/before-upgrade.db" "$here/lib/aside/rugo.db" >/dev/null
+ls "$here"/backups/rugo-*T*Z.db "$here/backups/before-upgrade.db" "$here"/lib/rugo.db.before-restore-*/rugo.db >/dev/null
 [ -z "$(find "$here" -name '*.part-*')" ]
 echo "operate: all done"
