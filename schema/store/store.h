@@ -56,7 +56,7 @@ int store_begin(struct store *store, struct error *err);
 int store_commit(struct store *store, struct error *err);
 /* Undoes everything since store_begin. */
 void store_abandon(struct store *store);
-/* Writes what is there once more, to test whether writing works. */
+/* Writes to the file, to test whether that works: what the store says stays as it is. */
 int store_probe(struct store *store, struct error *err);
 
 /* --- studies --- */

@@ -304,9 +304,11 @@ void store_abandon(struct store *store) {
     store->spoiled = false;
 }
 
+/* SQLite writes no page that stays as it is: the one row changes its number at each probe. */
 int store_probe(struct store *store, struct error *err) {
     int status = change_begin(store, err);
     return status != 0
                ? status
-               : change_end(store, store_run(store, err, "UPDATE boot SET id = id", ""), err);
+               : change_end(store, store_run(store, err, "UPDATE boot SET rowid = -rowid", ""),
+                            err);
 }

@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -620,6 +621,24 @@ static void leases_of_another_boot_are_void(void **state) {
     store_close(&store);
 }
 
+static int64_t file_size(const char *path) {
+    struct stat file;
+    return stat(path, &file) == 0 ? (int64_t)file.st_size : 0;
+}
+
+/* A probe reaches the disk, each time, and the boot stays known. */
+static void a_probe_writes(void **state) {
+    (void)state;
+    struct store *store = open_store("probe.db");
+    for (int probe = 0; probe < 3; probe++) {
+        int64_t before = file_size("probe.db-wal");
+        assert_int_equal(store_probe(store, NULL), 0);
+        assert_true(file_size("probe.db-wal") > before);
+    }
+    assert_int_equal(sql_integer("probe.db", "SELECT count(*) FROM boot WHERE id <> ''"), 1);
+    store_close(&store);
+}
+
 /* Two processes take all jobs of one file between them, none twice, with no busy error. */
 static void processes_share_a_file(void **state) {
     (void)state;
@@ -719,6 +738,7 @@ int main(void) {
         cmocka_unit_test(a_group_is_published_as_one),
         cmocka_unit_test(other_files_are_refused_with_a_word),
         cmocka_unit_test(leases_of_another_boot_are_void),
+        cmocka_unit_test(a_probe_writes),
         cmocka_unit_test(processes_share_a_file),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
