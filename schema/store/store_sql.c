@@ -5,7 +5,19 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <time.h>
+
+/* SQLite does not say that a file met the limit of its length: where there is one, it is named. */
+static int error_of_disk(const struct store *store, const char *what, struct error *err) {
+    struct rlimit limit;
+    if (getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+        return error_set(err, ERROR_SYSTEM, "database %s: %s", store->path, what);
+    return error_set(err, ERROR_SYSTEM,
+                     "database %s: %s; this process may write files of up to %llu bytes (ulimit "
+                     "-f)",
+                     store->path, what, (unsigned long long)limit.rlim_cur);
+}
 
 int store_error(struct store *store, struct error *err) {
     int code = sqlite3_errcode(store->db);
@@ -22,6 +34,8 @@ int store_error(struct store *store, struct error *err) {
         return error_set(err, ERROR_STOPPED, "reading the database was stopped");
     case SQLITE_FULL:
         return error_set(err, ERROR_SYSTEM, "the disk of database %s is full", store->path);
+    case SQLITE_IOERR:
+        return error_of_disk(store, what, err);
     case SQLITE_READONLY:
     case SQLITE_CANTOPEN:
         if (code == SQLITE_READONLY_ROLLBACK)

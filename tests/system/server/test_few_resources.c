@@ -38,6 +38,16 @@ static void a_small_stack_is_no_crash(void **state) {
     assert_true(contains("shell.err", "ulimit -s"));
 }
 
+/* A file's length runs into its limit as the store is made, and again as it grows. */
+static void a_limit_of_file_length_is_named(void **state) {
+    (void)state;
+    spit("one.json", ONE_CASE);
+    assert_int_equal(run_shell("ulimit -f 4; $RUGO run --db short.db one.json"), 1);
+    assert_true(contains("shell.err", "ulimit -f"));
+    assert_int_equal(run_shell("ulimit -f 4; $RUGO serve --db low.db --listen 127.0.0.1:0"), 1);
+    assert_true(contains("shell.err", "ulimit -f"));
+}
+
 static void wait_for_result(const char *database) {
     for (int tries = 0;; tries++) {
         assert_true(tries < 1200);
@@ -73,6 +83,7 @@ static void a_hangup_ends_like_a_stop(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(few_files_are_refused_by_a_server),
                                        cmocka_unit_test(a_small_stack_is_no_crash),
+                                       cmocka_unit_test(a_limit_of_file_length_is_named),
                                        cmocka_unit_test(a_hangup_ends_like_a_stop)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
