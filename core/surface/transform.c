@@ -2,8 +2,10 @@
 #include <fftw3.h>
 #include <limits.h>
 #include <pthread.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 /* FFTW's planner is its only part that is not safe from many threads. */
 static pthread_mutex_t planner = PTHREAD_MUTEX_INITIALIZER;
@@ -22,9 +24,27 @@ struct transform {
     fftw_plan one_inverse, one_forward; /* a single column */
 };
 
-static int plans_create(struct transform *t) {
+/* FFTW aborts the process where it runs out of memory in a plan. Its tables, and its buffers
+ * as it transforms, took up to 193 bytes a point of the sides (a prime of 10^6) and 1 MB. */
+static size_t plan_bytes(const struct transform *t) {
+    return ((size_t)4 << 20) + 256 * (t->nx + t->ny);
+}
+
+/* Returns whether the system would give what plans need. Other threads may still take it in
+ * between. The pages are asked for without malloc, whose thresholds a large array would move. */
+static bool has_memory(size_t bytes) {
+    void *pages = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    return pages != MAP_FAILED && munmap(pages, bytes) == 0;
+}
+
+/* Returns false for want of memory. */
+static bool plans_create(struct transform *t) {
     int nx = (int)t->nx, ny = (int)t->ny, half = (int)t->half, batch = (int)t->batch;
     pthread_mutex_lock(&planner);
+    if (!has_memory(plan_bytes(t))) {
+        pthread_mutex_unlock(&planner);
+        return false;
+    }
     if (t->ny > 1) {
         int columns = (int)t->columns;
         t->column_inverse =
@@ -84,8 +104,9 @@ int transform_create(struct transform **out, const struct grid *grid, size_t mod
     t->spectrum = fftw_alloc_complex(t->columns * t->ny);
     t->rows = fftw_alloc_complex(t->batch * t->half);
     t->lines = fftw_alloc_real(t->batch * t->nx);
-    if (t->spectrum == NULL || t->rows == NULL || t->lines == NULL || plans_create(t) == 0) {
-        size_t bytes = (t->columns * t->ny + t->batch * t->half) * sizeof *t->spectrum;
+    if (t->spectrum == NULL || t->rows == NULL || t->lines == NULL || !plans_create(t)) {
+        size_t bytes = (t->columns * t->ny + t->batch * t->half) * sizeof *t->spectrum +
+                       t->batch * t->nx * sizeof *t->lines + plan_bytes(t);
         transform_destroy(&t);
         return error_memory(err, bytes, "a transform");
     }
