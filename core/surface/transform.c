@@ -37,14 +37,11 @@ static bool has_memory(size_t bytes) {
     return pages != MAP_FAILED && munmap(pages, bytes) == 0;
 }
 
-/* Returns false for want of memory. */
+/* Under the lock of the planner. Returns false for want of memory. */
 static bool plans_create(struct transform *t) {
     int nx = (int)t->nx, ny = (int)t->ny, half = (int)t->half, batch = (int)t->batch;
-    pthread_mutex_lock(&planner);
-    if (!has_memory(plan_bytes(t))) {
-        pthread_mutex_unlock(&planner);
+    if (!has_memory(plan_bytes(t)))
         return false;
-    }
     if (t->ny > 1) {
         int columns = (int)t->columns;
         t->column_inverse =
@@ -62,10 +59,20 @@ static bool plans_create(struct transform *t) {
                                             1, nx, FFTW_ESTIMATE);
     t->row_forward = fftw_plan_many_dft_r2c(1, &nx, batch, t->lines, NULL, 1, nx, t->rows, NULL, 1,
                                             half, FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
-    pthread_mutex_unlock(&planner);
     return t->row_inverse != NULL && t->row_forward != NULL &&
            (t->ny == 1 || (t->column_inverse != NULL && t->column_forward != NULL &&
                            t->one_inverse != NULL && t->one_forward != NULL));
+}
+
+/* Other threads' arrays wait, too: they would take what these plans were just promised. */
+static bool parts_create(struct transform *t) {
+    pthread_mutex_lock(&planner);
+    t->spectrum = fftw_alloc_complex(t->columns * t->ny);
+    t->rows = fftw_alloc_complex(t->batch * t->half);
+    t->lines = fftw_alloc_real(t->batch * t->nx);
+    bool created = t->spectrum != NULL && t->rows != NULL && t->lines != NULL && plans_create(t);
+    pthread_mutex_unlock(&planner);
+    return created;
 }
 
 size_t transform_fast_count(size_t n) {
@@ -101,10 +108,7 @@ int transform_create(struct transform **out, const struct grid *grid, size_t mod
     t->mode_y = mode_y;
     t->half = grid->nx / 2 + 1;
     t->batch = t->ny < ROWS ? t->ny : ROWS;
-    t->spectrum = fftw_alloc_complex(t->columns * t->ny);
-    t->rows = fftw_alloc_complex(t->batch * t->half);
-    t->lines = fftw_alloc_real(t->batch * t->nx);
-    if (t->spectrum == NULL || t->rows == NULL || t->lines == NULL || !plans_create(t)) {
+    if (!parts_create(t)) {
         size_t bytes = (t->columns * t->ny + t->batch * t->half) * sizeof *t->spectrum +
                        t->batch * t->nx * sizeof *t->lines + plan_bytes(t);
         transform_destroy(&t);
