@@ -3,7 +3,12 @@
 #include "core/surface/transform.h"
 #include "tests/support/check.h"
 #include "tests/support/seed.h"
+#include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 static const struct grid GRIDS[] = {{16, 12, 1, 1}, {15, 9, 1, 1}, {13, 7, 1, 1},
                                     {2, 2, 1, 1},   {3, 2, 1, 1},  {32, 1, 1, 1},
@@ -109,8 +114,44 @@ static void bands_beyond_the_grid_are_refused(void **state) {
     assert_null(transform);
 }
 
+/* Returns the status of transform_create where the process may have `more` bytes beyond those it
+ * has; -1: the process died. */
+static int status_with(rlim_t more) {
+    const struct grid grid = {.nx = 16, .ny = 65537, .lx = 1, .ly = 4096};
+    pid_t child = fork();
+    if (child == 0) {
+        long pages = 0;
+        FILE *file = fopen("/proc/self/statm", "r");
+        bool known = file != NULL && fscanf(file, "%ld", &pages) == 1;
+        rlim_t most = (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE) + more;
+        struct rlimit none = {0, 0}, limit = {most, most};
+        struct transform *transform = NULL;
+        setrlimit(RLIMIT_CORE, &none);
+        if (!known || setrlimit(RLIMIT_AS, &limit) != 0)
+            _exit(99);
+        _exit(transform_create(&transform, &grid, 8, 8, NULL) == 0 ? 0 : 1);
+    }
+    int status = 0;
+    assert_int_equal(waitpid(child, &status, 0), child);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/* FFTW would abort where its plans run out of memory. */
+static void little_memory_is_an_error(void **state) {
+    (void)state;
+#ifdef RUGO_SANITIZED
+    print_message("SKIP: sanitizers take any address space\n");
+    skip();
+#endif
+    static const rlim_t SCARCE[] = {8, 10, 12, 14, 18}; /* MB; the arrays take 9.4 */
+    for (size_t n = 0; n < sizeof SCARCE / sizeof *SCARCE; n++)
+        assert_int_equal(status_with(SCARCE[n] << 20), 1);
+    assert_int_equal(status_with((rlim_t)256 << 20), 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(little_memory_is_an_error),
         cmocka_unit_test(forward_is_the_sum),
         cmocka_unit_test(rows_one_by_one_are_the_whole),
         cmocka_unit_test(padding_keeps_the_surface),
