@@ -431,6 +431,12 @@ static unsigned wait_wanted(const struct dispatcher *dispatcher) {
     return nothing_else ? WAIT_S : 0;
 }
 
+/* Memory that others take may come back; where nothing is at work here, and it did not come while
+ * the pauses grew to their longest, it will not. */
+static bool is_out_of_memory(const struct dispatcher *dispatcher) {
+    return dispatcher->leases == NULL && dispatcher->away.ms >= away_most_ms(dispatcher);
+}
+
 static void claim(struct dispatcher *dispatcher) {
     struct claimed_job jobs[CLAIM_MOST];
     struct wish wish = {
@@ -451,7 +457,7 @@ static void claim(struct dispatcher *dispatcher) {
     pthread_mutex_lock(&dispatcher->lock);
     if (status == ERROR_STOPPED)
         return;
-    if (status == ERROR_SYSTEM || status == ERROR_MEMORY) {
+    if (status == ERROR_SYSTEM || (status == ERROR_MEMORY && !is_out_of_memory(dispatcher))) {
         dispatcher_note_away(dispatcher, "waiting for jobs", &err);
         return;
     }

@@ -5,6 +5,7 @@
 #include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,6 +22,9 @@ static const struct option_row OPTIONS[] = {
     {"keep", 0, OPTION_COUNT, 1, KEEP_MOST, offsetof(struct options, keep), "N", NULL,
      "of the snapshots that it made in FOLDER, keep the newest N"},
     {0}};
+
+/* Until it is verified a snapshot in a folder has this behind its name. */
+#define UNVERIFIED ".unverified"
 
 /* Snapshots of one store in a folder: FOLDER/STEM-20261126T190000Z.db. */
 struct series {
@@ -41,7 +45,7 @@ static void series_of(struct series *series, const char *folder, const char *dat
 }
 
 /* Returns whether a file has a name of the series: nobody else's are removed. */
-static bool is_of(const struct series *series, const char *name) {
+static bool is_of(const struct series *series, const char *name, const char *ending) {
     static const char MOMENT[] = "-00000000T000000Z";
     size_t stem = strlen(series->stem);
     if (strncmp(name, series->stem, stem) != 0)
@@ -52,52 +56,59 @@ static bool is_of(const struct series *series, const char *name) {
             return false;
     if (*name == '-')
         name += 1 + strspn(name + 1, "0123456789");
-    return strcmp(name, ".db") == 0;
+    return strcmp(name, ending) == 0;
 }
 
-/* Removes all but the newest one and keep - 1 others, of which names show the age. */
+static int remove_file(const char *folder, const char *name, struct error *err) {
+    char path[KEPT_PATH_SIZE];
+    if (snprintf(path, sizeof path, "%s/%s", folder, name) < (int)sizeof path && unlink(path) == 0)
+        return 0;
+    return error_set(err, ERROR_SYSTEM, "the older snapshot %s/%s is not removed: %s", folder, name,
+                     strerror(errno));
+}
+
+/* Removes all but the newest one and keep - 1 others, of which names show the age, and what was
+ * killed before it was verified. */
 static int remove_oldest(const struct series *series, const char *newest, size_t keep,
                          struct error *err) {
     struct dirent **entries = NULL;
-    char path[KEPT_PATH_SIZE];
     size_t kept = 1;
     int status = 0, count = scandir(series->folder, &entries, NULL, alphasort);
     if (count < 0)
         return error_set(err, ERROR_SYSTEM, "%s: %s", series->folder, strerror(errno));
     while (count-- > 0) {
         const char *name = entries[count]->d_name;
-        if (is_of(series, name) && strcmp(name, newest) != 0 && kept++ >= keep &&
-            (snprintf(path, sizeof path, "%s/%s", series->folder, name) >= (int)sizeof path ||
-             unlink(path) != 0))
-            status = error_set(err, ERROR_SYSTEM, "the older snapshot %s/%s is not removed: %s",
-                               series->folder, name, strerror(errno));
+        if (is_of(series, name, ".db" UNVERIFIED) ||
+            (is_of(series, name, ".db") && strcmp(name, newest) != 0 && kept++ >= keep))
+            status = remove_file(series->folder, name, err);
         free(entries[count]);
     }
     free(entries);
     return status;
 }
 
-/* A copy with a flaw is none: it is removed, and older ones stay. That of an older server is left
- * as it is. */
-static int verify_copy(const char *path, struct error *err) {
+/* Gives a copy its name. One with a flaw is none: it is removed, and older ones stay. That of an
+ * older server is left as it is. */
+static int verify_copy(const char *copy, const char *path, struct error *err) {
     const struct store_options reading = {.read_only = true, .as_it_is = true};
     struct verify_report report = {0};
     struct store *store = NULL;
-    int status = store_open(&store, path, &reading, err);
-    if (status == ERROR_STATE) {
-        printf("%s: not verified, as it is of an older program\n", path);
-        return 0;
-    }
+    int status = store_open(&store, copy, &reading, err);
     if (status == 0)
         status = verify_and_print(store, path, false, &report, err);
     store_close(&store);
+    if (status == ERROR_STATE) {
+        printf("%s: not verified, as it is of an older program\n", path);
+        status = 0;
+    }
     if (status == 0 && report.counts.flaws > 0)
         status = error_set(err, ERROR_STATE,
-                           "the store has flaws: the snapshot %.200s was removed; see rugo verify "
-                           "and rugo repair",
-                           path);
+                           "the store has flaws, and no snapshot is kept: see rugo verify and rugo "
+                           "repair");
+    if (status == 0 && renameat2(AT_FDCWD, copy, AT_FDCWD, path, RENAME_NOREPLACE) != 0)
+        status = error_set(err, ERROR_SYSTEM, "%s: %s", path, strerror(errno));
     if (status != 0)
-        (void)unlink(path);
+        (void)unlink(copy);
     return status;
 }
 
@@ -105,6 +116,7 @@ static int copy_into_folder(struct access *access, const char *argument,
                             const struct options *options, struct error *err) {
     struct series series;
     char folder[KEPT_PATH_SIZE], before[KEPT_PATH_SIZE], path[KEPT_PATH_SIZE];
+    char copy[KEPT_PATH_SIZE + sizeof UNVERIFIED];
     size_t length = strlen(argument);
     while (length > 1 && argument[length - 1] == '/')
         length--;
@@ -113,10 +125,11 @@ static int copy_into_folder(struct access *access, const char *argument,
     if (snprintf(before, sizeof before, "%s/%s-", folder, series.stem) >= (int)sizeof before)
         return error_set(err, ERROR_INPUT, "the path %.200s... is too long", folder);
     int status = kept_name(path, before, ".db", err);
+    snprintf(copy, sizeof copy, "%s" UNVERIFIED, path);
     if (status == 0)
-        status = access_snapshot(access, path, err);
+        status = access_snapshot(access, copy, err);
     if (status == 0)
-        status = verify_copy(path, err);
+        status = verify_copy(copy, path, err);
     if (status == 0 && options->keep > 0)
         status = remove_oldest(&series, path + strlen(folder) + 1, options->keep, err);
     return status;

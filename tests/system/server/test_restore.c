@@ -160,7 +160,8 @@ static void a_folder_keeps_the_newest(void **state) {
     start();
     submit();
     run_line("mkdir f && cd f && touch s-mine.db t-20200101T000000Z.db s-20200101T000000Z.db "
-             "s-20200101T000000Z-2.db s-20210101T000000Z.db s-20210101T000000Z.db.gz");
+             "s-20200101T000000Z-2.db s-20210101T000000Z.db s-20210101T000000Z.db.gz "
+             "s-20220101T000000Z.db.unverified");
     run_line("$RUGO snapshot --db s.db f/ --keep 3 | grep whole");
     assert_int_equal(count_files("f/s-202?0101*.db"), 2);
     run_line("$RUGO snapshot --db s.db f --keep 1");
