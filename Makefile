@@ -318,6 +318,7 @@ nightly: all
 	$(MAKE) check-documents check-install check-python check-units check-openapi check-contract check-figures check-results tour
 	-@tests/install-deps "" "slurmctld slurmd slurm-client munge" munged slurmctld slurmd sbatch
 	$(MAKE) slurm-test
+	$(MAKE) roll-test
 	$(MAKE) check-static check-dist check-deb
 	RUGO_CLEAN_TEST=test $(MAKE) check-clean
 	$(MAKE) BUILD=$(BUILD)-O2 CFLAGS=-O2 run-unit
@@ -407,6 +408,11 @@ tour: all
 slurm-test: all
 	@tests/system/slurm/run $(abspath $(BUILD)/rugo)
 .PHONY: slurm-test
+
+# A server and workers exchanged for those of the next version, under load: two more builds, and a minute.
+roll-test: all
+	@tests/system/roll/run $(abspath $(BUILD)/rugo)
+.PHONY: roll-test
 
 # The description of the HTTP service, by a linter from npm; skipped where there is none.
 check-openapi: all
