@@ -30,21 +30,29 @@ static size_t plan_bytes(const struct transform *t) {
     return ((size_t)4 << 20) + 256 * (t->nx + t->ny);
 }
 
-/* Returns whether the system would give what plans need; threads that do not plan may still take it
- * in between. The tables are asked for without malloc, whose thresholds a large array would move.
- * The planner's own thousands of small parts take a page each where a heap cannot grow any more. */
-static bool has_memory(size_t bytes) {
+/* FFTW makes thousands of small parts with its first plan of a process, each of which takes a page
+ * where a heap cannot grow any more. Returns whether the system would give them. */
+static bool has_memory_for_planner(void) {
     enum { PARTS = 4096, PART = 64 };
     void *parts[PARTS];
     size_t count = 0;
-    void *pages = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (pages == MAP_FAILED)
-        return false;
     while (count < PARTS && (parts[count] = malloc(PART)) != NULL)
         count++;
     for (size_t n = count; n > 0; n--)
         free(parts[n - 1]);
-    return munmap(pages, bytes) == 0 && count == PARTS;
+    return count == PARTS;
+}
+
+/* Returns whether the system would give what plans need; threads that do not plan may still take it
+ * in between. The tables are asked for without malloc, whose thresholds a large array would move.
+ */
+static bool has_memory(size_t bytes) {
+    static bool has_planner; /* under its lock */
+    void *pages = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (pages == MAP_FAILED)
+        return false;
+    has_planner = has_planner || has_memory_for_planner();
+    return munmap(pages, bytes) == 0 && has_planner;
 }
 
 /* Under the lock of the planner. Returns false for want of memory. */
