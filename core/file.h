@@ -13,6 +13,12 @@ int file_open(FILE **file, const char *path, struct error *err);
 int file_close(FILE *file, const char *path, int status, struct error *err);
 /* Makes a folder if it is missing. */
 int folder_make(const char *path, struct error *err);
+/* Brings the name of a file to the disk, by its folder. What cannot be is left: some file systems
+ * cannot do it, and the file is there. */
+void file_sync_name(const char *path);
+/* Returns the glob(7) pattern of paths that begin with this one, whose wildcards are escaped, and
+ * go on as the ending says, itself a pattern; NULL when out of memory. The caller frees it. */
+char *file_pattern(const char *path, const char *ending);
 /* Returns whether there is a name before this ending. */
 bool file_ends_in(const char *path, const char *ending);
 

@@ -1,4 +1,5 @@
 #include "core/part_file.h"
+#include "core/file.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <glob.h>
@@ -17,23 +18,6 @@
 
 enum { TRIES_MOST = 100 };
 
-/* Returns the glob pattern of a path's parts, in which wildcards of the path are escaped; NULL when
- * out of memory. The caller frees it. */
-static char *pattern_of(const char *path) {
-    static const char RANDOM[] = PART_SUFFIX "??????";
-    size_t length = strlen(path), used = 0;
-    char *pattern = array_create(2 * length + sizeof RANDOM, 1);
-    if (pattern == NULL)
-        return NULL;
-    for (size_t n = 0; n < length; n++) {
-        if (strchr("*?[]\\", path[n]) != NULL)
-            pattern[used++] = '\\';
-        pattern[used++] = path[n];
-    }
-    memcpy(pattern + used, RANDOM, sizeof RANDOM);
-    return pattern;
-}
-
 static void remove_unheld(const char *part) {
     int file = open(part, O_RDWR | O_CLOEXEC | O_NOFOLLOW);
     if (file < 0)
@@ -45,7 +29,7 @@ static void remove_unheld(const char *part) {
 
 void part_file_remove_left(const char *path) {
     glob_t found;
-    char *pattern = pattern_of(path);
+    char *pattern = file_pattern(path, PART_SUFFIX "??????");
     if (pattern != NULL && glob(pattern, GLOB_NOSORT, NULL, &found) == 0) {
         for (size_t n = 0; n < found.gl_pathc; n++)
             remove_unheld(found.gl_pathv[n]);
@@ -118,22 +102,6 @@ static int rename_part(const struct part_file *part) {
     return rename(part->path, part->target);
 }
 
-/* Writes the folder to disk, and with it the name of the file. */
-static int sync_folder(const char *path) {
-    char *folder = strdup(path);
-    if (folder == NULL)
-        return -1;
-    char *slash = strrchr(folder, '/');
-    if (slash != NULL)
-        slash[slash == folder] = '\0';
-    int file = open(slash != NULL ? folder : ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    int status = file < 0 ? -1 : fsync(file);
-    if (file >= 0)
-        close(file);
-    free(folder);
-    return status;
-}
-
 int part_file_publish(struct part_file *part, struct error *err) {
     int status = 0;
     if (fsync(part->file) != 0)
@@ -143,8 +111,8 @@ int part_file_publish(struct part_file *part, struct error *err) {
             error_set(err, errno == EEXIST ? ERROR_INPUT : ERROR_SYSTEM, "%s: %s", part->target,
                       errno == EEXIST ? "exists; a new file is needed" : strerror(errno));
     else
-        (void)sync_folder(part->target); /* some file systems cannot do it; the file is there */
-    part_file_destroy(part);             /* after a success no such path is left */
+        file_sync_name(part->target);
+    part_file_destroy(part); /* after a success no such path is left */
     return status;
 }
 

@@ -18,13 +18,11 @@
 #include <unistd.h>
 
 static const char *const SUFFIXES[STORE_FILES] = {"", "-wal", "-shm"};
-/* In the header of a database: its page size, the version for readers (1: it has no log, 2: it
- * has one), its pages, whose it is. */
+/* In the header of a database: its page size, its pages, whose it is. */
 enum {
     HEADER_SIZE = 100,
     LOG_HEADER_SIZE = 32,
     PAGE_SIZE_AT = 16,
-    VERSION_AT = 19,
     PAGES_AT = 28,
     APPLICATION_AT = 68
 };
@@ -160,7 +158,7 @@ int files_check_opened(struct store *store, bool *moved, struct error *err) {
     if (code != SQLITE_OK && code != SQLITE_IOERR_SHORT_READ)
         return error_set(err, ERROR_SYSTEM, "database %s: %s", store->path, sqlite3_errstr(code));
     const char *path = sqlite3_db_filename(store->db, "main");
-    if (header[VERSION_AT] > 1 || !has_log(path))
+    if (header[VERSIONS_AT + 1] > 1 || !has_log(path))
         return 0;
     return error_set(err, ERROR_INPUT,
                      "database %.90s has no log, such as a copy by rugo snapshot: %.90s-wal is the "
@@ -252,6 +250,13 @@ int files_check(struct store *store, struct error *err) {
     return status != 0 ? status : store_check_size(store, store, err);
 }
 
+int file_ask_for_no_log(int file, const char *path, struct error *err) {
+    static const unsigned char VERSIONS[] = {1, 1};
+    if (pwrite(file, VERSIONS, sizeof VERSIONS, VERSIONS_AT) != (ssize_t)sizeof VERSIONS)
+        return error_set(err, ERROR_SYSTEM, "%s: %s", path, strerror(errno));
+    return 0;
+}
+
 /* --- what a stranger sent, or a backup is --- */
 
 /* SQLite documents the header in "Database File Format", 1.3. */
@@ -265,7 +270,7 @@ int store_file_check(int file, uint64_t size, struct error *err) {
     int64_t bytes = bytes_by_header(head);
     if ((uint64_t)bytes != size)
         return error_set(err, ERROR_SYSTEM,
-                         "these %llu bytes are a part of a database of %lld: it is not whole",
+                         "these %llu bytes are a database of %lld by its header: it is not whole",
                          (unsigned long long)size, (long long)bytes);
     return 0;
 }

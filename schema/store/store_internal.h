@@ -86,6 +86,11 @@ int files_check_opened(struct store *store, bool *moved, struct error *err);
 /* Notes which files the store has; files_check sees whether they have their names and length. */
 void files_note(struct store *store);
 int files_check(struct store *store, struct error *err);
+/* Where a header has its versions, for writers and for readers: 1 is without a log, 2 with one. */
+enum { VERSIONS_AT = 18 };
+/* Lets a database be read where no log can be made beside it, such as in a folder without
+ * permission to write, until somebody opens it to write. */
+int file_ask_for_no_log(int file, const char *path, struct error *err);
 /* A busy handler of SQLite: pauses, and returns 0 where it has waited for BUSY_MS. */
 int store_wait(void *context, int tries);
 

@@ -1,4 +1,5 @@
 #include "schema/store/store_restore.h"
+#include "core/file.h"
 #include "schema/store/store_internal.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -12,17 +13,13 @@
 /* What SQLite finds beside a database by its name. A journal is undone before it is moved. */
 static const char *const BESIDE[] = {"-journal", "-wal", "-shm"};
 enum { BESIDE_COUNT = sizeof BESIDE / sizeof *BESIDE, STEP = 1 << 20 };
-enum {
-    /* The bytes that SQLite locks in a database: a reader holds one of the last 510. */
-    LOCK_FIRST = 0x40000000,
-    LOCK_COUNT = 512,
-    /* In the header of a database: versions for writers and readers; 1: it has no log. */
-    VERSIONS_AT = 18,
-};
+/* The bytes that SQLite locks in a database: a reader holds one of the last 510. */
+static const struct flock ALONE = {
+    .l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = 0x40000000, .l_len = 512};
 
-static int path_join(char path[RESTORE_PATH_SIZE], const char *first, const char *second,
+static int path_join(char path[STORE_PATH_SIZE], const char *first, const char *second,
                      const char *third, struct error *err) {
-    return snprintf(path, RESTORE_PATH_SIZE, "%s%s%s", first, second, third) < RESTORE_PATH_SIZE
+    return snprintf(path, STORE_PATH_SIZE, "%s%s%s", first, second, third) < STORE_PATH_SIZE
                ? 0
                : error_set(err, ERROR_INPUT, "the path %.200s... is too long", first);
 }
@@ -34,7 +31,7 @@ static const char *name_of(const char *path) {
 
 static bool has_bytes(const char *path, const char *suffix) {
     struct stat info;
-    char name[RESTORE_PATH_SIZE];
+    char name[STORE_PATH_SIZE];
     return path_join(name, path, suffix, "", NULL) == 0 && stat(name, &info) == 0 &&
            info.st_size > 0;
 }
@@ -91,7 +88,7 @@ static int copy_bytes(int from, const char *backup, const struct part_file *part
 /* Whoever serves the database goes on to read it, whoever restores it. */
 static int keep_owner(int file, const char *database, struct error *err) {
     struct stat info;
-    char folder[RESTORE_PATH_SIZE];
+    char folder[STORE_PATH_SIZE];
     bool exists = stat(database, &info) == 0;
     snprintf(folder, sizeof folder, "%.*s.", (int)(name_of(database) - database), database);
     if (!exists && stat(folder, &info) != 0)
@@ -114,7 +111,7 @@ static int finish_copy(const struct part_file *part, const char *database, struc
 int restore_copy(struct part_file *part, const char *backup, const char *database,
                  const char *folder, bool (*stop)(void *context), void *context,
                  struct error *err) {
-    char target[RESTORE_PATH_SIZE];
+    char target[STORE_PATH_SIZE];
     struct stat info;
     int file = -1;
     int status = path_join(target, folder, "/", name_of(database), err);
@@ -139,8 +136,7 @@ int restore_copy(struct part_file *part, const char *backup, const char *databas
 /* --- the files are changed --- */
 
 static int refuse_open(int file, const char *path, struct error *err) {
-    struct flock lock = {
-        .l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = LOCK_FIRST, .l_len = LOCK_COUNT};
+    struct flock lock = ALONE;
     char line[64], program[32] = "";
     if (fcntl(file, F_OFD_GETLK, &lock) != 0 || lock.l_pid <= 0)
         return error_set(err, ERROR_STATE, "database %s is open in another process: end it first",
@@ -159,24 +155,15 @@ static int refuse_open(int file, const char *path, struct error *err) {
 /* Locks a database as SQLite would to write it alone, by the open file, so that no closing of
  * another one unlocks it. *file is -1 where there is none. */
 static int lock_database(const char *path, int *file, struct error *err) {
-    struct flock lock = {
-        .l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = LOCK_FIRST, .l_len = LOCK_COUNT};
+    struct flock lock = ALONE;
     *file = open(path, O_RDWR | O_CLOEXEC);
     if (*file < 0)
         return errno == ENOENT ? 0 : system_error(path, err);
     return fcntl(*file, F_OFD_SETLK, &lock) == 0 ? 0 : refuse_open(*file, path, err);
 }
 
-static void sync_folder_at(const char *folder) {
-    int file = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (file < 0)
-        return;
-    (void)fsync(file); /* some file systems cannot do it */
-    close(file);
-}
-
 static int move_beside(const char *database, const char *folder, bool *moved, struct error *err) {
-    char to[RESTORE_PATH_SIZE], from[RESTORE_PATH_SIZE];
+    char to[STORE_PATH_SIZE], from[STORE_PATH_SIZE];
     int status = path_join(to, folder, "/", name_of(database), err);
     size_t stem = strlen(to);
     for (size_t b = 0; b < BESIDE_COUNT && status == 0; b++) {
@@ -205,12 +192,9 @@ static void undo_journal(const char *database) {
 /* Until the logs of the old file are moved, store_open refuses them by this; after it, the database
  * asks for a log again. */
 static int ask_for_no_log(const struct part_file *part, struct error *err) {
-    static const unsigned char VERSIONS[] = {1, 1};
-    if (has_bytes(part->path, "-wal"))
-        return error_set(err, ERROR_STATE, "%s is open in another process", part->path);
-    return pwrite(part->file, VERSIONS, sizeof VERSIONS, VERSIONS_AT) == (ssize_t)sizeof VERSIONS
-               ? 0
-               : system_error(part->path, err);
+    return has_bytes(part->path, "-wal")
+               ? error_set(err, ERROR_STATE, "%s is open in another process", part->path)
+               : file_ask_for_no_log(part->file, part->path, err);
 }
 
 static int exchange(const char *copy, const char *database, bool exists, struct error *err) {
@@ -223,7 +207,7 @@ static int exchange(const char *copy, const char *database, bool exists, struct 
 
 int restore_swap(struct part_file *part, const char *database, const char *folder, bool *kept,
                  struct error *err) {
-    char copy[RESTORE_PATH_SIZE];
+    char copy[STORE_PATH_SIZE];
     int old = -1, new = -1;
     undo_journal(database);
     *kept = false;
@@ -241,7 +225,8 @@ int restore_swap(struct part_file *part, const char *database, const char *folde
         *kept = status == 0 && old >= 0;
         if (status == 0)
             status = move_beside(database, folder, kept, err);
-        sync_folder_at(folder);
+        file_sync_name(copy);
+        file_sync_name(database);
     }
     if (new >= 0)
         close(new);
@@ -263,7 +248,7 @@ static bool expects_no_log(const char *database) {
 
 /* The logs that a killed process left belong to the database of the newest folder. */
 static int finish_in(const char *database, const char *folder, bool *finished, struct error *err) {
-    char old[RESTORE_PATH_SIZE];
+    char old[STORE_PATH_SIZE];
     if (path_join(old, folder, "/", name_of(database), NULL) != 0)
         return 0;
     part_file_remove_left(old);
@@ -274,17 +259,18 @@ static int finish_in(const char *database, const char *folder, bool *finished, s
 }
 
 int restore_finish(const char *database, bool *finished, struct error *err) {
-    char pattern[RESTORE_PATH_SIZE];
     glob_t found;
     *finished = false;
-    int file = -1, status = path_join(pattern, database, ".before-restore-*", "", err);
-    if (status == 0)
-        status = lock_database(database, &file, err);
-    if (status == 0 && glob(pattern, 0, NULL, &found) == 0) {
+    int file = -1, status = lock_database(database, &file, err);
+    char *pattern = status == 0 ? file_pattern(database, ".before-restore-*") : NULL;
+    if (pattern != NULL && glob(pattern, 0, NULL, &found) == 0) {
         for (size_t n = found.gl_pathc; n > 0 && status == 0 && !*finished; n--)
             status = finish_in(database, found.gl_pathv[n - 1], finished, err);
         globfree(&found);
     }
+    if (status == 0 && pattern == NULL)
+        status = error_memory(err, strlen(database), "a path");
+    free(pattern);
     if (file >= 0)
         close(file);
     return status;

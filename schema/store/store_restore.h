@@ -7,7 +7,6 @@
 #include "core/part_file.h"
 #include "schema/store/store.h"
 
-enum { RESTORE_PATH_SIZE = 4224 };
 /* Ends what a killed restore_swap of this database left beside it, or takes away what a killed copy
  * left; true where the logs of the old file were still to be moved. */
 int restore_finish(const char *database, bool *finished, struct error *err);

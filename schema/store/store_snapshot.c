@@ -9,12 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum {
-    STEP_PAGES = 1024, /* 4 MiB between two calls of stop */
-    /* In the header of a database file: its versions for writers and for readers. 2 requires a
-     * write-ahead log, 1 does not. */
-    VERSIONS_AT = 18,
-};
+enum { STEP_PAGES = 1024 /* 4 MiB between two calls of stop */ };
 
 static int copy_error(const struct store *store, sqlite3 *copy, const char *path, int code,
                       struct error *err) {
@@ -56,15 +51,6 @@ static int copy_open(sqlite3 **copy, const struct store *store, const char *path
     return code != SQLITE_OK ? copy_error(store, *copy, path, code, err) : 0;
 }
 
-/* Lets the copy be read where no log can be made beside it, such as in a folder without permission
- * to write. */
-static int ask_for_no_log(int file, const char *path, struct error *err) {
-    static const unsigned char VERSIONS[] = {1, 1};
-    if (pwrite(file, VERSIONS, sizeof VERSIONS, VERSIONS_AT) != (ssize_t)sizeof VERSIONS)
-        return error_set(err, ERROR_SYSTEM, "%s: %s", path, strerror(errno));
-    return 0;
-}
-
 int store_copy(struct store *store, const struct part_file *part, bool (*stop)(void *context),
                void *context, struct error *err) {
     sqlite3 *copy = NULL;
@@ -76,7 +62,7 @@ int store_copy(struct store *store, const struct part_file *part, bool (*stop)(v
         status = copy_pages(store, copy, part->path, stop, context, err);
     sqlite3_close(copy);
     read_end(store);
-    return status != 0 ? status : ask_for_no_log(part->file, part->path, err);
+    return status != 0 ? status : file_ask_for_no_log(part->file, part->path, err);
 }
 
 int store_snapshot(struct store *store, const char *path, bool (*stop)(void *context),

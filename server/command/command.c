@@ -31,6 +31,11 @@ static void on_signal(int number) {
     stop_requested = 1;
 }
 
+bool stop_is_requested(void *context) {
+    (void)context;
+    return atomic_load(&stop_requested) != 0;
+}
+
 void signals_catch(void) {
     struct sigaction action = {.sa_handler = on_signal};
     sigemptyset(&action.sa_mask);

@@ -40,6 +40,8 @@ extern const struct command COMMAND_SLURM, COMMAND_SLURM_PILOTS;
 /* Set by SIGINT and SIGTERM once signals_catch was called; a second one ends the program at once.
  */
 extern atomic_int stop_requested;
+/* The same for functions that ask now and then; context: none. */
+bool stop_is_requested(void *context);
 void signals_catch(void);
 
 /* Prints "rugo COMMAND: text" to standard error and gives the exit status of an error code. */

@@ -1,4 +1,5 @@
 #include "server/http/service.h"
+#include "core/file.h"
 #include "core/part_file.h"
 #include "server/http/waiting_room.h"
 #include "worker/checker.h"
@@ -23,12 +24,11 @@ int service_snapshot_path(const struct service *service, char path[SNAPSHOT_PATH
 /* Earlier versions of the program named them DATABASE.snapshot-PROCESS-ADDRESS, and held no lock.
  */
 static void remove_older(const char *path) {
-    char pattern[SNAPSHOT_PATH_SIZE + 16];
     glob_t found;
-    if (strpbrk(path, "*?[\\") != NULL)
-        return;
-    snprintf(pattern, sizeof pattern, "%s-[0-9]*-0x*", path);
-    if (glob(pattern, GLOB_NOSORT, NULL, &found) != 0)
+    char *pattern = file_pattern(path, "-[0-9]*-0x*");
+    int failure = pattern != NULL ? glob(pattern, GLOB_NOSORT, NULL, &found) : GLOB_NOSPACE;
+    free(pattern);
+    if (failure != 0)
         return;
     for (size_t n = 0; n < found.gl_pathc; n++) {
         long process = strtol(found.gl_pathv[n] + strlen(path) + 1, NULL, 10);

@@ -306,11 +306,6 @@ int access_health(struct access *access, cJSON **out, struct error *err) {
     return ask(access, "GET", "/healthz", NULL, out, err);
 }
 
-static bool is_stopped(void *context) {
-    (void)context;
-    return stop_requested != 0;
-}
-
 static int download(struct access *access, const char *path, struct error *err) {
     struct part_file part;
     int status = part_file_create(&part, path, err);
@@ -339,8 +334,9 @@ static int download(struct access *access, const char *path, struct error *err) 
 }
 
 int access_snapshot(struct access *access, const char *path, struct error *err) {
-    return access->client != NULL ? download(access, path, err)
-                                  : store_snapshot(access->store, path, is_stopped, NULL, err);
+    return access->client != NULL
+               ? download(access, path, err)
+               : store_snapshot(access->store, path, stop_is_requested, NULL, err);
 }
 
 /* Changes of a store, local or of a server. */

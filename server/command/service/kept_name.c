@@ -1,5 +1,7 @@
 #include "server/command/service/kept_name.h"
+#include <ctype.h>
 #include <stdio.h>
+#include <string.h>
 #include <sys/stat.h>
 #include <time.h>
 
@@ -18,4 +20,18 @@ int kept_name(char path[KEPT_PATH_SIZE], const char *before, const char *after, 
     return length < KEPT_PATH_SIZE
                ? 0
                : error_set(err, ERROR_INPUT, "the path %.200s... is too long", before);
+}
+
+bool kept_name_is(const char *name, const char *before, const char *after) {
+    static const char FORM[] = "00000000T000000Z";
+    size_t length = strlen(before);
+    if (strncmp(name, before, length) != 0)
+        return false;
+    name += length;
+    for (const char *f = FORM; *f != '\0'; f++, name++)
+        if (*f == '0' ? isdigit((unsigned char)*name) == 0 : *name != *f)
+            return false;
+    if (*name == '-')
+        name += 1 + strspn(name + 1, "0123456789");
+    return strcmp(name, after) == 0;
 }

@@ -21,11 +21,6 @@ static const struct option_row OPTIONS[] = {
      "check the backup and list what it lacks; change nothing"},
     {0}};
 
-static bool is_stopped(void *context) {
-    (void)context;
-    return atomic_load(&stop_requested) != 0;
-}
-
 /* The copy is opened to write: an older one is brought up to date before it is the store. */
 static int open_copy(struct store **copy, const char *path, const char *backup, struct error *err) {
     const struct store_options existing = {.existing = true};
@@ -116,7 +111,7 @@ static int restore(const char *database, const char *backup, bool dry_run, struc
     int status = make_folder(folder, database, dry_run, err);
     if (status != 0)
         return status;
-    status = restore_copy(&part, backup, database, folder, is_stopped, NULL, err);
+    status = restore_copy(&part, backup, database, folder, stop_is_requested, NULL, err);
     if (status == 0)
         status = check_and_list(&part, backup, database, err);
     if (status == 0 && !dry_run)

@@ -1,8 +1,8 @@
 /* `rugo snapshot`: a consistent copy of the results database, also while others write to it. */
+#include "core/file.h"
 #include "server/command/access/access.h"
 #include "server/command/service/kept_name.h"
 #include "server/command/service/verify.h"
-#include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -26,37 +26,21 @@ static const struct option_row OPTIONS[] = {
 /* Until it is verified a snapshot in a folder has this behind its name. */
 #define UNVERIFIED ".unverified"
 
-/* Snapshots of one store in a folder: FOLDER/STEM-20261126T190000Z.db. */
+/* Snapshots of one store in a folder: FOLDER/STEM20261126T190000Z.db, with a STEM that ends in -.
+ * Nobody else's files are removed. */
 struct series {
-    const char *folder;
-    char stem[256];
+    char folder[KEPT_PATH_SIZE], stem[256];
 };
 
 static void series_of(struct series *series, const char *folder, const char *database) {
-    const char *slash = database != NULL ? strrchr(database, '/') : NULL;
-    snprintf(series->stem, sizeof series->stem, "%s",
-             slash != NULL      ? slash + 1
-             : database != NULL ? database
-                                : DATABASE);
-    size_t length = strlen(series->stem);
-    if (length > 3 && strcmp(series->stem + length - 3, ".db") == 0)
-        series->stem[length - 3] = '\0';
-    series->folder = folder;
-}
-
-/* Returns whether a file has a name of the series: nobody else's are removed. */
-static bool is_of(const struct series *series, const char *name, const char *ending) {
-    static const char MOMENT[] = "-00000000T000000Z";
-    size_t stem = strlen(series->stem);
-    if (strncmp(name, series->stem, stem) != 0)
-        return false;
-    name += stem;
-    for (const char *m = MOMENT; *m != '\0'; m++, name++)
-        if (*m == '0' ? isdigit((unsigned char)*name) == 0 : *name != *m)
-            return false;
-    if (*name == '-')
-        name += 1 + strspn(name + 1, "0123456789");
-    return strcmp(name, ending) == 0;
+    size_t length = strlen(folder);
+    while (length > 1 && folder[length - 1] == '/')
+        length--;
+    snprintf(series->folder, sizeof series->folder, "%.*s", (int)length, folder);
+    const char *path = database != NULL ? database : DATABASE, *slash = strrchr(path, '/');
+    const char *name = slash != NULL ? slash + 1 : path;
+    length = strlen(name) - (file_ends_in(name, ".db") ? strlen(".db") : 0);
+    snprintf(series->stem, sizeof series->stem, "%.*s-", (int)length, name);
 }
 
 static int remove_file(const char *folder, const char *name, struct error *err) {
@@ -78,8 +62,9 @@ static int remove_oldest(const struct series *series, const char *newest, size_t
         return error_set(err, ERROR_SYSTEM, "%s: %s", series->folder, strerror(errno));
     while (count-- > 0) {
         const char *name = entries[count]->d_name;
-        if (is_of(series, name, ".db" UNVERIFIED) ||
-            (is_of(series, name, ".db") && strcmp(name, newest) != 0 && kept++ >= keep))
+        if (kept_name_is(name, series->stem, ".db" UNVERIFIED) ||
+            (kept_name_is(name, series->stem, ".db") && strcmp(name, newest) != 0 &&
+             kept++ >= keep))
             status = remove_file(series->folder, name, err);
         free(entries[count]);
     }
@@ -94,13 +79,13 @@ static int verify_copy(const char *copy, const char *path, struct error *err) {
     struct verify_report report = {0};
     struct store *store = NULL;
     int status = store_open(&store, copy, &reading, err);
-    if (status == 0)
+    if (status == 0) {
         status = verify_and_print(store, path, false, &report, err);
-    store_close(&store);
-    if (status == ERROR_STATE) {
+    } else if (status == ERROR_STATE) {
         printf("%s: not verified, as it is of an older program\n", path);
         status = 0;
     }
+    store_close(&store);
     if (status == 0 && report.counts.flaws > 0)
         status = error_set(err, ERROR_STATE,
                            "the store has flaws, and no snapshot is kept: see rugo verify and rugo "
@@ -112,18 +97,13 @@ static int verify_copy(const char *copy, const char *path, struct error *err) {
     return status;
 }
 
-static int copy_into_folder(struct access *access, const char *argument,
+static int copy_into_folder(struct access *access, const char *folder,
                             const struct options *options, struct error *err) {
     struct series series;
-    char folder[KEPT_PATH_SIZE], before[KEPT_PATH_SIZE], path[KEPT_PATH_SIZE];
+    char before[KEPT_PATH_SIZE + sizeof series.stem], path[KEPT_PATH_SIZE];
     char copy[KEPT_PATH_SIZE + sizeof UNVERIFIED];
-    size_t length = strlen(argument);
-    while (length > 1 && argument[length - 1] == '/')
-        length--;
-    snprintf(folder, sizeof folder, "%.*s", (int)length, argument);
     series_of(&series, folder, options->place.database);
-    if (snprintf(before, sizeof before, "%s/%s-", folder, series.stem) >= (int)sizeof before)
-        return error_set(err, ERROR_INPUT, "the path %.200s... is too long", folder);
+    snprintf(before, sizeof before, "%s/%s", series.folder, series.stem);
     int status = kept_name(path, before, ".db", err);
     snprintf(copy, sizeof copy, "%s" UNVERIFIED, path);
     if (status == 0)
@@ -131,7 +111,7 @@ static int copy_into_folder(struct access *access, const char *argument,
     if (status == 0)
         status = verify_copy(copy, path, err);
     if (status == 0 && options->keep > 0)
-        status = remove_oldest(&series, path + strlen(folder) + 1, options->keep, err);
+        status = remove_oldest(&series, path + strlen(series.folder) + 1, options->keep, err);
     return status;
 }
 
