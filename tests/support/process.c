@@ -83,6 +83,29 @@ int run_shell(const char *line) {
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+void check_shell(const char *line) {
+    if (run_shell(line) != 0) {
+        char *said = slurp("shell.err");
+        fail_msg("%s: %s", line, said);
+    }
+}
+
+void check_shell_refused(const char *line, const char *words) {
+    assert_int_not_equal(run_shell(line), 0);
+    if (!contains("shell.err", words)) {
+        char *said = slurp("shell.err");
+        fail_msg("%s: no '%s' in: %s", line, words, said);
+    }
+}
+
+void check_study_count(const char *database, const char *count) {
+    char line[200];
+    snprintf(line, sizeof line, "test \"$($RUGO status --db %s | tail -n +2 | wc -l)\" = %s",
+             database, count);
+    if (run_shell(line) != 0)
+        fail_msg("%s has not %s studies", database, count);
+}
+
 void process_kill(struct process *process, int signal_number) {
     if (process->pid)
         kill(process->pid, signal_number);

@@ -24,6 +24,11 @@ int run_rugo(const char *name, const char *const *arguments);
 /* Runs a line of the shell, in which $RUGO is the executable, and returns its exit status likewise;
  * output goes to shell.out and shell.err. */
 int run_shell(const char *line);
+/* Runs a line that succeeds, or one that fails with these words on standard error. */
+void check_shell(const char *line);
+void check_shell_refused(const char *line, const char *words);
+/* Checks how many studies a store has. */
+void check_study_count(const char *database, const char *count);
 void process_kill(struct process *process, int signal_number);
 /* Contents of a file of the test's folder; the caller frees. */
 char *slurp(const char *path);

@@ -32,22 +32,6 @@ static int submit(void) {
     return http_exchange(port, "POST", "/v1/studies", JSON, ONE_CASE, NULL);
 }
 
-/* Runs a line of the shell that fails, with these words. */
-static void check_refused(const char *line, const char *words) {
-    assert_int_not_equal(run_shell(line), 0);
-    if (!contains("shell.err", words)) {
-        char *said = slurp("shell.err");
-        fail_msg("%s: no '%s' in: %s", line, words, said);
-    }
-}
-
-static void check_studies(const char *database, const char *count) {
-    char line[200];
-    snprintf(line, sizeof line, "test \"$($RUGO status --db %s | tail -n +2 | wc -l)\" = %s",
-             database, count);
-    assert_int_equal(run_shell(line), 0);
-}
-
 static int clear(void **state) {
     (void)state;
     remove_store("s.db");
@@ -70,22 +54,22 @@ static void a_copy_over_a_killed_store_is_refused(void **state) {
     (void)state;
     kill_a_server_with_a_snapshot();
     assert_int_equal(run_shell("cp s.db kept.db && cp copy.db s.db && cp s.db-wal kept.log"), 0);
-    check_refused("timeout 60 $RUGO serve --db s.db --listen 127.0.0.1:0",
-                  "s.db-wal and -shm aside");
-    check_refused("$RUGO status --db s.db", "s.db-wal is the log of another file");
-    check_refused("$RUGO repair --db s.db", "Nothing was changed");
+    check_shell_refused("timeout 60 $RUGO serve --db s.db --listen 127.0.0.1:0",
+                        "s.db-wal and -shm aside");
+    check_shell_refused("$RUGO status --db s.db", "s.db-wal is the log of another file");
+    check_shell_refused("$RUGO repair --db s.db", "Nothing was changed");
     assert_int_equal(run_shell("cmp s.db copy.db && cmp s.db-wal kept.log"), 0);
     /* the old file is back: nothing was lost */
     assert_int_equal(run_shell("cp s.db fresh.db && cp kept.db s.db"), 0);
-    check_studies("s.db", "3");
+    check_study_count("s.db", "3");
     assert_int_equal(run_shell("rm -f s.db*; cp fresh.db s.db"), 0);
-    check_studies("s.db", "1");
+    check_study_count("s.db", "1");
     /* a copy that was opened and killed has a log of its own; an empty one is of nobody */
     assert_int_equal(run_shell(": >s.db-wal"), 0);
     start("s.db");
     assert_int_equal(submit(), 201);
     end(SIGKILL);
-    check_studies("s.db", "2");
+    check_study_count("s.db", "2");
     unlink("kept.db");
     unlink("kept.log");
     unlink("fresh.db");
@@ -95,13 +79,13 @@ static void a_log_without_its_database_is_kept(void **state) {
     (void)state;
     kill_a_server_with_a_snapshot();
     assert_int_equal(run_shell("mv s.db t.db"), 0);
-    check_refused("timeout 60 $RUGO serve --db s.db --listen 127.0.0.1:0",
-                  "there is no database s.db, but its log s.db-wal");
+    check_shell_refused("timeout 60 $RUGO serve --db s.db --listen 127.0.0.1:0",
+                        "there is no database s.db, but its log s.db-wal");
     assert_int_equal(run_shell(": >s.db"), 0);
-    check_refused("$RUGO submit --db s.db nothing.json || $RUGO repair --db s.db",
-                  "is the log of another");
+    check_shell_refused("$RUGO submit --db s.db nothing.json || $RUGO repair --db s.db",
+                        "is the log of another");
     assert_int_equal(run_shell("mv t.db s.db"), 0);
-    check_studies("s.db", "3");
+    check_study_count("s.db", "3");
 }
 
 static void a_store_of_two_names_is_refused(void **state) {
@@ -110,20 +94,21 @@ static void a_store_of_two_names_is_refused(void **state) {
     assert_int_equal(submit(), 201);
     end(SIGTERM);
     assert_int_equal(link("s.db", "t.db"), 0);
-    check_refused("$RUGO status --db s.db", "t.db, or copy it");
-    check_refused("timeout 60 $RUGO serve --db t.db --listen 127.0.0.1:0", "s.db, or copy it");
+    check_shell_refused("$RUGO status --db s.db", "t.db, or copy it");
+    check_shell_refused("timeout 60 $RUGO serve --db t.db --listen 127.0.0.1:0",
+                        "s.db, or copy it");
     assert_int_equal(unlink("t.db"), 0);
-    check_studies("s.db", "1");
+    check_study_count("s.db", "1");
     /* a symbolic link leads to the same files */
     assert_int_equal(symlink("s.db", "t.db"), 0);
     start("t.db");
     assert_int_equal(submit(), 201);
     assert_int_equal(access("s.db-wal", F_OK), 0);
     assert_int_not_equal(access("t.db-wal", F_OK), 0);
-    check_studies("s.db", "2");
+    check_study_count("s.db", "2");
     end(SIGKILL);
-    check_studies("s.db", "2");
-    check_studies("t.db", "2");
+    check_study_count("s.db", "2");
+    check_study_count("t.db", "2");
 }
 
 static void check_failing(const char *words) {
@@ -148,7 +133,7 @@ static void a_log_that_is_gone_is_reported(void **state) {
         check_failing("end this program in order");
         assert_int_equal(http_exchange(port, "GET", "/v1/studies", NULL, NULL, NULL), 503);
         end(SIGTERM);
-        check_studies("s.db", "1");
+        check_study_count("s.db", "1");
     }
 }
 
@@ -160,7 +145,7 @@ static void a_database_that_was_cut_is_reported(void **state) {
         start("s.db");
         end(SIGTERM); /* all is in the database now */
         start("s.db");
-        check_studies("s.db", "0");
+        check_study_count("s.db", "0");
         assert_int_equal(truncate("s.db", SIZES[s]), 0);
         check_failing("was cut to");
         assert_int_equal(submit(), 503);
@@ -196,13 +181,14 @@ static void readers_are_given_the_reason(void **state) {
     (void)state;
     start("s.db");
     end(SIGTERM);
-    check_refused("d=$(mktemp -d /tmp/rugo-closed-XXXXXX); " AS_NOBODY, "-wal and -shm beside it");
+    check_shell_refused("d=$(mktemp -d /tmp/rugo-closed-XXXXXX); " AS_NOBODY,
+                        "-wal and -shm beside it");
     /* a change that was killed, in the mode of a snapshot and of rugo repair */
     kill_in_a_change();
     assert_int_equal(access("s.db-journal", F_OK), 0);
-    check_refused("$RUGO status --db s.db", "which has to be undone first from s.db-journal");
+    check_shell_refused("$RUGO status --db s.db", "which has to be undone first from s.db-journal");
     assert_int_equal(run_shell("$RUGO repair --db s.db"), 0);
-    check_studies("s.db", "0");
+    check_study_count("s.db", "0");
     /* three repairs, mostly within a second, keep three copies */
     assert_int_equal(run_shell("$RUGO repair --db s.db && $RUGO repair --db s.db"), 0);
     assert_int_equal(run_shell("test $(ls s.db.before-repair-* | wc -l) = 3"), 0);

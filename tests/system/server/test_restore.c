@@ -32,29 +32,6 @@ static void submit(void) {
                      201);
 }
 
-static void check_refused(const char *line, const char *words) {
-    assert_int_not_equal(run_shell(line), 0);
-    if (!contains("shell.err", words)) {
-        char *said = slurp("shell.err");
-        fail_msg("%s: no '%s' in: %s", line, words, said);
-    }
-}
-
-static void check_studies(const char *database, const char *count) {
-    char line[200];
-    snprintf(line, sizeof line, "test \"$($RUGO status --db %s | tail -n +2 | wc -l)\" = %s",
-             database, count);
-    if (run_shell(line) != 0)
-        fail_msg("%s has not %s studies", database, count);
-}
-
-static void run_line(const char *line) {
-    if (run_shell(line) != 0) {
-        char *said = slurp("shell.err");
-        fail_msg("%s: %s", line, said);
-    }
-}
-
 static int clear(void **state) {
     (void)state;
     remove_store("s.db");
@@ -65,11 +42,11 @@ static int clear(void **state) {
 static void kill_a_server_after_a_backup(void) {
     start();
     submit();
-    run_line("$RUGO snapshot --db s.db copy.db");
+    check_shell("$RUGO snapshot --db s.db copy.db");
     submit();
     submit();
-    check_refused("$RUGO restore copy.db --db s.db", "rugo: end it first");
-    run_line("$RUGO restore copy.db --db s.db --dry-run");
+    check_shell_refused("$RUGO restore copy.db --db s.db", "rugo: end it first");
+    check_shell("$RUGO restore copy.db --db s.db --dry-run");
     end(SIGKILL);
 }
 
@@ -77,33 +54,33 @@ static void a_backup_becomes_the_store(void **state) {
     (void)state;
     kill_a_server_after_a_backup();
     assert_int_equal(chmod("s.db", 0640), 0);
-    run_line("$RUGO restore -n copy.db --db s.db >lacks");
-    check_studies("s.db", "3");
+    check_shell("$RUGO restore -n copy.db --db s.db >lacks");
+    check_study_count("s.db", "3");
     assert_int_equal(count_files("s.db.before-restore-*"), 0);
-    run_line("$RUGO restore copy.db --db s.db >lacks");
-    run_line("test $(grep -c '^[0-9a-f]\\{16\\}  20' lacks) = 2");
-    check_studies("s.db", "1");
+    check_shell("$RUGO restore copy.db --db s.db >lacks");
+    check_shell("test $(grep -c '^[0-9a-f]\\{16\\}  20' lacks) = 2");
+    check_study_count("s.db", "1");
     struct stat info;
     assert_int_equal(stat("s.db", &info), 0);
     assert_int_equal(info.st_mode & 0777, 0640);
     start();
     submit();
     end(SIGTERM);
-    check_studies("s.db", "2");
+    check_study_count("s.db", "2");
     /* and back: nothing of the old store is lost */
-    run_line("rm -f s.db s.db-wal s.db-shm && mv s.db.before-restore-*/s.db* .");
-    check_studies("s.db", "3");
+    check_shell("rm -f s.db s.db-wal s.db-shm && mv s.db.before-restore-*/s.db* .");
+    check_study_count("s.db", "3");
     assert_int_equal(count_files("s.db*part*"), 0);
 }
 
 static void a_new_machine_gets_the_store(void **state) {
     (void)state;
     kill_a_server_after_a_backup();
-    run_line("$RUGO restore copy.db --db n.db >lacks && ! grep -q lacks lacks");
-    check_studies("n.db", "1");
+    check_shell("$RUGO restore copy.db --db n.db >lacks && ! grep -q lacks lacks");
+    check_study_count("n.db", "1");
     assert_int_equal(count_files("n.db.before-restore-*"), 0);
-    run_line("ln -s s.db link.db && $RUGO restore copy.db --db link.db && test -L link.db");
-    check_studies("s.db", "1");
+    check_shell("ln -s s.db link.db && $RUGO restore copy.db --db link.db && test -L link.db");
+    check_study_count("s.db", "1");
 }
 
 static void what_is_no_whole_backup_is_refused(void **state) {
@@ -120,12 +97,12 @@ static void what_is_no_whole_backup_is_refused(void **state) {
     (void)state;
     kill_a_server_after_a_backup();
     for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++)
-        check_refused(CASES[c].line, CASES[c].words);
-    run_line("cp copy.db n.db");
+        check_shell_refused(CASES[c].line, CASES[c].words);
+    check_shell("cp copy.db n.db");
     sql_change("n.db", "UPDATE study_case SET seal = 0");
-    check_refused("$RUGO restore n.db --db s.db", "is not whole, and was not restored");
-    check_refused("ulimit -f 100; $RUGO restore copy.db --db s.db", "File too large");
-    check_studies("s.db", "3");
+    check_shell_refused("$RUGO restore n.db --db s.db", "is not whole, and was not restored");
+    check_shell_refused("ulimit -f 100; $RUGO restore copy.db --db s.db", "File too large");
+    check_study_count("s.db", "3");
     assert_int_equal(count_files("s.db.before-restore-*"), 0);
 }
 
@@ -134,45 +111,45 @@ static void what_is_no_whole_backup_is_refused(void **state) {
 static void a_killed_restore_is_ended(void **state) {
     (void)state;
     kill_a_server_after_a_backup();
-    run_line("mkdir s.db.before-restore-20200101T000000Z && "
-             "cp copy.db s.db.before-restore-20200101T000000Z/s.db.part-0a1b2c");
-    run_line("$RUGO restore copy.db --db s.db");
+    check_shell("mkdir s.db.before-restore-20200101T000000Z && "
+                "cp copy.db s.db.before-restore-20200101T000000Z/s.db.part-0a1b2c");
+    check_shell("$RUGO restore copy.db --db s.db");
     assert_int_equal(count_files("s.db.before-restore-2020*"), 0);
     assert_int_equal(count_files("s.db.before-restore-*"), 1);
-    run_line("mv s.db.before-restore-*/s.db-wal . && mv s.db.before-restore-* f && "
-             "mv f s.db.before-restore-20210101T000000Z");
-    check_refused("$RUGO status --db s.db", "is the log of another file");
-    run_line("$RUGO restore copy.db --db s.db");
-    check_studies("s.db", "1");
-    check_studies("s.db.before-restore-2021*/s.db", "3");
+    check_shell("mv s.db.before-restore-*/s.db-wal . && mv s.db.before-restore-* f && "
+                "mv f s.db.before-restore-20210101T000000Z");
+    check_shell_refused("$RUGO status --db s.db", "is the log of another file");
+    check_shell("$RUGO restore copy.db --db s.db");
+    check_study_count("s.db", "1");
+    check_study_count("s.db.before-restore-2021*/s.db", "3");
 }
 
 static void damaged_stores_are_replaced_too(void **state) {
     (void)state;
     kill_a_server_after_a_backup();
-    run_line("head -c 20000 /dev/urandom >s.db");
-    run_line("$RUGO restore copy.db --db s.db >lacks && grep -q 'is not known' lacks");
-    check_studies("s.db", "1");
+    check_shell("head -c 20000 /dev/urandom >s.db");
+    check_shell("$RUGO restore copy.db --db s.db >lacks && grep -q 'is not known' lacks");
+    check_study_count("s.db", "1");
 }
 
 static void a_folder_keeps_the_newest(void **state) {
     (void)state;
     start();
     submit();
-    run_line("mkdir f && cd f && touch s-mine.db t-20200101T000000Z.db s-20200101T000000Z.db "
-             "s-20200101T000000Z-2.db s-20210101T000000Z.db s-20210101T000000Z.db.gz "
-             "s-20220101T000000Z.db.unverified");
-    run_line("$RUGO snapshot --db s.db f/ --keep 3 | grep whole");
+    check_shell("mkdir f && cd f && touch s-mine.db t-20200101T000000Z.db s-20200101T000000Z.db "
+                "s-20200101T000000Z-2.db s-20210101T000000Z.db s-20210101T000000Z.db.gz "
+                "s-20220101T000000Z.db.unverified");
+    check_shell("$RUGO snapshot --db s.db f/ --keep 3 | grep whole");
     assert_int_equal(count_files("f/s-202?0101*.db"), 2);
-    run_line("$RUGO snapshot --db s.db f --keep 1");
+    check_shell("$RUGO snapshot --db s.db f --keep 1");
     assert_int_equal(count_files("f/s-2*.db"), 1);
     assert_int_equal(count_files("f/*"), 4); /* three are no snapshots of this store */
-    run_line("$RUGO restore --dry-run f/s-2*Z*.db --db s.db");
-    check_refused("$RUGO snapshot --db s.db copy.db --keep 2", "--keep is for a folder");
+    check_shell("$RUGO restore --dry-run f/s-2*Z*.db --db s.db");
+    check_shell_refused("$RUGO snapshot --db s.db copy.db --keep 2", "--keep is for a folder");
     end(SIGTERM);
     /* a store with a flaw makes no snapshot, and takes none */
     sql_change("s.db", "UPDATE study_case SET seal = 0");
-    check_refused("$RUGO snapshot --db s.db f --keep 1", "has flaws");
+    check_shell_refused("$RUGO snapshot --db s.db f --keep 1", "has flaws");
     assert_int_equal(count_files("f/s-2*.db"), 1);
 }
 
