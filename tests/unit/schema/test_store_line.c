@@ -42,15 +42,17 @@ static void submit(struct store *store, const char *owner, int priority, int job
     study_destroy(&study);
 }
 
-/* The study of the next job, which is then done, or left running. */
-static void next(struct store *store, bool ends, char id[STUDY_ID_SIZE]) {
+/* Claims the next job, which is then done, or left running: its study is `id`. False where nothing
+ * waits. */
+static bool claim_next(struct store *store, bool ends, char id[STUDY_ID_SIZE]) {
     static const char *const NAMES[] = {"a"};
     const struct claim claim = {.worker = "w", .host = "h", .count = 1};
     struct claimed_job job = {0};
     size_t claimed = 0;
     bool first, done;
     assert_int_equal(store_claim(store, &claim, &job, &claimed, NULL), 0);
-    assert_int_equal(claimed, 1);
+    if (claimed == 0)
+        return false;
     snprintf(id, STUDY_ID_SIZE, "%s", job.study);
     double scalars[64] = {0};
     const struct block_result result = {.first = job.first,
@@ -65,6 +67,11 @@ static void next(struct store *store, bool ends, char id[STUDY_ID_SIZE]) {
     if (ends)
         assert_int_equal(store_complete(store, job.id, job.token, &result, &first, &done, NULL), 0);
     claimed_job_clear(&job);
+    return true;
+}
+
+static void next(struct store *store, bool ends, char id[STUDY_ID_SIZE]) {
+    assert_true(claim_next(store, ends, id));
 }
 
 /* Of the next jobs, how many are of this study. */
@@ -237,14 +244,21 @@ static int compare_with_definition(struct store *store, const char *path) {
     return queued;
 }
 
+static void submit_drawn(struct store *store, const char *owner, char id[STUDY_ID_SIZE]) {
+    static const double SECONDS[] = {1, 5, 10};
+    int priority = (int)(lrand48() % 3) - 1, jobs = 1 + (int)(lrand48() % 5);
+    submit(store, owner, priority, jobs, SECONDS[lrand48() % 3], id);
+}
+
 /* Random studies of several owners, with weights and priorities, of which jobs are claimed, done
  * and cancelled meanwhile. The line is read by a handle that changes nothing, too. Weights are
  * powers of two and times whole, so that studies tie. */
 static void places_are_those_of_the_definition(void **state) {
     (void)state;
     static const char *const OWNERS[] = {"", "anna", "bert", "carl", "dora"};
-    static const double SECONDS[] = {1, 5, 10};
     static const char PATH[] = "random.db";
+    static const char WAITING[] =
+        "SELECT total(jobs_waiting) FROM study WHERE state IN ('queued', 'running')";
     char ids[100][STUDY_ID_SIZE], got[STUDY_ID_SIZE];
     int count = 0, compared = 0;
     struct store *store = open_store(PATH), *reader = open_store(PATH);
@@ -254,11 +268,11 @@ static void places_are_those_of_the_definition(void **state) {
     for (int step = 0; step < 150; step++) {
         long what = lrand48() % 8;
         if ((what < 5 || count < 3) && count < 100)
-            submit(store, OWNERS[lrand48() % 5], (int)(lrand48() % 3) - 1, 1 + (int)(lrand48() % 5),
-                   SECONDS[lrand48() % 3], ids[count++]);
-        else if (what < 7)
-            next(store, what == 5, got);
-        else
+            submit_drawn(store, OWNERS[lrand48() % 5], ids[count++]);
+        else if (what < 7) {
+            int64_t waiting = sql_integer(PATH, WAITING);
+            assert_int_equal(claim_next(store, what == 5, got), waiting > 0);
+        } else
             (void)store_cancel(store, ids[lrand48() % count], NULL);
         clock_ms += lrand48() % 300;
         if (step % 10 == 9) {
