@@ -2,11 +2,13 @@
 #include "worker/clock.h"
 #include "worker/link/report.h"
 #include "worker/link/source.h"
+#include "worker/link/wire.h"
 #include "worker/log.h"
 #include "worker/quiet_thread.h"
 #include <math.h>
 #include <stdatomic.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/random.h>
@@ -70,6 +72,8 @@ struct dispatcher {
     bool idle;             /* the last claim found nothing */
     bool due, publishing;  /* cases are to be published; some are just now */
     bool postponed;        /* the last time some cases stayed due */
+    /* Of the source, as logged. */
+    char other_forms[WIRE_FORMS_SIZE];
     bool drained, closing;
     atomic_bool ending;   /* read without the lock by claims that wait */
     struct backoff pause; /* between claims that find nothing */
@@ -437,6 +441,23 @@ static bool is_out_of_memory(const struct dispatcher *dispatcher) {
     return dispatcher->leases == NULL && dispatcher->away.ms >= away_most_ms(dispatcher);
 }
 
+/* Logs which kinds the source keeps from this program, each time that they change. */
+static void note_other_forms(struct dispatcher *dispatcher) {
+    struct log_about about = {.worker = dispatcher->options.source->worker};
+    const char *forms = source_other_forms(dispatcher->source);
+    if (strcmp(forms, dispatcher->other_forms) == 0)
+        return;
+    snprintf(dispatcher->other_forms, sizeof dispatcher->other_forms, "%s", forms);
+    if (forms[0] != '\0')
+        log_line(LEVEL_WARNING, &about,
+                 "no jobs of %s: the server reads their results in another form than this program "
+                 "makes; use one version of rugo for both",
+                 forms);
+    else
+        log_line(LEVEL_INFO, &about,
+                 "jobs of all kinds again: the server has this program's forms");
+}
+
 static void claim(struct dispatcher *dispatcher) {
     struct claimed_job jobs[CLAIM_MOST];
     struct wish wish = {
@@ -468,6 +489,7 @@ static void claim(struct dispatcher *dispatcher) {
         return;
     }
     dispatcher_note_answer(dispatcher);
+    note_other_forms(dispatcher);
     dispatcher->due |= due;
     if (count == 0) {
         claim_was_vain(dispatcher, waited);

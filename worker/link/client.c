@@ -541,6 +541,12 @@ uint64_t client_header_number(struct client *client, const char *name) {
     return strtoull(header->value, NULL, 10);
 }
 
+void client_header_text(struct client *client, const char *name, char *out, size_t size) {
+    struct curl_header *header = NULL;
+    bool found = curl_easy_header(client->curl, name, 0, CURLH_HEADER, -1, &header) == CURLHE_OK;
+    snprintf(out, size, "%s", found ? header->value : "");
+}
+
 int client_download(struct client *client, const char *path, FILE *file, uint64_t *size,
                     struct error *err) {
     struct request request = {.method = "GET", .path = path, .accept = "*/*"};

@@ -49,6 +49,8 @@ int client_change(struct client *client, const struct request *request, const ch
                   cJSON **out, struct error *err);
 /* Returns the number in a header of the last answer; 0 where it has none. */
 uint64_t client_header_number(struct client *client, const char *name);
+/* Copies the text of a header of the last answer, cut to size bytes; "" where it has none. */
+void client_header_text(struct client *client, const char *name, char *out, size_t size);
 /* Writes the body of a 200 to a file. *size, unless NULL, becomes its length; then an answer that
  * does not announce its length is refused before anything is written, and one that has another
  * length afterwards. Without, at most 256 MiB are taken. */

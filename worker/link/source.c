@@ -95,6 +95,10 @@ int source_report(struct source *source, struct report *reports, size_t count, b
     return source->backend->report(source->self, reports, count, due, err);
 }
 
+const char *source_other_forms(const struct source *source) {
+    return source->backend->other_forms != NULL ? source->backend->other_forms(source->self) : "";
+}
+
 int source_left(struct source *source, int *left, bool *due, struct error *err) {
     return source->backend->left(source->self, left, due, err);
 }

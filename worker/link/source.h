@@ -22,8 +22,12 @@ int source_claim(struct source *source, const struct wish *wish, struct claimed_
  * the study cancelled. A returned failure is that of the request as a whole. */
 int source_report(struct source *source, struct report *reports, size_t count, bool *due,
                   struct error *err);
+/* Returns the kinds whose jobs the source keeps from this program, whose results of them have
+ * another form, as of the last claim, with commas between; "" for none. The source owns it. */
+const char *source_other_forms(const struct source *source);
 /* Sets *left to whether a job waits or runs anywhere, so that one may still have to be claimed. Of
- * a server, only studies that this token may list count; *left is 0 when it may list none. */
+ * a server, only studies that this token may list count, and of which this program may have jobs;
+ * *left is 0 when it may list none. */
 int source_left(struct source *source, int *left, bool *due, struct error *err);
 
 #endif

@@ -16,6 +16,7 @@ struct source_backend {
     int (*claim)(void *self, const struct claim *claim, const struct wish *wish,
                  struct claimed_job *jobs, size_t *count, bool *due, struct error *err);
     int (*report)(void *self, struct report *reports, size_t count, bool *due, struct error *err);
+    const char *(*other_forms)(const void *self); /* NULL: always "" */
     int (*left)(void *self, int *left, bool *due, struct error *err);
 };
 extern const struct source_backend SOURCE_STORE, SOURCE_SERVER;

@@ -1,6 +1,7 @@
 /* Jobs from a server, over HTTP in the encoding of wire.h. */
 #include "schema/json/field.h"
 #include "worker/link/client.h"
+#include "worker/link/header_names.h"
 #include "worker/link/source_backend.h"
 #include "worker/link/wire_report.h"
 
@@ -17,6 +18,7 @@ enum {
 struct remote {
     struct client *client;
     bool older; /* the server takes only single reports */
+    char other_forms[WIRE_FORMS_SIZE];
 };
 
 static void remote_destroy(void *self) {
@@ -56,6 +58,7 @@ static int remote_post(struct remote *remote, struct request *request, cJSON *bo
 
 static int remote_claim(void *self, const struct claim *claim, const struct wish *wish,
                         struct claimed_job *jobs, size_t *count, bool *due, struct error *err) {
+    struct remote *remote = self;
     cJSON *answer = NULL;
     struct request request = {
         .path = "/v1/jobs/claim",
@@ -65,11 +68,15 @@ static int remote_claim(void *self, const struct claim *claim, const struct wish
         .context = wish->context,
     };
     (void)due;
-    int status = remote_post(self, &request, wire_claim(claim), &answer, err);
+    int status = remote_post(remote, &request, wire_claim(claim), &answer, err);
     if (status == ERROR_STATE) /* concerns no job: the server cannot do it now */
         return err->code = ERROR_SYSTEM;
     if (status != 0)
         return status;
+    client_header_text(remote->client, OTHER_FORMS_HEADER, remote->other_forms,
+                       sizeof remote->other_forms);
+    if (!worker_name_is_plain(remote->other_forms)) /* it is logged */
+        remote->other_forms[0] = '\0';
     *count = 0;
     if (answer != NULL)
         status = wire_jobs_read(answer, jobs, wish->count, count, err);
@@ -148,10 +155,24 @@ static int remote_report(void *self, struct report *reports, size_t count, bool 
     return status;
 }
 
+static const char *remote_other_forms(const void *self) {
+    return ((const struct remote *)self)->other_forms;
+}
+
+static bool is_of_other_form(const struct remote *remote, const char *kind) {
+    const char *at = kind != NULL ? strstr(remote->other_forms, kind) : NULL;
+    while (at != NULL &&
+           ((at > remote->other_forms && at[-1] != ' ') || strchr(",", at[strlen(kind)]) == NULL))
+        at = strstr(at + 1, kind);
+    return at != NULL;
+}
+
 /* Judges a study by its jobs. Its state is "running" until the server has published it, for which
  * no worker waits, unless that may queue more jobs. */
-static bool study_goes_on(const cJSON *study) {
+static bool study_goes_on(const struct remote *remote, const cJSON *study) {
     const cJSON *jobs = field_at(study, "jobs");
+    if (is_of_other_form(remote, cJSON_GetStringValue(field_at(study, "kind"))))
+        return false;
     return cJSON_GetNumberValue(field_at(jobs, "waiting")) > 0 ||
            cJSON_GetNumberValue(field_at(jobs, "running")) > 0 ||
            cJSON_IsTrue(field_at(study, "planning"));
@@ -174,7 +195,7 @@ static int remote_left(void *self, int *left, bool *due, struct error *err) {
         more = false;
         cJSON_ArrayForEach(study, cJSON_GetObjectItemCaseSensitive(page, "studies")) {
             const char *id = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(study, "id"));
-            found = found || study_goes_on(study);
+            found = found || study_goes_on(remote, study);
             more = id != NULL && strlen(id) < sizeof after && strcmp(id, after) != 0;
             if (more)
                 memcpy(after, id, strlen(id) + 1);
@@ -193,5 +214,6 @@ const struct source_backend SOURCE_SERVER = {
     .destroy = remote_destroy,
     .claim = remote_claim,
     .report = remote_report,
+    .other_forms = remote_other_forms,
     .left = remote_left,
 };

@@ -37,6 +37,17 @@ static int read_seed(const cJSON *object, uint64_t *out, struct error *err) {
 
 /* --- claim --- */
 
+/* Returns the forms in which this program makes the results of these kinds. */
+static cJSON *forms(const char *const *kinds) {
+    cJSON *value = cJSON_CreateObject();
+    bool complete = value != NULL;
+    for (size_t n = 0; complete && kinds[n] != NULL; n++) {
+        const struct job_kind *kind = kind_find(kinds[n]);
+        complete = kind == NULL || field_put_count(value, kinds[n], kind->format_version);
+    }
+    return fields_finish(value, complete);
+}
+
 cJSON *wire_claim(const struct claim *claim) {
     cJSON *value = cJSON_CreateObject();
     return fields_finish(
@@ -44,7 +55,8 @@ cJSON *wire_claim(const struct claim *claim) {
         value != NULL && field_put_text(value, "worker", claim->worker) &&
             field_put_text(value, "host", claim->host != NULL ? claim->host : "") &&
             (claim->program == NULL || field_put_text(value, "program", claim->program)) &&
-            (claim->kinds == NULL || field_put(value, "kinds", texts(claim->kinds))) &&
+            (claim->kinds == NULL || (field_put(value, "kinds", texts(claim->kinds)) &&
+                                      field_put(value, "forms", forms(claim->kinds)))) &&
             field_put_count(value, "count", claim->count) &&
             (claim->seconds <= 0 || field_put(value, "seconds", json_number(claim->seconds))) &&
             (claim->threads == 0 || field_put_count(value, "threads", claim->threads)) &&
@@ -65,6 +77,28 @@ static int read_kinds(const cJSON *kinds, const char **out, struct error *err) {
     return 0;
 }
 
+/* Takes kinds out of which the worker makes results in another form than this program. */
+static int read_forms(const cJSON *forms, const char **kinds, char *others, struct error *err) {
+    static const char WHAT[] = "an object of whole numbers by kinds";
+    if (!cJSON_IsObject(forms))
+        return field_fault("forms", WHAT, err);
+    size_t kept = 0, used = 0;
+    for (size_t n = 0; kinds[n] != NULL; n++) {
+        const struct job_kind *kind = kind_find(kinds[n]);
+        uint64_t form = 0;
+        bool named = kind != NULL && field_at(forms, kinds[n]) != NULL;
+        if (named && field_count(forms, kinds[n], &form, err) != 0)
+            return field_fault("forms", WHAT, err);
+        if (!named || form == kind->format_version)
+            kinds[kept++] = kinds[n];
+        else if (used < WIRE_FORMS_SIZE)
+            used += (size_t)snprintf(others + used, WIRE_FORMS_SIZE - used, "%s%s",
+                                     used > 0 ? ", " : "", kinds[n]);
+    }
+    kinds[kept] = NULL;
+    return 0;
+}
+
 /* "" where it is absent. */
 static int read_host(const cJSON *host, const char **out, struct error *err) {
     enum { HOST_MOST = 255 };
@@ -82,6 +116,7 @@ int wire_claim_read(const cJSON *value, struct wire_claim *out, struct error *er
         return error_set(err, ERROR_INPUT, "a claim must be an object");
     struct claim claim = {0};
     const char *kinds[WIRE_KINDS_MOST + 1] = {NULL};
+    char other_forms[WIRE_FORMS_SIZE] = "";
     uint64_t count = 1, threads = 0;
     bool sequence = false;
     int status = field_text(value, "worker", 256, &claim.worker, err);
@@ -95,6 +130,8 @@ int wire_claim_read(const cJSON *value, struct wire_claim *out, struct error *er
         status = field_fault("program", "a text without control characters", err);
     if (status == 0 && field_at(value, "kinds") != NULL)
         status = read_kinds(field_at(value, "kinds"), kinds, err);
+    if (status == 0 && field_at(value, "forms") != NULL)
+        status = read_forms(field_at(value, "forms"), kinds, other_forms, err);
     if (status == 0 && field_at(value, "count") != NULL)
         status = field_count(value, "count", &count, err);
     if (status == 0 && field_at(value, "seconds") != NULL)
@@ -109,6 +146,7 @@ int wire_claim_read(const cJSON *value, struct wire_claim *out, struct error *er
     claim.threads = threads < UINT_MAX ? (unsigned)threads : UINT_MAX;
     claim.count = count < WIRE_JOBS_MOST ? (size_t)count : WIRE_JOBS_MOST;
     memcpy(out->kinds, kinds, sizeof kinds);
+    memcpy(out->other_forms, other_forms, sizeof other_forms);
     claim.kinds = field_at(value, "kinds") != NULL ? out->kinds : NULL;
     out->claim = claim;
     return 0;

@@ -1,8 +1,8 @@
 /* Jobs and results as they cross the network between worker and server. One encoder and one decoder
  * serve both ends, so that they cannot disagree.
  *
- *     POST /v1/jobs/claim            {worker, host, program, kinds: […], count, seconds, threads,
- *                                     sequence: true}
+ *     POST /v1/jobs/claim            {worker, host, program, kinds: […], forms: {kind: number, …},
+ *                                     count, seconds, threads, sequence: true}
  *       200 {"jobs": [{id, study, kind, case, seed: "decimal", sequence, first, count,
  *                      attempt, token, lease_seconds, parameters: {…}}]},
  *       or 204 when there is none
@@ -15,9 +15,10 @@
  *
  * Numbers read back as the same doubles; NaN crosses as null. Unknown fields are ignored, so that a
  * newer end can work with an older one. A claim without "sequence" is from a worker that draws by
- * the number of the case, and a job without it is of a study that wants that. Encoders return NULL
- * when out of memory. Readers return ERROR_INPUT with the field at fault and leave *out
- * untouched. */
+ * the number of the case, and a job without it is of a study that wants that. A claim whose "forms"
+ * lack a kind is from a worker that does not say in which form it makes results of it
+ * (format_version of kind.h). Encoders return NULL when out of memory. Readers return ERROR_INPUT
+ * with the field at fault and leave *out untouched. */
 #ifndef RUGO_WORKER_LINK_WIRE_H
 #define RUGO_WORKER_LINK_WIRE_H
 
@@ -30,13 +31,22 @@
 /* Returns whether a UTF-8 text has no control characters, which a terminal would obey. */
 bool worker_name_is_plain(const char *name);
 
-enum { WIRE_JOBS_MOST = 100, WIRE_KINDS_MOST = 32, WIRE_REASON_MOST = 2000 };
+enum {
+    WIRE_JOBS_MOST = 100,
+    WIRE_KINDS_MOST = 32,
+    WIRE_REASON_MOST = 2000,
+    WIRE_FORMS_SIZE = 200, /* of a list of kinds */
+};
 
 /* --- claim --- */
-cJSON *wire_claim(const struct claim *claim); /* study does not cross */
+/* Forms are those of this program; study does not cross. */
+cJSON *wire_claim(const struct claim *claim);
 struct wire_claim {
     struct claim claim;                     /* borrows its strings from the document read */
     const char *kinds[WIRE_KINDS_MOST + 1]; /* where claim.kinds points: do not copy the struct */
+    /* Kinds whose results this program reads in another form than the worker makes, with commas
+     * between; "" for none. claim.kinds does not have them. */
+    char other_forms[WIRE_FORMS_SIZE];
 };
 /* Without kinds any is meant; without count one, and never more than WIRE_JOBS_MOST. */
 int wire_claim_read(const cJSON *value, struct wire_claim *out, struct error *err);

@@ -3,6 +3,7 @@
 #include "server/http/route/route.h"
 #include "server/http/waiting_room.h"
 #include "worker/clock.h"
+#include "worker/link/header_names.h"
 #include "worker/link/wire.h"
 #include "worker/log.h"
 #include <stdio.h>
@@ -121,6 +122,8 @@ static void answer_claim(struct claiming *claiming, int wait_s) {
     } else {
         answer_empty(exchange, 204);
     }
+    if (claiming->wire.other_forms[0] != '\0')
+        answer_header(exchange, OTHER_FORMS_HEADER, claiming->wire.other_forms);
     if (wait_s < 0)
         return;
     snprintf(applied, sizeof applied, "wait=%d", wait_s);

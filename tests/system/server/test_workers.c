@@ -242,6 +242,31 @@ static void who_has_gone_gets_no_job(void **state) {
     assert_int_equal(process_wait(&server, 20), 0);
 }
 
+/* A program whose results of statistics have another form gets none of its jobs, and learns why. */
+static void other_forms_get_no_jobs(void **state) {
+    (void)state;
+    struct process server;
+    char *answer = NULL;
+    unsigned port = serve_start(&server, (const char *[]){"--db", "forms.db", NULL});
+    submit(port, ONE_JOB);
+    static const char BODY[] = "{\"worker\":\"w\",\"sequence\":true,\"kinds\":[\"statistics\"],"
+                               "\"forms\":{\"statistics\":1}}";
+    char request[512];
+    int size = snprintf(request, sizeof request,
+                        "POST /v1/jobs/claim HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n"
+                        "Content-Type: application/json\r\nContent-Length: %zu\r\n\r\n%s",
+                        strlen(BODY), BODY);
+    answer = http_raw(port, request, (size_t)size);
+    assert_non_null(strstr(answer, "HTTP/1.1 204"));
+    assert_non_null(strstr(answer, "Rugo-Other-Forms: statistics\r\n"));
+    free(answer);
+    assert_int_equal(http_exchange(port, "POST", "/v1/jobs/claim",
+                                   "Content-Type: application/json\r\n", CLAIM, NULL),
+                     200);
+    process_kill(&server, SIGTERM);
+    assert_int_equal(process_wait(&server, 20), 0);
+}
+
 static void names_are_plain(void **state) {
     (void)state;
     struct process server;
@@ -336,6 +361,7 @@ int main(void) {
         cmocka_unit_test(one_connection_keeps_all_leases),
         cmocka_unit_test(claims_wait_for_jobs),
         cmocka_unit_test(who_has_gone_gets_no_job),
+        cmocka_unit_test(other_forms_get_no_jobs),
         cmocka_unit_test(names_are_plain),
         cmocka_unit_test(interrupted_runs_keep_realisations),
     };

@@ -179,6 +179,41 @@ static void claim_crosses(void **state) {
     cJSON_Delete(value);
 }
 
+/* A worker whose program makes results of a kind in another form must get no jobs of it; one that
+ * names no form may have any, as workers of older versions. */
+static void kinds_of_other_forms_are_left_out(void **state) {
+    (void)state;
+    const char *const kinds[] = {"contact", "rolling", "statistics", NULL};
+    struct claim claim = {.worker = "w", .kinds = kinds, .count = 1};
+    struct wire_claim got;
+    struct error err = {0};
+    cJSON *value = cross(wire_claim(&claim)), *forms = cJSON_GetObjectItem(value, "forms");
+    assert_int_equal(wire_claim_read(value, &got, &err), 0);
+    assert_string_equal(got.claim.kinds[2], "statistics");
+    assert_string_equal(got.other_forms, "");
+    cJSON *form = cJSON_GetObjectItem(forms, "contact");
+    assert_true(form->valuedouble > 0);
+    cJSON_SetNumberValue(form, form->valuedouble + 1);
+    assert_int_equal(wire_claim_read(value, &got, &err), 0);
+    assert_string_equal(got.claim.kinds[0], "rolling");
+    assert_string_equal(got.claim.kinds[1], "statistics");
+    assert_null(got.claim.kinds[2]);
+    assert_string_equal(got.other_forms, "contact");
+    form = cJSON_GetObjectItem(forms, "statistics");
+    cJSON_SetNumberValue(form, 0);
+    assert_int_equal(wire_claim_read(value, &got, &err), 0);
+    assert_string_equal(got.claim.kinds[0], "rolling");
+    assert_null(got.claim.kinds[1]);
+    assert_string_equal(got.other_forms, "contact, statistics");
+    cJSON_SetNumberValue(form, 0.5);
+    assert_int_equal(wire_claim_read(value, &got, &err), ERROR_INPUT);
+    assert_string_equal(err.text, "\"forms\" must be an object of whole numbers by kinds");
+    cJSON_DeleteItemFromObject(value, "forms");
+    assert_int_equal(wire_claim_read(value, &got, &err), 0);
+    assert_string_equal(got.claim.kinds[2], "statistics");
+    cJSON_Delete(value);
+}
+
 /* Names of peers are shown and stored: 255 bytes of each are taken. */
 static void names_of_hosts_are_bounded(void **state) {
     (void)state;
@@ -209,6 +244,7 @@ static void claims_are_bounded(void **state) {
         {"{\"worker\":\"w\",\"kinds\":\"statistics\"}", ERROR_INPUT},
         {"{\"worker\":\"w\",\"kinds\":[1]}", ERROR_INPUT},
         {"{\"worker\":\"w\",\"count\":-1}", ERROR_INPUT},
+        {"{\"worker\":\"w\",\"forms\":[1]}", ERROR_INPUT},
         {"[]", ERROR_INPUT},
         {"null", ERROR_INPUT},
     };
@@ -380,6 +416,7 @@ int main(void) {
         cmocka_unit_test(malformed_jobs_are_refused),
         cmocka_unit_test(more_jobs_than_room_are_refused),
         cmocka_unit_test(claim_crosses),
+        cmocka_unit_test(kinds_of_other_forms_are_left_out),
         cmocka_unit_test(names_of_hosts_are_bounded),
         cmocka_unit_test(claims_are_bounded),
         cmocka_unit_test(result_crosses_bit_for_bit),
