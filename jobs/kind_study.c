@@ -74,8 +74,10 @@ static double memory_available(void) {
     return isfinite(least) ? least : 0;
 }
 
-/* A study may take this part of the memory there is; the rest is the system's. */
-static const double MEMORY_PART = 0.9;
+double kind_memory_limit(void) {
+    static const double CASES = 0.9; /* the rest is the system's */
+    return CASES * memory_available();
+}
 
 const struct job_kind *kind_find(const char *name) {
     for (size_t k = 0; JOB_KINDS[k] != NULL; k++)
@@ -95,9 +97,8 @@ static int read_study(struct study **out, const char *text, size_t size,
 
 int kind_read_study(struct study **out, const char *text, size_t size, const char *const *overrides,
                     struct fault_list *faults, struct error *err) {
-    const struct study_reading reading = {.overrides = overrides,
-                                          .kinds = JOB_KINDS,
-                                          .memory_limit = MEMORY_PART * memory_available()};
+    const struct study_reading reading = {
+        .overrides = overrides, .kinds = JOB_KINDS, .memory_limit = kind_memory_limit()};
     return read_study(out, text, size, &reading, faults, err);
 }
 
@@ -105,7 +106,7 @@ int kind_read_study_until(struct study **out, const char *text, size_t size,
                           int (*stop)(void *context), void *context, struct fault_list *faults,
                           struct error *err) {
     const struct study_reading reading = {.kinds = JOB_KINDS,
-                                          .memory_limit = MEMORY_PART * memory_available(),
+                                          .memory_limit = kind_memory_limit(),
                                           .stop = stop,
                                           .stop_context = context};
     return read_study(out, text, size, &reading, faults, err);

@@ -4,6 +4,7 @@
 #include "worker/clock.h"
 #include "worker/dispatcher.h"
 #include "worker/log.h"
+#include "worker/memory_budget.h"
 #include "worker/publish/publish.h"
 #include "worker/quiet_thread.h"
 #include "worker/shared_parts.h"
@@ -23,6 +24,7 @@ struct worker_pool {
     char name[NAME_MOST];          /* of the process; a thread's name is this and its number */
     struct dispatcher *dispatcher; /* owned */
     struct shared_parts parts;     /* what the runners of a case share; has its own lock */
+    struct memory_budget memory;   /* of what runners need; likewise */
     pthread_mutex_t lock;
     pthread_cond_t changed; /* signalled when a thread ends */
     atomic_bool ending;
@@ -49,6 +51,7 @@ struct worker_thread {
      * Fourier transform plans and matrix factorisations. */
     struct job_runner *runner;
     struct shared_part *part; /* what the runner borrows; NULL: nothing */
+    double bytes;             /* of the memory budget, for the runner */
     /* The kind, study and case of the runner. */
     const struct job_kind *kind;
     char study[STUDY_ID_SIZE];
@@ -82,6 +85,37 @@ static void runner_drop(struct worker_thread *thread) {
         thread->runner = NULL;
     }
     shared_parts_let_go(&thread->pool->parts, &thread->part);
+    memory_budget_give(&thread->pool->memory, thread->bytes);
+    thread->bytes = 0;
+}
+
+static int thread_poll(void *context, uint64_t done) {
+    struct worker_thread *thread = context;
+    lease_progress(thread->lease, done);
+    return lease_is_lost(thread->lease) || atomic_load(&thread->pool->ending);
+}
+
+static int is_over(void *context) {
+    return thread_poll(context, 0);
+}
+
+/* Takes what a runner of the job's case needs from the budget, once it is free. */
+static int memory_take(struct worker_thread *thread, const struct claimed_job *job,
+                       const struct job_kind *kind, struct error *err) {
+    void *study = NULL;
+    struct study_cost cost = {0};
+    int status = kind_case_create(&study, kind, job->parameters, NULL, err);
+    if (status != 0)
+        return status;
+    kind->estimate(study, &cost);
+    kind_case_destroy(kind, &study);
+    int64_t start_ms = clock_ms();
+    status = memory_budget_take(&thread->pool->memory, cost.memory_bytes, is_over, thread, err);
+    thread->bytes = status == 0 ? cost.memory_bytes : 0;
+    if (status == 0 && clock_ms() - start_ms >= 1000)
+        thread_log(thread, LEVEL_INFO, job, "waited %.3g s for %.3g GB of memory of other jobs",
+                   1e-3 * (double)(clock_ms() - start_ms), cost.memory_bytes / 1e9);
+    return status;
 }
 
 /* Makes thread->runner a runner of this job's case. */
@@ -91,7 +125,9 @@ static int runner_prepare(struct worker_thread *thread, const struct claimed_job
         strcmp(thread->study, job->study) == 0)
         return 0;
     runner_drop(thread);
-    int status = shared_parts_take(&thread->pool->parts, kind, job->study, job->case_number,
+    int status = memory_take(thread, job, kind, err);
+    if (status == 0)
+        status = shared_parts_take(&thread->pool->parts, kind, job->study, job->case_number,
                                    job->parameters, &thread->part, err);
     if (status == 0)
         status = runner_create(&thread->runner, kind, job->parameters,
@@ -104,12 +140,6 @@ static int runner_prepare(struct worker_thread *thread, const struct claimed_job
         memcpy(thread->study, job->study, sizeof thread->study);
     }
     return status;
-}
-
-static int thread_poll(void *context, uint64_t done) {
-    struct worker_thread *thread = context;
-    lease_progress(thread->lease, done);
-    return lease_is_lost(thread->lease) || atomic_load(&thread->pool->ending);
 }
 
 static int job_run(struct worker_thread *thread, const struct claimed_job *job,
@@ -385,7 +415,9 @@ int workers_run(const struct worker_options *options, struct error *err) {
         free(threads);
         return error_set(err, ERROR_SYSTEM, "cannot make a condition");
     }
-    int status = shared_parts_init(&pool.parts, err);
+    int status = memory_budget_init(&pool.memory, kind_memory_limit(), err);
+    if (status == 0 && (status = shared_parts_init(&pool.parts, err)) != 0)
+        memory_budget_destroy(&pool.memory);
     if (status == 0) {
         status = checker_create(&own.source.checker, err);
         if (status == 0)
@@ -399,6 +431,7 @@ int workers_run(const struct worker_options *options, struct error *err) {
         if (status == 0)
             status = publish_left(&own, err);
         shared_parts_destroy(&pool.parts);
+        memory_budget_destroy(&pool.memory);
     }
     free(threads);
     pthread_cond_destroy(&pool.changed);
