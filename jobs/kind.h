@@ -240,7 +240,7 @@ const struct job_kind *kind_find(const char *name);
  * (schema/study/study.h). */
 uint64_t kind_edition(const struct job_kind *kind);
 /* Returns the bytes that cases may need: 0.9 of the memory that the process may use, which is that
- * of the machine or of its control group; 0: not known. */
+ * of the machine, of its control groups or of Slurm (allotment.h); 0: not known. */
 double kind_memory_limit(void);
 /* Reads a study of these kinds. A case may need kind_memory_limit bytes. */
 int kind_read_study(struct study **out, const char *text, size_t size, const char *const *overrides,

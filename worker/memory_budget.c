@@ -19,7 +19,7 @@ int memory_budget_take(struct memory_budget *budget, double bytes, int (*stop)(v
     if (budget->limit > 0 && bytes > budget->limit)
         return error_set(err, ERROR_MEMORY,
                          "the case needs about %.3g GB of memory, and the jobs of this process may "
-                         "use %.3g GB, 0.9 of what the machine or its control group has",
+                         "use %.3g GB, 0.9 of what the machine, a control group or Slurm gives",
                          bytes / 1e9, budget->limit / 1e9);
     pthread_mutex_lock(&budget->lock);
     while (status == 0 && budget->limit > 0 && budget->taken > 0 &&

@@ -1,9 +1,9 @@
 /* `rugo work`: claims and runs jobs of a local store or of a server. */
+#include "jobs/allotment.h"
 #include "server/command/access/access.h"
 #include "server/command/command.h"
 #include "server/command/service/supervisor.h"
 #include "server/command/service/token_file.h"
-#include "worker/allotment.h"
 #include "worker/clock.h"
 #include "worker/log.h"
 #include "worker/worker.h"

@@ -1,4 +1,5 @@
 /* `rugo check`: what a study would do, and what it would cost; runs nothing. */
+#include "jobs/allotment.h"
 #include "jobs/kind.h"
 #include "jobs/target.h"
 #include "schema/json/field.h"
@@ -7,7 +8,6 @@
 #include "server/show/summary/plan.h"
 #include "server/show/summary/summary_cells.h"
 #include "server/show/summary/summary_target.h"
-#include "worker/allotment.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,12 +1,12 @@
 /* `rugo run`: a study from submission to table in one process; goes on where an earlier run of the
  * same study stopped. */
+#include "jobs/allotment.h"
 #include "server/command/access/access.h"
 #include "server/command/command.h"
 #include "server/command/study/kept_nodes.h"
 #include "server/command/study/local_study.h"
 #include "server/show/output.h"
 #include "server/show/summary/progress.h"
-#include "worker/allotment.h"
 #include "worker/log.h"
 #include "worker/publish/publish.h"
 #include "worker/worker.h"

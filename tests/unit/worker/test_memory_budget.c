@@ -80,7 +80,7 @@ static void what_never_fits_is_refused(void **state) {
     assert_int_equal(memory_budget_take(&budget, 5.2e9, never, NULL, &err), ERROR_MEMORY);
     assert_string_equal(err.text,
                         "the case needs about 5.2 GB of memory, and the jobs of this process may "
-                        "use 3.6 GB, 0.9 of what the machine or its control group has");
+                        "use 3.6 GB, 0.9 of what the machine, a control group or Slurm gives");
     assert_true(budget.taken == 0);
     memory_budget_destroy(&budget);
     assert_int_equal(memory_budget_init(&budget, 0, NULL), 0); /* not known: no limit */

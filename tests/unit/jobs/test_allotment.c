@@ -1,6 +1,6 @@
-/* A worker's threads by its allotment: quotas of control groups of both versions, on trees made
- * here, and what Slurm says. */
-#include "worker/allotment.h"
+/* A worker's threads and memory by its allotment: limits of control groups of both versions, on
+ * trees made here, and what Slurm says. */
+#include "jobs/allotment.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -79,6 +79,25 @@ static void a_container_by_what_is_mounted(void **state) {
     assert_int_equal(allotment_of_groups("box"), 1);
 }
 
+static void memory_by_groups_of_both_versions(void **state) {
+    (void)state;
+    put("memory/proc/self/mountinfo", UNIFIED);
+    put("memory/proc/self/cgroup", "0::/slice/job\n");
+    assert_true(allotment_memory_of_groups("memory") == 0);
+    put("memory/sys/fs/cgroup/slice/job/memory.max", "max\n");
+    put("memory/sys/fs/cgroup/slice/memory.max", "4000000000\n");
+    assert_true(allotment_memory_of_groups("memory") == 4e9);
+    put("memory/sys/fs/cgroup/slice/job/memory.max", "3000000000\n");
+    assert_true(allotment_memory_of_groups("memory") == 3e9);
+    put("first/proc/self/mountinfo",
+        "33 31 0:30 /docker/abc /sys/fs/cgroup/memory rw - cgroup cgroup rw,memory\n");
+    put("first/proc/self/cgroup", "5:memory:/docker/abc/inner\n0::/\n");
+    put("first/sys/fs/cgroup/memory/inner/memory.limit_in_bytes", "9223372036854771712\n");
+    assert_true(allotment_memory_of_groups("first") == 0);
+    put("first/sys/fs/cgroup/memory/memory.limit_in_bytes", "2000000000\n");
+    assert_true(allotment_memory_of_groups("first") == 2e9);
+}
+
 static void nothing_mounted_restricts_nothing(void **state) {
     (void)state;
     assert_int_equal(allotment_of_groups("absent"), 0);
@@ -98,6 +117,15 @@ static void slurm_by_task_and_node(void **state) {
     assert_int_equal(allotment_of_slurm("99999999999999999999", "2"), 2);
 }
 
+static void memory_of_slurm_by_node_and_processor(void **state) {
+    (void)state;
+    assert_true(allotment_memory_of_slurm(NULL, NULL, "4") == 0);
+    assert_true(allotment_memory_of_slurm("4096", NULL, "4") == 0x1p32);
+    assert_true(allotment_memory_of_slurm(NULL, "1024", "4") == 0x1p32);
+    assert_true(allotment_memory_of_slurm(NULL, "1024", NULL) == 0); /* of how many? */
+    assert_true(allotment_memory_of_slurm("0", "x", "2") == 0);      /* 0: all of the node's */
+}
+
 static void the_least_holds(void **state) {
     (void)state;
     unsetenv("SLURM_CPUS_ON_NODE");
@@ -109,6 +137,11 @@ static void the_least_holds(void **state) {
     setenv("SLURM_CPUS_ON_NODE", "4096", 1);
     assert_int_equal(allotment_threads(), own);
     unsetenv("SLURM_CPUS_ON_NODE");
+    double memory = allotment_memory();
+    assert_true(memory > 0);
+    setenv("SLURM_MEM_PER_NODE", "1", 1);
+    assert_true(allotment_memory() == 0x1p20);
+    unsetenv("SLURM_MEM_PER_NODE");
 }
 
 int main(void) {
@@ -116,8 +149,10 @@ int main(void) {
         cmocka_unit_test(version_two_by_its_groups),
         cmocka_unit_test(version_one_by_the_cpu_controller),
         cmocka_unit_test(a_container_by_what_is_mounted),
+        cmocka_unit_test(memory_by_groups_of_both_versions),
         cmocka_unit_test(nothing_mounted_restricts_nothing),
         cmocka_unit_test(slurm_by_task_and_node),
+        cmocka_unit_test(memory_of_slurm_by_node_and_processor),
         cmocka_unit_test(the_least_holds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,13 +1,21 @@
-#include "worker/allotment.h"
+#include "jobs/allotment.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <sched.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { PATH_MOST = 4096, LINE_MOST = 8192, PROCESSORS_MOST = 1 << 20 };
+
+/* A resource that control groups limit, and the limit of the group of a folder; INFINITY: none. */
+struct resource {
+    const char *controller; /* of version 1 */
+    double (*limit)(const char *folder);
+};
 
 /* 0 is no limit. */
 static unsigned least_of(unsigned a, unsigned b) {
@@ -31,38 +39,47 @@ static bool read_line(const char *folder, const char *name, char *line, size_t s
 }
 
 /* Half a processor runs one thread, one and a half run two. */
-static unsigned processors_of(double quota, double period) {
+static double processors_of(double quota, double period) {
     double count = period > 0 ? quota / period : 0;
-    if (!(count > 0) || count >= PROCESSORS_MOST)
-        return 0;
-    unsigned whole = (unsigned)count;
-    return whole < count ? whole + 1 : whole;
+    return count > 0 && count < PROCESSORS_MOST ? ceil(count) : INFINITY;
 }
 
 /* Reads the quota of a group. cpu.max of version 2 holds "QUOTA PERIOD" or "max PERIOD"; version 1
  * has a file for each, and -1 for no quota. */
-static unsigned quota_of(const char *folder) {
+static double quota_of(const char *folder) {
     char quota[64], period[64], *rest;
     if (read_line(folder, "cpu.max", quota, sizeof quota)) {
         double allowed = strtod(quota, &rest);
-        return rest != quota ? processors_of(allowed, strtod(rest, NULL)) : 0;
+        return rest != quota ? processors_of(allowed, strtod(rest, NULL)) : INFINITY;
     }
     if (!read_line(folder, "cpu.cfs_quota_us", quota, sizeof quota) ||
         !read_line(folder, "cpu.cfs_period_us", period, sizeof period))
-        return 0;
+        return INFINITY;
     return processors_of(strtod(quota, NULL), strtod(period, NULL));
 }
 
-/* Returns the least quota of a group and of all above it, as far as they are mounted. */
-static unsigned quota_upward(const char *mounted, const char *group) {
+/* Reads the bytes that a group may have: "max" of version 2, and a number beyond all memory of
+ * version 1, are no limit. */
+static double bytes_of(const char *folder) {
+    char text[64];
+    if (!read_line(folder, "memory.max", text, sizeof text) &&
+        !read_line(folder, "memory.limit_in_bytes", text, sizeof text))
+        return INFINITY;
+    double bytes = strtod(text, NULL);
+    return bytes > 0 && bytes < 0x1p62 ? bytes : INFINITY;
+}
+
+/* Returns the least limit of a group and of all above it, as far as they are mounted. */
+static double limit_upward(const struct resource *resource, const char *mounted,
+                           const char *group) {
     char folder[PATH_MOST];
     size_t base = strlen(mounted);
-    unsigned least = 0;
+    double least = INFINITY;
     int length = snprintf(folder, sizeof folder, "%s%s", mounted, group);
     if (length < 0 || (size_t)length >= sizeof folder)
-        return 0;
+        return least;
     for (;;) {
-        least = least_of(least, quota_of(folder));
+        least = fmin(least, resource->limit(folder));
         char *slash = strrchr(folder, '/');
         if (slash == NULL || slash < folder + base)
             return least;
@@ -83,9 +100,10 @@ static bool has_word(const char *list, const char *word) {
     return false;
 }
 
-/* Finds the process's group of the hierarchy that limits processors. "0::PATH" is that of version
+/* Finds the process's group of the hierarchy that limits a resource. "0::PATH" is that of version
  * 2, "N:cpu,cpuacct:PATH" one of version 1. */
-static bool group_find(const char *root, bool unified, char *group, size_t size) {
+static bool group_find(const struct resource *resource, const char *root, bool unified, char *group,
+                       size_t size) {
     char path[PATH_MOST], line[LINE_MOST];
     bool found = false;
     snprintf(path, sizeof path, "%.1000s/proc/self/cgroup", root);
@@ -96,7 +114,8 @@ static bool group_find(const char *root, bool unified, char *group, size_t size)
         if (at == NULL)
             continue;
         *list++ = *at++ = '\0';
-        found = unified ? strcmp(line, "0") == 0 && *list == '\0' : has_word(list, "cpu");
+        found = unified ? strcmp(line, "0") == 0 && *list == '\0'
+                        : has_word(list, resource->controller);
         if (found)
             snprintf(group, size, "%s", strcmp(at, "/") == 0 ? "" : at);
     }
@@ -106,8 +125,9 @@ static bool group_find(const char *root, bool unified, char *group, size_t size)
 }
 
 /* Reads a line of mountinfo: ID PARENT DEVICE ROOT POINT OPTIONS [TAGS] - TYPE SOURCE OPTIONS.
- * Returns ROOT and POINT where it mounts the hierarchy that limits processors. */
-static bool mount_read(char *line, bool *unified, char **top, char **point) {
+ * Returns ROOT and POINT where it mounts the hierarchy that limits a resource. */
+static bool mount_read(const struct resource *resource, char *line, bool *unified, char **top,
+                       char **point) {
     char *tail = strstr(line, " - "), *next = NULL;
     if (tail == NULL)
         return false;
@@ -117,7 +137,7 @@ static bool mount_read(char *line, bool *unified, char **top, char **point) {
     const char *options = strtok_r(NULL, " \n", &next);
     bool first = type != NULL && strcmp(type, "cgroup") == 0;
     *unified = type != NULL && strcmp(type, "cgroup2") == 0;
-    if (!*unified && !(first && options != NULL && has_word(options, "cpu")))
+    if (!*unified && !(first && options != NULL && has_word(options, resource->controller)))
         return false;
     (void)strtok_r(line, " ", &next);
     for (int skipped = 0; skipped < 2; skipped++)
@@ -129,35 +149,47 @@ static bool mount_read(char *line, bool *unified, char **top, char **point) {
 
 /* In a container the mount shows a part of the hierarchy, from its ROOT on. A group that is not
  * below it is one of another name space: then the top of the mount is the process's group. */
-static unsigned quota_of_mount(const char *root, bool unified, const char *top, const char *point) {
+static double limit_of_mount(const struct resource *resource, const char *root, bool unified,
+                             const char *top, const char *point) {
     char group[PATH_MOST], mounted[PATH_MOST];
-    if (!group_find(root, unified, group, sizeof group))
-        return 0;
+    if (!group_find(resource, root, unified, group, sizeof group))
+        return INFINITY;
     size_t shown = strcmp(top, "/") == 0 ? 0 : strlen(top);
     const char *below = strncmp(group, top, shown) == 0 ? group + shown : "";
     if (*below != '/' || strstr(below, "/..") != NULL)
         below = "";
     int length = snprintf(mounted, sizeof mounted, "%s%s", root, point);
-    return length > 0 && (size_t)length < sizeof mounted ? quota_upward(mounted, below) : 0;
+    return length > 0 && (size_t)length < sizeof mounted ? limit_upward(resource, mounted, below)
+                                                         : INFINITY;
 }
 
-unsigned allotment_of_groups(const char *root) {
+static double limit_of_groups(const struct resource *resource, const char *root) {
     char path[PATH_MOST], line[LINE_MOST];
-    unsigned least = 0;
+    double least = INFINITY;
     snprintf(path, sizeof path, "%.1000s/proc/self/mountinfo", root);
     FILE *file = fopen(path, "re");
     while (file != NULL && fgets(line, sizeof line, file) != NULL) {
         bool unified = false;
         char *top = NULL, *point = NULL;
-        if (mount_read(line, &unified, &top, &point))
-            least = least_of(least, quota_of_mount(root, unified, top, point));
+        if (mount_read(resource, line, &unified, &top, &point))
+            least = fmin(least, limit_of_mount(resource, root, unified, top, point));
     }
     if (file != NULL)
         fclose(file);
-    return least;
+    return isfinite(least) ? least : 0;
 }
 
-/* --- Slurm and affinity --- */
+unsigned allotment_of_groups(const char *root) {
+    static const struct resource PROCESSORS = {"cpu", quota_of};
+    return (unsigned)limit_of_groups(&PROCESSORS, root);
+}
+
+double allotment_memory_of_groups(const char *root) {
+    static const struct resource MEMORY = {"memory", bytes_of};
+    return limit_of_groups(&MEMORY, root);
+}
+
+/* --- Slurm, affinity and the machine --- */
 
 static unsigned count_of(const char *text) {
     char *end;
@@ -169,6 +201,13 @@ static unsigned count_of(const char *text) {
 
 unsigned allotment_of_slurm(const char *per_task, const char *on_node) {
     return least_of(count_of(per_task), count_of(on_node));
+}
+
+double allotment_memory_of_slurm(const char *per_node, const char *per_cpu, const char *on_node) {
+    double node = per_node != NULL ? strtod(per_node, NULL) : 0;
+    double cpu = per_cpu != NULL ? strtod(per_cpu, NULL) : 0;
+    double mebibytes = node > 0 ? node : cpu > 0 ? cpu * count_of(on_node) : 0;
+    return isfinite(mebibytes) ? 0x1p20 * mebibytes : 0;
 }
 
 /* A mask of more processors than cpu_set_t holds needs a larger set. */
@@ -192,4 +231,19 @@ unsigned allotment_threads(void) {
     least = least_of(
         least, allotment_of_slurm(getenv("SLURM_CPUS_PER_TASK"), getenv("SLURM_CPUS_ON_NODE")));
     return least > 0 ? least : 1;
+}
+
+double allotment_memory(void) {
+    long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
+    const double limits[] = {
+        pages > 0 && page > 0 ? (double)pages * (double)page : 0,
+        allotment_memory_of_groups(""),
+        allotment_memory_of_slurm(getenv("SLURM_MEM_PER_NODE"), getenv("SLURM_MEM_PER_CPU"),
+                                  getenv("SLURM_CPUS_ON_NODE")),
+    };
+    double least = INFINITY;
+    for (size_t n = 0; n < sizeof limits / sizeof *limits; n++)
+        if (limits[n] > 0)
+            least = fmin(least, limits[n]);
+    return isfinite(least) ? least : 0;
 }
