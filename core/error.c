@@ -1,10 +1,19 @@
 #include "core/error.h"
 #include "core/plain_text.h"
+#include "core/point_locale.h"
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* As vsnprintf, with a decimal point. */
+static int print_text(char *to, size_t size, const char *format, va_list arguments) {
+    locale_t before = point_locale_begin(); /* without memory for it, a comma is no harm */
+    int length = vsnprintf(to, size, format, arguments);
+    point_locale_end(before);
+    return length;
+}
 
 void error_fill(struct error *err, int code, const char *format, ...) {
     if (err == NULL)
@@ -12,7 +21,7 @@ void error_fill(struct error *err, int code, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
     err->code = code;
-    vsnprintf(err->text, sizeof err->text, format, arguments);
+    print_text(err->text, sizeof err->text, format, arguments);
     va_end(arguments);
     text_make_plain(err->text);
 }
@@ -23,7 +32,7 @@ int error_context(struct error *err, const char *format, ...) {
     char context[sizeof err->text];
     va_list arguments;
     va_start(arguments, format);
-    int length = vsnprintf(context, sizeof context - 2, format, arguments);
+    int length = print_text(context, sizeof context - 2, format, arguments);
     va_end(arguments);
     if (length < 0)
         return err->code;

@@ -16,6 +16,10 @@
  * plans are made behind a lock of the library. A program that makes such plans itself, in other
  * threads, calls fftw_make_planner_thread_safe.
  *
+ * Locale. Numbers in files and errors have a decimal point, whatever the program's locale. No
+ * locale is changed but the calling thread's, during a call. An error may quote the system in the
+ * program's language.
+ *
  * Choices (enum rugo_...) are listed and explained in rugo_lists.h, which the program reads as
  * well.
  *

@@ -1,6 +1,7 @@
 #include "core/map/height_map_file.h"
 #include "core/map/height_map.h"
 #include "core/map/height_map_npy.h"
+#include "core/point_locale.h"
 #include <errno.h>
 #include <math.h>
 #include <stdint.h>
@@ -238,6 +239,11 @@ enum height_map_format height_map_format_of(const char *name) {
     return format;
 }
 
+/* Reports that texts of numbers could not be given a decimal point. */
+static int refuse_locale(struct error *err) {
+    return error_set(err, ERROR_MEMORY, "cannot allocate the locale that texts are read in");
+}
+
 int height_map_parse(struct height_map *out, enum height_map_format format, const char *text,
                      size_t size, double dx, struct error *err) {
     struct height_map map = {0};
@@ -245,12 +251,16 @@ int height_map_parse(struct height_map *out, enum height_map_format format, cons
     dx = dx == 0 ? 1 : dx;
     if (!(dx > 0 && isfinite(dx)))
         return error_set(err, ERROR_INPUT, "the spacing of points must be above 0, not %g", dx);
+    locale_t before = point_locale_begin();
+    if (before == (locale_t)0)
+        return refuse_locale(err);
     if (format == HEIGHT_MAP_NPY)
         status = height_map_npy_parse(&map, text, size, dx, err);
     else if (format == HEIGHT_MAP_CSV)
         status = height_map_csv_parse(&map, text, size, dx, err);
     else
         status = height_map_xyz_parse(&map, text, size, err);
+    point_locale_end(before);
     if (status != 0)
         height_map_clear(&map);
     else
@@ -260,6 +270,9 @@ int height_map_parse(struct height_map *out, enum height_map_format format, cons
 
 int height_map_write(FILE *file, enum height_map_format format, const struct grid *grid,
                      const double *z, struct error *err) {
+    locale_t before = point_locale_begin();
+    if (before == (locale_t)0)
+        return refuse_locale(err);
     errno = 0;
     if (format == HEIGHT_MAP_NPY)
         height_map_npy_write(file, grid, z);
@@ -267,8 +280,11 @@ int height_map_write(FILE *file, enum height_map_format format, const struct gri
         height_map_csv_write(file, grid, z);
     else
         height_map_xyz_write(file, grid, z);
-    if (fflush(file) != 0 || ferror(file) != 0)
+    bool failed = fflush(file) != 0 || ferror(file) != 0;
+    int reason = errno;
+    point_locale_end(before);
+    if (failed)
         return error_set(err, ERROR_SYSTEM, "cannot write the surface: %s",
-                         errno != 0 ? strerror(errno) : "the write failed");
+                         reason != 0 ? strerror(reason) : "the write failed");
     return 0;
 }

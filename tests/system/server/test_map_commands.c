@@ -2,6 +2,7 @@
  * pressed and converted, in their units. */
 #include "schema/json/json.h"
 #include "tests/support/check.h"
+#include "tests/support/comma_locale.h"
 #include "tests/support/process.h"
 #include "tests/support/small_studies.h"
 #include <cjson/cJSON.h>
@@ -312,6 +313,26 @@ static void wrong_steps_and_ranges_are_refused(void **state) {
     assert_true(contains("shell.err", "cannot open no/such.csv"));
 }
 
+/* The program has no locale but "C": numbers are read and written with a point, whatever the
+ * environment asks for. */
+static void a_comma_in_the_environment_changes_nothing(void **state) {
+    (void)state;
+    if (!comma_locale_make()) {
+        print_message("skipped: localedef makes no locale here\n");
+        skip();
+    }
+    assert_int_equal(
+        run_shell("all() { $RUGO check one.json && $RUGO curves one --db l.db && "
+                  "$RUGO plot one --db l.db --quantity psd -o l.svg && cat l.svg && "
+                  "$RUGO generate one.json -o l.csv && cat l.csv && "
+                  "$RUGO characterise l.csv --dx 0.125 && "
+                  "$RUGO press l.csv --dx 0.125 --loads 0.1 --format csv; } && "
+                  "LC_ALL=comma $RUGO run --db l.db one.json && "
+                  "(export LC_ALL=C; all) >point.txt && (export LC_ALL=comma; all) >comma.txt && "
+                  "cmp point.txt comma.txt && grep -q 0.125 comma.txt"),
+        0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_surface_goes_out_and_in),
@@ -323,6 +344,7 @@ int main(void) {
         cmocka_unit_test(a_measured_map_is_pressed_in_units),
         cmocka_unit_test(steps_and_ranges_are_written),
         cmocka_unit_test(wrong_steps_and_ranges_are_refused),
+        cmocka_unit_test(a_comma_in_the_environment_changes_nothing),
     };
     return cmocka_run_group_tests(tests, setup, NULL);
 }
