@@ -100,6 +100,12 @@ int store_wait(void *context, int tries);
 int version_check_layout(struct store *store, char *fault, size_t size, struct error *err);
 
 int store_error(struct store *store, struct error *err); /* from SQLite's last error */
+/* Sets an error that says which folder or file of the store this user may not use, as SQLite could
+ * not open or write it. reason: an errno, or 0; what: SQLite's words. Returns ERROR_SYSTEM. */
+int store_refused(const struct store *store, int reason, const char *what, struct error *err);
+/* Sets an error for SQLITE_IOERR of a database of that name. reason: errno as the call of SQLite
+ * left it, as sqlite3_system_errno is 0 when a commit fails. Returns ERROR_SYSTEM. */
+int disk_error(int reason, const char *database, const char *what, struct error *err);
 int64_t store_now(const struct store *store);
 /* Returns the time in UTC, ISO 8601; valid until the next call. */
 const char *store_time(struct store *store);

@@ -12,7 +12,8 @@
 
 /* --- opening --- */
 
-static int check_file_system(const char *path, struct error *err) {
+static int check_file_system(const struct store *store, struct error *err) {
+    const char *path = store->path;
     struct statfs info;
     char folder[4096];
     snprintf(folder, sizeof folder, "%s", path);
@@ -20,7 +21,7 @@ static int check_file_system(const char *path, struct error *err) {
     if (slash != NULL)
         slash[slash == folder] = 0;
     if (statfs(slash != NULL ? folder : ".", &info) != 0)
-        return error_set(err, ERROR_SYSTEM, "database %s: %s", path, strerror(errno));
+        return store_refused(store, errno, "", err);
     static const long NETWORK[] = {NFS_SUPER_MAGIC,
                                    SMB_SUPER_MAGIC,
                                    0xff534d42 /* cifs */,
@@ -324,13 +325,15 @@ static int open_file(struct store *store, struct error *err) {
     flags |= store->options.read_only ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE;
     struct stat info;
     bool exists = stat(store->path, &info) == 0;
+    if (!exists && errno != ENOENT)
+        return store_refused(store, errno, "", err);
     if (!exists && (store->options.read_only || store->options.existing))
         return error_set(err, ERROR_ABSENT, "there is no database %s", store->path);
     if (exists && !S_ISREG(info.st_mode))
         return error_set(err, ERROR_INPUT, "database %s is not a file", store->path);
     if (!exists)
         flags |= SQLITE_OPEN_CREATE;
-    int status = check_file_system(store->path, err);
+    int status = check_file_system(store, err);
     if (status == 0)
         status = files_check_before(store->path, err);
     bool moved = true;
@@ -338,9 +341,10 @@ static int open_file(struct store *store, struct error *err) {
         sqlite3_close(store->db);
         store->db = NULL;
         int code = sqlite3_open_v2(store->path, &store->db, flags, NULL);
+        if (code == SQLITE_NOMEM)
+            return error_memory(err, sizeof *store, "a database");
         if (code != SQLITE_OK)
-            return error_set(err, code == SQLITE_NOMEM ? ERROR_MEMORY : ERROR_SYSTEM,
-                             "database %s cannot be opened: %s", store->path, sqlite3_errstr(code));
+            return store_refused(store, sqlite3_system_errno(store->db), sqlite3_errstr(code), err);
         status = files_check_opened(store, &moved, err);
     }
     if (status == 0)

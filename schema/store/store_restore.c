@@ -36,8 +36,8 @@ static bool has_bytes(const char *path, const char *suffix) {
            info.st_size > 0;
 }
 
-static int system_error(const char *path, struct error *err) {
-    return error_set(err, ERROR_SYSTEM, "%s: %s", path, strerror(errno));
+static int system_error(const char *verb, const char *path, struct error *err) {
+    return error_set(err, ERROR_SYSTEM, "cannot %s %s: %s", verb, path, strerror(errno));
 }
 
 /* --- the copy --- */
@@ -74,11 +74,11 @@ static int copy_bytes(int from, const char *backup, const struct part_file *part
         }
         got = read(from, bytes, STEP);
         if (got < 0)
-            status = system_error(backup, err);
+            status = system_error("read", backup, err);
         for (ssize_t done = 0, more; status == 0 && done < got; done += more) {
             more = write(part->file, bytes + done, (size_t)(got - done));
             if (more <= 0)
-                status = system_error(part->path, err);
+                status = system_error("write", part->path, err);
         }
     }
     free(bytes);
@@ -92,18 +92,18 @@ static int keep_owner(int file, const char *database, struct error *err) {
     bool exists = stat(database, &info) == 0;
     snprintf(folder, sizeof folder, "%.*s.", (int)(name_of(database) - database), database);
     if (!exists && stat(folder, &info) != 0)
-        return system_error(folder, err);
+        return system_error("find folder", folder, err);
     if (fchmod(file, exists ? info.st_mode & 07777 : 0600) != 0)
-        return system_error(database, err);
+        return system_error("give its mode to the copy of", database, err);
     return geteuid() != 0 || fchown(file, info.st_uid, info.st_gid) == 0
                ? 0
-               : system_error(database, err);
+               : system_error("give its owner to the copy of", database, err);
 }
 
 static int finish_copy(const struct part_file *part, const char *database, struct error *err) {
     struct stat info;
     if (fstat(part->file, &info) != 0 || fsync(part->file) != 0)
-        return system_error(part->path, err);
+        return system_error("bring to the disk", part->path, err);
     int status = store_file_check(part->file, (uint64_t)info.st_size, err);
     return status != 0 ? status : keep_owner(part->file, database, err);
 }
@@ -118,7 +118,7 @@ int restore_copy(struct part_file *part, const char *backup, const char *databas
     if (status == 0)
         status = check_backup(backup, database, &info, err);
     if (status == 0 && (file = open(backup, O_RDONLY | O_CLOEXEC)) < 0)
-        status = system_error(backup, err);
+        status = system_error("read", backup, err);
     if (status == 0)
         status = part_file_create(part, target, err);
     if (status == 0) {
@@ -158,7 +158,7 @@ static int lock_database(const char *path, int *file, struct error *err) {
     struct flock lock = ALONE;
     *file = open(path, O_RDWR | O_CLOEXEC);
     if (*file < 0)
-        return errno == ENOENT ? 0 : system_error(path, err);
+        return errno == ENOENT ? 0 : system_error("write", path, err);
     return fcntl(*file, F_OFD_SETLK, &lock) == 0 ? 0 : refuse_open(*file, path, err);
 }
 
@@ -174,7 +174,7 @@ static int move_beside(const char *database, const char *folder, bool *moved, st
         if (status == 0 && rename(from, to) == 0)
             *moved = true;
         else if (status == 0 && errno != ENOENT)
-            status = system_error(from, err);
+            status = system_error("move", from, err);
     }
     return status;
 }

@@ -13,10 +13,15 @@ enum { STEP_PAGES = 1024 /* 4 MiB between two calls of stop */ };
 
 static int copy_error(const struct store *store, sqlite3 *copy, const char *path, int code,
                       struct error *err) {
+    int reason = errno;
+    bool said = copy != NULL && sqlite3_errcode(copy) == code;
+    if (said && (code & 0xff) == SQLITE_IOERR) {
+        disk_error(reason, path, sqlite3_errmsg(copy), err);
+        return error_context(err, "copying %s", store->path);
+    }
     return error_set(err, code == SQLITE_NOMEM ? ERROR_MEMORY : ERROR_SYSTEM,
                      "copying %s to %s: %s", store->path, path,
-                     copy != NULL && sqlite3_errcode(copy) == code ? sqlite3_errmsg(copy)
-                                                                   : sqlite3_errstr(code));
+                     said ? sqlite3_errmsg(copy) : sqlite3_errstr(code));
 }
 
 static int copy_pages(struct store *store, sqlite3 *copy, const char *path,

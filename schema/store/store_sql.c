@@ -1,26 +1,15 @@
 /* Calls of SQLite: errors, statements prepared once, transactions. */
 #include "schema/store/store_internal.h"
+#include <errno.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 #include <time.h>
 
-/* SQLite does not say that a file met the limit of its length: where there is one, it is named. */
-static int error_of_disk(const struct store *store, const char *what, struct error *err) {
-    struct rlimit limit;
-    if (getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
-        return error_set(err, ERROR_SYSTEM, "database %s: %s", store->path, what);
-    return error_set(err, ERROR_SYSTEM,
-                     "database %s: %s; this process may write files of up to %llu bytes (ulimit "
-                     "-f)",
-                     store->path, what, (unsigned long long)limit.rlim_cur);
-}
-
 int store_error(struct store *store, struct error *err) {
-    int code = sqlite3_errcode(store->db);
+    int reason = errno, code = sqlite3_errcode(store->db);
     const char *what = sqlite3_errmsg(store->db);
     switch (code & 0xff) {
     case SQLITE_NOMEM:
@@ -35,7 +24,7 @@ int store_error(struct store *store, struct error *err) {
     case SQLITE_FULL:
         return error_set(err, ERROR_SYSTEM, "the disk of database %s is full", store->path);
     case SQLITE_IOERR:
-        return error_of_disk(store, what, err);
+        return disk_error(reason, store->path, what, err);
     case SQLITE_READONLY:
     case SQLITE_CANTOPEN:
         if (code == SQLITE_READONLY_ROLLBACK)
@@ -44,14 +33,8 @@ int store_error(struct store *store, struct error *err) {
                              "undone first from %.150s-journal: open it once by a command that "
                              "writes, such as rugo repair --db %.150s",
                              store->path, store->path, store->path);
-        if (store->options.read_only)
-            return error_set(err, ERROR_SYSTEM,
-                             "database %.150s cannot be read here: readers, too, need %.150s-wal "
-                             "and -shm beside it, and permission to write them. Read as its owner, "
-                             "or read a copy by rugo snapshot",
-                             store->path, store->path);
-        return error_set(err, ERROR_SYSTEM, "database %s cannot be written: read-only",
-                         store->path);
+        return store_refused(store, reason == EMFILE || reason == ENFILE ? reason : 0,
+                             "it is read-only", err);
     case SQLITE_CORRUPT:
     case SQLITE_NOTADB:
         return error_set(err, ERROR_SYSTEM, "database %s is damaged or no database: %s",

@@ -51,7 +51,10 @@ int output_file_drawn(const char *path, const char *svg, size_t size, struct err
         status = file_open(&file, path, err);
     if (status != 0)
         return status;
-    status = file_close(file, path, write_drawn(path, svg, size, file, err), err);
+    status = write_drawn(path, svg, size, file, err);
+    if (status != 0)
+        error_context(err, "%s", path);
+    status = file_close(file, path, status, err);
     if (status != 0)
         (void)unlink(path);
     return status;

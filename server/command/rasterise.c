@@ -6,13 +6,13 @@
 
 static int convert(const char *const *arguments, const char *svg, size_t size, FILE *out,
                    struct error *err) {
-    FILE *file = tmpfile();
+    FILE *file = tool_file(err);
     if (file == NULL)
-        return error_set(err, ERROR_SYSTEM, "a temporary file: %s", strerror(errno));
+        return ERROR_SYSTEM;
     bool written =
         fwrite(svg, 1, size, file) == size && fflush(file) == 0 && fseek(file, 0, SEEK_SET) == 0;
     int status = written ? tool_convert(arguments, fileno(file), fileno(out), err)
-                         : error_set(err, ERROR_SYSTEM, "a temporary file: %s", strerror(errno));
+                         : error_set(err, ERROR_SYSTEM, "a file in memory: %s", strerror(errno));
     (void)fclose(file);
     return status == 0 ? 0
                        : error_context(err, "pixels, PDF and EPS need rsvg-convert (of librsvg, on "

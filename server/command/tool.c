@@ -5,18 +5,19 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 enum { OUTPUT_MOST = 1 << 24 };
 
-/* Reads what was written into a temporary file; the caller frees. */
+/* Reads what was written into a file of tool_file; the caller frees. */
 static int read_back(FILE *file, char **text, struct error *err) {
     size_t size = 0;
     int number = fileno(file);
     return lseek(number, 0, SEEK_SET) == 0
                ? whole_file_take(number, "what a program printed", OUTPUT_MOST, text, &size, err)
-               : error_set(err, ERROR_SYSTEM, "a temporary file: %s", strerror(errno));
+               : error_set(err, ERROR_SYSTEM, "a file in memory: %s", strerror(errno));
 }
 
 /* What a program said that failed: its last 300 bytes, in one line. */
@@ -54,19 +55,30 @@ static int run_with(const char *const *arguments, const int files[3], FILE *said
                : tell_failure(arguments[0], state, said, err);
 }
 
+FILE *tool_file(struct error *err) {
+    int number = memfd_create("rugo", MFD_CLOEXEC);
+    FILE *file = number < 0 ? NULL : fdopen(number, "w+b");
+    if (file == NULL) {
+        error_set(err, ERROR_SYSTEM, "a file in memory: %s", strerror(errno));
+        if (number >= 0)
+            close(number);
+    }
+    return file;
+}
+
 int tool_convert(const char *const *arguments, int from, int to, struct error *err) {
-    FILE *said = tmpfile();
+    FILE *said = tool_file(err);
     if (said == NULL)
-        return error_set(err, ERROR_SYSTEM, "a temporary file: %s", strerror(errno));
+        return ERROR_SYSTEM;
     int status = run_with(arguments, (const int[]){from, to, fileno(said)}, said, err);
     (void)fclose(said);
     return status;
 }
 
 int tool_run(const char *const *arguments, char **out, struct error *err) {
-    FILE *printed = tmpfile();
+    FILE *printed = tool_file(err);
     if (printed == NULL)
-        return error_set(err, ERROR_SYSTEM, "a temporary file: %s", strerror(errno));
+        return ERROR_SYSTEM;
     int status = tool_convert(arguments, -1, fileno(printed), err);
     if (status == 0 && out != NULL)
         status = read_back(printed, out, err);

@@ -152,7 +152,7 @@ static int write_plots(const struct study_result *study, const char *folder, str
 int output_prepare(const char *folder, struct error *err) {
     char path[PATH_SIZE];
     if (mkdir(folder, 0777) != 0 && errno != EEXIST)
-        return error_set(err, ERROR_SYSTEM, "folder %s: %s", folder, strerror(errno));
+        return error_set(err, ERROR_SYSTEM, "cannot make folder %s: %s", folder, strerror(errno));
     if (snprintf(path, sizeof path, "%s/.rugo-XXXXXX", folder) >= (int)sizeof path)
         return error_set(err, ERROR_INPUT, "the path %.100s... is too long", folder);
     int file = mkstemp(path);

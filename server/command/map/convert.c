@@ -36,6 +36,8 @@ static int write_map(const char *path, const struct height_map *map,
     if (format != HEIGHT_MAP_NPY)
         write_header(file, format, map, record);
     status = height_map_write(file, format, &map->grid, map->z, err);
+    if (status != 0)
+        error_context(err, "%s", path);
     return file_close(file, path, status, err);
 }
 

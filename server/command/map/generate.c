@@ -145,6 +145,8 @@ static int write_file(const struct generate_order *order, const char *path, cons
     if (status != 0)
         return status;
     status = height_map_write(file, order->format, grid, z, err);
+    if (status != 0)
+        error_context(err, "%s", path);
     return file_close(file, path, status, err);
 }
 

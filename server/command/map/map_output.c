@@ -34,5 +34,7 @@ int map_output_write(const char *path, const struct map_picture *labels, const s
         return status;
     status = height_map_write(file, format == HEIGHT_MAP_FORMATS ? HEIGHT_MAP_NPY : format, grid,
                               values, err);
+    if (status != 0)
+        error_context(err, "%s", path);
     return file_close(file, path, status, err);
 }

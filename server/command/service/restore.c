@@ -100,7 +100,7 @@ static int make_folder(char folder[KEPT_PATH_SIZE], const char *database, bool d
         return error_set(err, ERROR_INPUT, "the path %.200s... is too long", database);
     status = kept_name(folder, before, "", err);
     if (status == 0 && mkdir(folder, 0700) != 0)
-        status = error_set(err, ERROR_SYSTEM, "%s: %s", folder, strerror(errno));
+        status = error_set(err, ERROR_SYSTEM, "cannot make folder %s: %s", folder, strerror(errno));
     return status;
 }
 

@@ -137,7 +137,7 @@ static int write_archive(struct access *access, const char *id, const struct res
                  out->path != NULL ? out->path : "") >= (int)sizeof folder)
         return error_set(err, ERROR_INPUT, "the path %.100s... is too long", out->path);
     if (mkdtemp(folder) == NULL)
-        return error_set(err, ERROR_SYSTEM, "folder %s: %s", folder, strerror(errno));
+        return error_set(err, ERROR_SYSTEM, "cannot make folder %s: %s", folder, strerror(errno));
     status = pack(access, id, folder, out, err);
     remove_folder(folder);
     return status;

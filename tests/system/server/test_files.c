@@ -195,6 +195,50 @@ static void readers_are_given_the_reason(void **state) {
     assert_int_equal(run_shell("rm -f s.db.before-*"), 0);
 }
 
+/* Makes a folder for somebody who may write nothing of it but `own`; its name stands in
+ * plain.folder. as_plain runs a command in it, without a home; root becomes nobody. */
+static const char MAKE_PLAIN[] =
+    "set -e; d=$(mktemp -d /tmp/rugo-plain-XXXXXX); echo $d >plain.folder; cp $RUGO $d/rugo\n"
+    "cp one.json $d; mkdir $d/ro $d/closed $d/own; for f in ro/s.db ro/secret.db closed/s.db "
+    "own/s.db; do cp s.db $d/$f; done; : >$d/own/s.db-wal; chmod 444 $d/one.json $d/ro/s.db; "
+    "chmod 666 $d/own/s.db; chmod 0 $d/own/s.db-wal $d/ro/secret.db $d/closed; chmod 777 $d/own; "
+    "chmod 755 $d; chmod 555 $d/ro\n";
+static const char AS_PLAIN[] =
+    "cd $(cat plain.folder); as=\n"
+    "[ $(id -u) -ne 0 ] || as='setpriv --reuid=65534 --regid=65534 --clear-groups'\n"
+    "env -u HOME $as ./rugo $*\n";
+
+/* SQLite says "unable to open database file" of all of them. */
+static void who_may_not_is_given_the_reason(void **state) {
+    (void)state;
+    static const struct {
+        const char *command, *words;
+    } REFUSED[] = {
+        {"submit --db none/s.db one.json", "database none/s.db: there is no folder none/"},
+        {"submit --db ro/new.db one.json", "may not make files in folder ro/, which belongs to"},
+        {"submit --db ro/s.db one.json", "database ro/s.db: user "},
+        {"submit --db ro/s.db one.json", " may not write ro/s.db, which belongs to user "},
+        {"status --db ro/secret.db", " may not read ro/secret.db, which belongs to user "},
+        {"status --db closed/s.db", " cannot enter folder closed/: Permission denied"},
+        {"work --db closed/s.db", " cannot enter folder closed/: Permission denied"},
+        {"submit --db own/s.db one.json", " may not write own/s.db-wal, which belongs to user "},
+        {"run --db own/new.db one.json --out ro/out", "cannot make folder ro/out: Permission"},
+    };
+    start("s.db");
+    end(SIGTERM);
+    spit("one.json", ONE_CASE);
+    spit("make_plain", MAKE_PLAIN);
+    spit("as_plain", AS_PLAIN);
+    check_shell("sh ./make_plain");
+    for (size_t r = 0; r < sizeof REFUSED / sizeof *REFUSED; r++) {
+        char line[100];
+        snprintf(line, sizeof line, "sh ./as_plain %s", REFUSED[r].command);
+        check_shell_refused(line, REFUSED[r].words);
+    }
+    check_shell(
+        "d=$(cat plain.folder); chmod -R u+rwx $d; rm -r $d plain.folder make_plain as_plain");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(a_copy_over_a_killed_store_is_refused, clear),
@@ -203,6 +247,7 @@ int main(void) {
         cmocka_unit_test_setup(a_log_that_is_gone_is_reported, clear),
         cmocka_unit_test_setup(a_database_that_was_cut_is_reported, clear),
         cmocka_unit_test_setup_teardown(readers_are_given_the_reason, clear, clear),
+        cmocka_unit_test_setup_teardown(who_may_not_is_given_the_reason, clear, clear),
     };
     return cmocka_run_group_tests(tests, NULL, clear);
 }

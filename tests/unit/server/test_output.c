@@ -98,7 +98,7 @@ static void a_folder_that_cannot_be_is_told(void **state) {
     struct study_result study = study_of_two();
     struct error err = {0};
     assert_int_not_equal(output_write(&study, "no/such/folder", &err), 0);
-    assert_string_equal(err.text, "folder no/such/folder: No such file or directory");
+    assert_string_equal(err.text, "cannot make folder no/such/folder: No such file or directory");
     study_result_clear(&study);
 }
 
