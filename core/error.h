@@ -21,6 +21,7 @@ enum {
     ERROR_STATE = -5,   /* refused by the state of a study or job: a lost lease, already ended */
     ERROR_ABSENT = -6,  /* no such study, job or case */
     ERROR_STOPPED = -7, /* asked to stop; nothing is wrong */
+    ERROR_LIMIT = -8,   /* a limit of this process, as of the length of its files: it stays */
 };
 
 struct error {

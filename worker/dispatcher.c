@@ -168,6 +168,15 @@ static void dispatcher_note_answer(struct dispatcher *dispatcher) {
     dispatcher->away_ms = 0;
 }
 
+/* Notes an error that no later try cures, unless there was one. The caller holds the lock. */
+static void end_by(struct dispatcher *dispatcher, const struct error *err) {
+    if (dispatcher->status == 0) {
+        dispatcher->status = err->code;
+        dispatcher->err = *err;
+    }
+    pthread_cond_broadcast(&dispatcher->offers);
+}
+
 /* --- reports, by the thread of the dispatcher: the lock is held, and released meanwhile --- */
 
 /* The dispatcher's reports: heartbeats first, which are small and must not be late, and then ends
@@ -293,23 +302,29 @@ static void settled(struct dispatcher *dispatcher, struct lease *lease) {
     lease->state = LEASE_GONE;
 }
 
-/* Handles a result that was refused: its job fails with the reason. If it is a part of a job, which
- * an older server does not take, it is dropped and the job released. */
+/* Handles a result that was refused: its job fails with the reason. The job is released if the
+ * result is a part of it, which an older server does not take, or too large for a limit of this
+ * process. */
 static void refuse_result(struct dispatcher *dispatcher, struct lease *lease,
                           const struct error *why) {
-    bool part = lease->end.result.count < lease->job.count;
+    bool back = lease->end.result.count < lease->job.count || why->code == ERROR_LIMIT;
     dispatcher->ended--;
     dispatcher->ended_bytes -= lease->bytes;
     block_result_clear(&lease->end.result);
     error_set(&lease->end.reason, ERROR_SYSTEM, "the result was refused: %.400s", why->text);
-    lease_end(dispatcher, lease, part ? REPORT_RELEASE : REPORT_FAIL);
-    lease_log(dispatcher, LEVEL_WARNING, lease, part ? "given back" : "failed",
+    lease_end(dispatcher, lease, back ? REPORT_RELEASE : REPORT_FAIL);
+    lease_log(dispatcher, LEVEL_WARNING, lease, back ? "given back" : "failed",
               lease->end.reason.text);
+}
+
+/* Returns whether the source could not take a report, and is not to blame the report for it. */
+static bool is_hindered(int status) {
+    return status == ERROR_SYSTEM || status == ERROR_MEMORY || status == ERROR_LIMIT;
 }
 
 static void settle_ended(struct dispatcher *dispatcher, struct lease *lease,
                          const struct report *report) {
-    bool later = report->status == ERROR_SYSTEM || report->status == ERROR_MEMORY;
+    bool later = is_hindered(report->status) && report->status != ERROR_LIMIT;
     if (report->status == 0) {
         settled(dispatcher, lease);
     } else if (report->status == ERROR_STATE) {
@@ -335,10 +350,10 @@ static void send_batch(struct dispatcher *dispatcher, struct batch *batch, bool 
     pthread_mutex_lock(&dispatcher->lock);
 }
 
-static bool any_later(const struct batch *batch, const struct error **err) {
+static bool any_hindered(const struct batch *batch, const struct error **err) {
     for (size_t n = 0; n < batch->count; n++) {
         *err = &batch->reports[n].err;
-        if (batch->reports[n].status == ERROR_SYSTEM || batch->reports[n].status == ERROR_MEMORY)
+        if (is_hindered(batch->reports[n].status))
             return true;
     }
     return false;
@@ -360,10 +375,12 @@ static void dispatcher_report(struct dispatcher *dispatcher) {
         batch_ended(dispatcher, batch);
     if (batch->count > 0)
         send_batch(dispatcher, batch, &due, &err);
-    if (any_later(batch, &why))
-        dispatcher_note_away(dispatcher, "not taken, to be sent again", why);
-    else
+    if (!any_hindered(batch, &why))
         dispatcher_note_answer(dispatcher);
+    else if (why->code == ERROR_LIMIT)
+        end_by(dispatcher, why);
+    else
+        dispatcher_note_away(dispatcher, "not taken, to be sent again", why);
     for (size_t n = 0; n < batch->count; n++) {
         if (beating)
             settle_beat(dispatcher, batch->leases[n], &batch->reports[n]);
@@ -483,9 +500,8 @@ static void claim(struct dispatcher *dispatcher) {
         return;
     }
     if (status != 0) {
-        dispatcher->status = status;
-        dispatcher->err = err;
-        pthread_cond_broadcast(&dispatcher->offers);
+        err.code = status;
+        end_by(dispatcher, &err);
         return;
     }
     dispatcher_note_answer(dispatcher);
@@ -682,6 +698,12 @@ void dispatcher_give_back(struct dispatcher *dispatcher) {
         }
     }
     pthread_cond_signal(&dispatcher->news);
+    pthread_mutex_unlock(&dispatcher->lock);
+}
+
+void dispatcher_fail(struct dispatcher *dispatcher, const struct error *err) {
+    pthread_mutex_lock(&dispatcher->lock);
+    end_by(dispatcher, err);
     pthread_mutex_unlock(&dispatcher->lock);
 }
 

@@ -35,6 +35,8 @@ void dispatcher_destroy(struct dispatcher **dispatcher);
 void dispatcher_end(struct dispatcher *dispatcher);
 /* Releases the jobs that still run, so that other workers can have them at once. */
 void dispatcher_give_back(struct dispatcher *dispatcher);
+/* Ends likewise, with an error that a later try cannot cure; it is copied. */
+void dispatcher_fail(struct dispatcher *dispatcher, const struct error *err);
 /* Returns the first error that a later try cannot cure, 0 before; nothing is offered after it. */
 int dispatcher_status(struct dispatcher *dispatcher, struct error *err);
 

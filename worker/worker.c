@@ -245,7 +245,9 @@ static bool pool_publish(struct worker_pool *pool, struct store **store) {
         *store != NULL ? 0 : store_open(store, pool->options->source.database, &existing, &err);
     if (status == 0)
         status = publish_due(*store, is_ending, pool, &counts, &err);
-    if (status != 0 && status != ERROR_STOPPED) {
+    if (status == ERROR_LIMIT) {
+        dispatcher_fail(pool->dispatcher, &err);
+    } else if (status != 0 && status != ERROR_STOPPED) {
         const struct log_about about = {.worker = pool->name};
         log_line(LEVEL_WARNING, &about, "cases are not published: %s", err.text);
     }

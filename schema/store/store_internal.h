@@ -104,7 +104,8 @@ int store_error(struct store *store, struct error *err); /* from SQLite's last e
  * not open or write it. reason: an errno, or 0; what: SQLite's words. Returns ERROR_SYSTEM. */
 int store_refused(const struct store *store, int reason, const char *what, struct error *err);
 /* Sets an error for SQLITE_IOERR of a database of that name. reason: errno as the call of SQLite
- * left it, as sqlite3_system_errno is 0 when a commit fails. Returns ERROR_SYSTEM. */
+ * left it, as sqlite3_system_errno is 0 when a commit fails. Returns ERROR_LIMIT where a file met
+ * the limit of this process, else ERROR_SYSTEM. */
 int disk_error(int reason, const char *database, const char *what, struct error *err);
 int64_t store_now(const struct store *store);
 /* Returns the time in UTC, ISO 8601; valid until the next call. */

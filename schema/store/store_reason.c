@@ -129,7 +129,7 @@ int disk_error(int reason, const char *database, const char *what, struct error 
                          (unsigned)geteuid(), database);
     case EFBIG:
         if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
-            return error_set(err, ERROR_SYSTEM,
+            return error_set(err, ERROR_LIMIT,
                              "database %s cannot grow: this process may write files of up to %llu "
                              "bytes (ulimit -f). Raise the limit, and start the program anew",
                              database, (unsigned long long)limit.rlim_cur);

@@ -223,7 +223,8 @@ void answer_error(struct exchange *exchange, const struct error *err) {
         status = 404;
     else if (err->code == ERROR_STATE)
         status = 409;
-    else if (err->code == ERROR_SYSTEM || err->code == ERROR_MEMORY || err->code == ERROR_STOPPED)
+    else if (err->code == ERROR_SYSTEM || err->code == ERROR_MEMORY || err->code == ERROR_STOPPED ||
+             err->code == ERROR_LIMIT)
         status = 503;
     if (status >= 500 &&
         err->code != ERROR_STOPPED) { /* the server's trouble: whoever runs it must see why */

@@ -39,7 +39,7 @@ enum { BATCH_MOST = 256, PROBE_MS = 2000 };
 
 /* Of the store itself, rather than of what was asked for. */
 static void note_failure(struct error *failure, int status, const struct error *error) {
-    if (status == ERROR_SYSTEM || status == ERROR_MEMORY)
+    if (status == ERROR_SYSTEM || status == ERROR_MEMORY || status == ERROR_LIMIT)
         *failure = *error;
 }
 

@@ -103,7 +103,8 @@ void wire_items_free(struct wire_item *items, size_t count) {
 static const struct {
     int code, status;
 } STATUSES[] = {{0, 200},           {ERROR_INPUT, 422},  {ERROR_ABSENT, 404},
-                {ERROR_STATE, 409}, {ERROR_SYSTEM, 503}, {ERROR_MEMORY, 503}};
+                {ERROR_STATE, 409}, {ERROR_SYSTEM, 503}, {ERROR_MEMORY, 503},
+                {ERROR_LIMIT, 503}};
 enum { STATUS_COUNT = sizeof STATUSES / sizeof *STATUSES };
 
 static int status_of(int code) {

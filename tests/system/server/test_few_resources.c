@@ -48,6 +48,20 @@ static void a_limit_of_file_length_is_named(void **state) {
     assert_true(contains("shell.err", "ulimit -f"));
 }
 
+/* A full disk may get room again, and is waited for; the limit of a process stays. */
+static void a_limit_that_stays_ends_the_work(void **state) {
+    (void)state;
+    static const char WORDS[] = "grown.db cannot grow: this process may write files of up to";
+    spit("blocks.json", SEVERAL_BLOCKS);
+    assert_int_equal(run_shell("$RUGO submit --db grown.db blocks.json"), 0);
+    assert_int_equal(
+        run_shell("ulimit -f 800; timeout 60 $RUGO work --db grown.db --workers 2 --drain"), 1);
+    assert_true(contains("shell.err", "rugo work: database") && contains("shell.err", WORDS));
+    assert_int_equal(
+        run_shell("ulimit -f 800; timeout 60 $RUGO run --db grown.db --workers 2 blocks.json"), 1);
+    assert_true(contains("shell.err", "rugo run: database") && contains("shell.err", WORDS));
+}
+
 static void wait_for_result(const char *database) {
     for (int tries = 0;; tries++) {
         assert_true(tries < 1200);
@@ -84,6 +98,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(few_files_are_refused_by_a_server),
                                        cmocka_unit_test(a_small_stack_is_no_crash),
                                        cmocka_unit_test(a_limit_of_file_length_is_named),
+                                       cmocka_unit_test(a_limit_that_stays_ends_the_work),
                                        cmocka_unit_test(a_hangup_ends_like_a_stop)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -143,7 +143,7 @@ static void full_disk_leaves_nothing(void **state) {
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &low), 0);
     int status = store_snapshot(*state, "copy.db", NULL, NULL, &err);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
-    assert_int_equal(status, ERROR_SYSTEM);
+    assert_int_equal(status, ERROR_LIMIT);
     assert_non_null(strstr(err.text, "copy.db"));
     assert_int_equal(count_files("copy.db*"), 0);
     assert_int_equal(store_snapshot(*state, "copy.db", NULL, NULL, NULL), 0);

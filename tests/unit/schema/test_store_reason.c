@@ -60,7 +60,7 @@ static void a_disk_that_takes_nothing_is_named(void **state) {
         {RLIM_INFINITY, "database s.db: disk I/O error", EIO, ERROR_SYSTEM},
         {1 << 30, "database s.db: disk I/O error", EIO, ERROR_SYSTEM},
         {RLIM_INFINITY, "its file system has no larger files", EFBIG, ERROR_SYSTEM},
-        {1 << 30, "may write files of up to 1073741824 bytes (ulimit -f)", EFBIG, ERROR_SYSTEM},
+        {1 << 30, "may write files of up to 1073741824 bytes (ulimit -f)", EFBIG, ERROR_LIMIT},
     };
     struct store *store = NULL;
     struct error err = {0};
