@@ -1,12 +1,14 @@
 #include "jobs/allotment.h"
 
 #include <ctype.h>
+#include <errno.h>
 #include <math.h>
 #include <sched.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 enum { PATH_MOST = 4096, LINE_MOST = 8192, PROCESSORS_MOST = 1 << 20 };
@@ -246,4 +248,26 @@ double allotment_memory(void) {
         if (limits[n] > 0)
             least = fmin(least, limits[n]);
     return isfinite(least) ? least : 0;
+}
+
+/* --- time --- */
+
+/* Pilots ask for SIGTERM a minute before, and Slurm may send it a minute earlier still. */
+enum { BEFORE_END_S = 120 };
+
+int64_t allotment_seconds_of_slurm(const char *end, int64_t now_s) {
+    char *rest;
+    if (end == NULL || !isdigit((unsigned char)*end))
+        return 0;
+    errno = 0;
+    long long end_s = strtoll(end, &rest, 10);
+    if (*rest != '\0' || errno != 0)
+        return 0;
+    return end_s - BEFORE_END_S > now_s ? end_s - BEFORE_END_S - now_s : 1;
+}
+
+int64_t allotment_seconds(void) {
+    enum { DAYS_MOST = 36500 };
+    int64_t left_s = allotment_seconds_of_slurm(getenv("SLURM_JOB_END_TIME"), (int64_t)time(NULL));
+    return left_s < 86400LL * DAYS_MOST ? left_s : 0;
 }

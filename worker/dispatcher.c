@@ -75,6 +75,7 @@ struct dispatcher {
     /* Of the source, as logged. */
     char other_forms[WIRE_FORMS_SIZE];
     bool drained, closing;
+    bool late;            /* the next job would not be done in time */
     atomic_bool ending;   /* read without the lock by claims that wait */
     struct backoff pause; /* between claims that find nothing */
     int64_t claim_ms;     /* time of the next claim */
@@ -519,8 +520,8 @@ static void claim(struct dispatcher *dispatcher) {
 
 /* Returns when the next claim is due; NEVER where none is. */
 static int64_t claim_due_ms(const struct dispatcher *dispatcher) {
-    if (atomic_load(&dispatcher->ending) || dispatcher->drained || dispatcher->status != 0 ||
-        dispatcher->waiting <= dispatcher->stock)
+    if (atomic_load(&dispatcher->ending) || dispatcher->drained || dispatcher->late ||
+        dispatcher->status != 0 || dispatcher->waiting <= dispatcher->stock)
         return NEVER;
     return dispatcher->claim_ms > dispatcher->away_ms ? dispatcher->claim_ms : dispatcher->away_ms;
 }
@@ -529,7 +530,7 @@ static int64_t claim_due_ms(const struct dispatcher *dispatcher) {
 
 /* Returns how many jobs may be in stock: those of a few seconds, as measured. */
 static size_t stock_most(const struct dispatcher *dispatcher) {
-    if (atomic_load(&dispatcher->ending))
+    if (atomic_load(&dispatcher->ending) || dispatcher->late)
         return 0;
     if (!(dispatcher->job_seconds > 0))
         return SIZE_MAX;
@@ -603,9 +604,27 @@ static struct lease *stock_take(struct dispatcher *dispatcher) {
     return lease;
 }
 
+/* Notes whether the next job would not be done in time. */
+static void look_at_time(struct dispatcher *dispatcher) {
+    const struct lease *next = stock_first(dispatcher);
+    if (dispatcher->late || dispatcher->options.until_ms == 0 || next == NULL ||
+        next->job.count > 1 || !(dispatcher->job_seconds > 0))
+        return;
+    double left_s = 1e-3 * (double)(dispatcher->options.until_ms - clock_ms());
+    if (dispatcher->job_seconds <= left_s)
+        return;
+    struct log_about about = {.worker = dispatcher->options.source->worker};
+    log_line(LEVEL_INFO, &about, "no time is left for another job: they take about %.3g s",
+             dispatcher->job_seconds);
+    dispatcher->late = true;
+    pthread_cond_signal(&dispatcher->news);
+    pthread_cond_broadcast(&dispatcher->offers);
+}
+
 /* Returns what a thread may do now; OFFER_NOTHING: nothing yet. */
 static enum offer offer_now(struct dispatcher *dispatcher, struct lease **out) {
-    if (atomic_load(&dispatcher->ending) || dispatcher->status != 0)
+    look_at_time(dispatcher);
+    if (atomic_load(&dispatcher->ending) || dispatcher->late || dispatcher->status != 0)
         return OFFER_END;
     if (dispatcher->stock > 0) {
         *out = stock_take(dispatcher);

@@ -22,6 +22,10 @@ struct dispatcher_options {
     const struct source_options *source; /* borrowed, as its texts, until the end */
     unsigned threads;                    /* that take jobs */
     bool drain;                          /* nothing is offered once no job waits or runs anywhere */
+    /* By clock_ms, when the process ends; 0: not known. A job of one realisation is not offered
+     * that would last beyond, as jobs lasted so far, and nothing after it: its work would be lost.
+     * One of several hands in those that are done. */
+    int64_t until_ms;
 };
 
 struct dispatcher;

@@ -408,8 +408,10 @@ int workers_run(const struct worker_options *options, struct error *err) {
     own.source.worker = pool.name;
     atomic_init(&pool.ending, false);
     atomic_init(&pool.computing, 0);
-    const struct dispatcher_options dispatching = {
-        .source = &own.source, .threads = own.threads, .drain = own.drain};
+    const struct dispatcher_options dispatching = {.source = &own.source,
+                                                   .threads = own.threads,
+                                                   .drain = own.drain,
+                                                   .until_ms = own.until_ms};
     struct worker_thread *threads = array_create(own.threads, sizeof *threads);
     if (threads == NULL)
         return error_memory(err, own.threads * sizeof *threads, "threads");

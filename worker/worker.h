@@ -19,6 +19,7 @@ struct worker_options {
     bool drain;                   /* end when no job is waiting and none is running */
     unsigned idle_s;              /* end when no job has run for so long; 0: never */
     int64_t grace_ms;             /* how long a realisation may go on after a stop; 0: 2 s */
+    int64_t until_ms;             /* of dispatcher_options */
     const atomic_int *stop;       /* non-zero: release the job at once and end; may be NULL */
     /* Called twice a second on the caller's thread; non-zero ends the workers. May be NULL. */
     int (*tick)(void *context);

@@ -58,6 +58,7 @@ static int work(const struct options *options, const char *token, struct error *
     const struct access_options *place = &options->place;
     const char *database = place->database != NULL ? place->database : DATABASE;
     struct told told = {0};
+    int64_t left_s = allotment_seconds();
     struct worker_options worker = {
         .source = {.database = place->server != NULL ? NULL : database,
                    .url = place->server,
@@ -68,6 +69,7 @@ static int work(const struct options *options, const char *token, struct error *
         .threads = options->threads > 0 ? options->threads : allotment_threads(),
         .drain = options->drain,
         .idle_s = options->idle_s,
+        .until_ms = left_s > 0 ? clock_ms() + 1000 * left_s : 0,
         .stop = &stop_requested,
         .tick = tell,
         .context = &told,

@@ -1,5 +1,5 @@
-/* A worker's threads and memory by its allotment: limits of control groups of both versions, on
- * trees made here, and what Slurm says. */
+/* A worker's threads, memory and time by its allotment: limits of control groups of both versions,
+ * on trees made here, and what Slurm says. */
 #include "jobs/allotment.h"
 
 #include <setjmp.h>
@@ -126,6 +126,21 @@ static void memory_of_slurm_by_node_and_processor(void **state) {
     assert_true(allotment_memory_of_slurm("0", "x", "2") == 0);      /* 0: all of the node's */
 }
 
+/* A pilot gets SIGTERM a minute before the end of its job, or a minute earlier still. */
+static void time_of_slurm(void **state) {
+    (void)state;
+    assert_int_equal(allotment_seconds_of_slurm("1700003600", 1700000000), 3600 - 120);
+    assert_int_equal(allotment_seconds_of_slurm("1700000060", 1700000000), 1);
+    static const char *const NONE[] = {NULL, "", "UNLIMITED", "-1", "17e8", "99999999999999999999"};
+    for (size_t n = 0; n < sizeof NONE / sizeof *NONE; n++)
+        assert_int_equal(allotment_seconds_of_slurm(NONE[n], 1700000000), 0);
+    unsetenv("SLURM_JOB_END_TIME");
+    assert_int_equal(allotment_seconds(), 0);
+    setenv("SLURM_JOB_END_TIME", "1", 1);
+    assert_int_equal(allotment_seconds(), 1);
+    unsetenv("SLURM_JOB_END_TIME");
+}
+
 static void the_least_holds(void **state) {
     (void)state;
     unsetenv("SLURM_CPUS_ON_NODE");
@@ -153,6 +168,7 @@ int main(void) {
         cmocka_unit_test(nothing_mounted_restricts_nothing),
         cmocka_unit_test(slurm_by_task_and_node),
         cmocka_unit_test(memory_of_slurm_by_node_and_processor),
+        cmocka_unit_test(time_of_slurm),
         cmocka_unit_test(the_least_holds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

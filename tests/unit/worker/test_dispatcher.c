@@ -1,6 +1,7 @@
 /* The dispatcher on a local store: many small jobs at once, one offer each, and all of them back
  * or done in the end. */
 #include "tests/unit/worker/small_study.h"
+#include "worker/clock.h"
 #include "worker/dispatcher.h"
 #include "worker/publish/publish.h"
 
@@ -16,18 +17,24 @@ struct scene {
     struct dispatcher *dispatcher;
 };
 
-/* 48 jobs of a realisation. */
-static void scene_open(struct scene *scene, unsigned threads, bool drain) {
+/* 48 realisations in jobs of `block`. */
+static void scene_open_with(struct scene *scene, uint64_t block,
+                            const struct dispatcher_options *own) {
     struct error err = {0};
+    struct dispatcher_options options = *own;
     *scene = (struct scene){0};
     fixture_open(&scene->fixture);
-    fixture_submit(&scene->fixture, SMALL_STUDY, 1, NULL, 0);
+    fixture_submit(&scene->fixture, SMALL_STUDY, block, NULL, 0);
     scene->source = (struct source_options){
         .database = scene->fixture.database, .worker = "test", .lease_ms = LEASE_MS};
-    struct dispatcher_options options = {
-        .source = &scene->source, .threads = threads, .drain = drain};
+    options.source = &scene->source;
     if (dispatcher_create(&scene->dispatcher, &options, &err) != 0)
         fail_msg("%s", err.text);
+}
+
+/* 48 jobs of a realisation. */
+static void scene_open(struct scene *scene, unsigned threads, bool drain) {
+    scene_open_with(scene, 1, &(struct dispatcher_options){.threads = threads, .drain = drain});
 }
 
 static void scene_close(struct scene *scene) {
@@ -80,6 +87,33 @@ static void the_stock_is_given_back(void **state) {
     assert_int_equal(dispatcher_take(scene.dispatcher, true, &lease), OFFER_END);
     dispatcher_destroy(&scene.dispatcher);
     expect(&scene, 1, 0, 1);
+    scene_close(&scene);
+}
+
+/* A job that lasts for longer than the process does is not begun, once it is known how long jobs
+ * last. It is handed back with all others. Jobs of several realisations are begun: those that are
+ * done can be handed in. */
+static void no_job_is_begun_that_ends_too_late(void **state) {
+    (void)state;
+    struct scene scene;
+    struct lease *lease;
+    const struct timespec pause = {0, 5000000};
+    const struct dispatcher_options options = {.threads = 1, .until_ms = clock_ms() + 1};
+    scene_open_with(&scene, 1, &options);
+    lease = take(&scene);
+    nanosleep(&pause, NULL);
+    run(&scene, lease);
+    assert_int_equal(dispatcher_take(scene.dispatcher, true, &lease), OFFER_END);
+    dispatcher_destroy(&scene.dispatcher);
+    expect(&scene, 1, 0, 1);
+    assert_int_equal(sql_integer(scene.fixture.database, "SELECT sum(attempts) FROM job"), 1);
+    scene_close(&scene);
+
+    scene_open_with(&scene, 2, &options);
+    lease = take(&scene);
+    nanosleep(&pause, NULL);
+    run(&scene, lease);
+    run(&scene, take(&scene));
     scene_close(&scene);
 }
 
@@ -176,6 +210,7 @@ static void a_drained_queue_is_the_end(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_stock_is_given_back),
+        cmocka_unit_test(no_job_is_begun_that_ends_too_late),
         cmocka_unit_test(all_leases_are_kept),
         cmocka_unit_test(running_jobs_are_given_back),
         cmocka_unit_test(a_drained_queue_is_the_end),
