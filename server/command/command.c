@@ -19,14 +19,16 @@ static long long clock_of_signals(void) {
     return (long long)now.tv_sec * 1000 + now.tv_nsec / 1000000;
 }
 
-/* The second one ends at once: nothing is lost but the leases of running jobs. Two that come
- * together are one: timeout(1) sends its signal to the program, and to the group it is in. */
+/* The second one ends at once: nothing is lost but the leases of running jobs. Those that come
+ * together are one: timeout(1) sends its signal to the program, and to the group it is in. SIGTERM
+ * is no key that is pressed again: Slurm sends it to a worker and to the script above, which hands
+ * it on. */
 static void on_signal(int number) {
-    enum { TOGETHER_MS = 100 };
-    (void)number;
+    enum { TOGETHER_MS = 100, TERM_TOGETHER_MS = 2000 };
+    long long together_ms = number == SIGTERM ? TERM_TOGETHER_MS : TOGETHER_MS;
     if (stop_requested == 0)
         stop_ms = clock_of_signals();
-    else if (clock_of_signals() - stop_ms > TOGETHER_MS)
+    else if (clock_of_signals() - stop_ms > together_ms)
         _exit(EXIT_INTERRUPTED);
     stop_requested = 1;
 }

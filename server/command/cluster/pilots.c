@@ -70,7 +70,7 @@ static void print_asked(const struct pilot_script *script, FILE *file) {
     fputs("/pilot-%A_%a.log\"\n#SBATCH --open-mode=append\n#SBATCH --requeue\n", file);
     fprintf(file, "#SBATCH --nodes=1\n#SBATCH --ntasks-per-node=%u\n#SBATCH --cpus-per-task=%u\n",
             options->tasks, options->cpus);
-    /* B: the script becomes the worker; the tasks of srun get the signal themselves */
+    /* B: the script hands it on to its worker; the tasks of srun get the signal themselves */
     fprintf(file, "#SBATCH --signal=%sTERM@%d\n", options->tasks == 1 ? "B:" : "", HAND_IN_S);
     if (options->time != NULL)
         fprintf(file, "#SBATCH --time=%s\n", options->time);
@@ -82,20 +82,45 @@ static void print_asked(const struct pilot_script *script, FILE *file) {
         fprintf(file, "#SBATCH %s\n", *option);
 }
 
-void pilot_script_print(const struct pilot_script *script, FILE *file) {
+/* The worker, or several by srun, behind this shell. A signal for a pilot of one task comes to the
+ * shell alone at a limit of time, and to both where the job is ended. */
+static void print_worker(const struct pilot_script *script, FILE *file) {
     const struct pilot_options *options = script->options;
+    if (options->tasks > 1)
+        fprintf(file, "srun --ntasks=%u --cpus-per-task=%u --kill-on-bad-exit=0 ", options->tasks,
+                options->cpus);
+    script_print_word(script->program, file);
+    fprintf(file, " work \"$@\" --idle-exit %u &\nworker=$!\n", options->idle_s);
+    fputs(options->tasks > 1 ? "trap : TERM\n" : "trap 'kill -s TERM \"$worker\"' TERM\n", file);
+    fputs("wait \"$worker\"\nstatus=$?\n"
+          "while [ $status -gt 128 ] && kill -0 \"$worker\" 2>/dev/null; do\n"
+          "    wait \"$worker\"\n    status=$?\ndone\n",
+          file);
+}
+
+void pilot_script_print(const struct pilot_script *script, FILE *file) {
     fputs("#!/bin/sh\n", file);
     print_asked(script, file);
     fputs("\n# Where the server is now, also after a requeue: options of rugo work, one a line.\n"
           "set --\nwhile IFS= read -r option; do set -- \"$@\" \"$option\"; done <",
           file);
     script_print_word(script->place, file);
-    fputs(" || exit\nexec ", file);
-    if (options->tasks > 1)
-        fprintf(file, "srun --ntasks=%u --cpus-per-task=%u --kill-on-bad-exit=0 ", options->tasks,
-                options->cpus);
-    script_print_word(script->program, file);
-    fprintf(file, " work \"$@\" --idle-exit %u\n", options->idle_s);
+    fputs(" || exit\n\n# When its time ends, which older Slurm, such as 22.05, does not say.\n"
+          "export SLURM_TIME_FORMAT=standard\n"
+          "job=${SLURM_ARRAY_JOB_ID:+${SLURM_ARRAY_JOB_ID}_}${SLURM_ARRAY_TASK_ID:-$SLURM_JOB_ID}\n"
+          "if [ -z \"$SLURM_JOB_END_TIME\" ] &&\n"
+          "    end=$(squeue --noheader --jobs \"$job\" --format %e 2>/dev/null) && [ -n \"$end\" "
+          "]; then\n"
+          "    SLURM_JOB_END_TIME=$(date +%s --date \"$end\" 2>/dev/null)\nfi\n"
+          "export SLURM_JOB_END_TIME\n\n"
+          "# Signals go on to the worker, which hands in what it has done.\n",
+          file);
+    print_worker(script, file);
+    fputs("\n# One that is preempted has ended before its time of grace: the node is free at once, "
+          "and\n# Slurm starts it again later.\n"
+          "case $(squeue --noheader --jobs \"$job\" --Format State,PreemptTime 2>/dev/null) in\n"
+          "RUNNING*:*) scontrol requeue \"$job\" ;;\nesac\nexit $status\n",
+          file);
 }
 
 enum { SCRIPT_MOST = 1 << 20 };

@@ -35,7 +35,7 @@ static void print_script(const struct slurm_folder *folder, const struct inside 
     fprintf(file, "#!/bin/sh\n#SBATCH --job-name=%s\n#SBATCH --output=\"", inside->name);
     script_print_path(folder->path, file);
     fprintf(file,
-            "/inside.log\"\n#SBATCH --open-mode=append\n#SBATCH --ntasks=1\n"
+            "/inside.log\"\n#SBATCH --open-mode=append\n#SBATCH --requeue\n#SBATCH --ntasks=1\n"
             "#SBATCH --signal=B:TERM@%d\n#SBATCH --time=%s\n",
             END_S, time);
     if (options->partition != NULL)

@@ -32,7 +32,8 @@ int slurm_jobs_submit(const char *script, unsigned count, struct error *err) {
     return status;
 }
 
-static void count_state(const char *state, struct slurm_count *count) {
+/* A job that ends has no seconds where it is to be started again: those of its next start. */
+static void count_state(const char *state, const char *used, struct slurm_count *count) {
     static const char *const WAITING[] = {"PENDING", "REQUEUED", "REQUEUE_FED", "REQUEUE_HOLD",
                                           "SUSPENDED"};
     static const char *const RUNNING[] = {"RUNNING", "CONFIGURING"};
@@ -41,6 +42,7 @@ static void count_state(const char *state, struct slurm_count *count) {
         count->waiting += strcmp(state, WAITING[s]) == 0;
     for (size_t s = 0; s < sizeof RUNNING / sizeof *RUNNING; s++)
         count->running += strcmp(state, RUNNING[s]) == 0;
+    count->waiting += strcmp(state, "COMPLETING") == 0 && strcmp(used, "0:00") == 0;
 }
 
 int slurm_jobs_count(const char *name, struct slurm_count *count, struct error *err) {
@@ -48,14 +50,17 @@ int slurm_jobs_count(const char *name, struct slurm_count *count, struct error *
     user_option(user);
     name_option(name, named);
     int status = tool_run(
-        (const char *[]){"squeue", "--noheader", "--array", "--format=%T", user, named, NULL}, &out,
-        err);
+        (const char *[]){"squeue", "--noheader", "--array", "--format=%T %M", user, named, NULL},
+        &out, err);
     if (status != 0)
         return status;
     *count = (struct slurm_count){0};
-    for (char *state = strtok_r(out, " \n", &rest); state != NULL;
-         state = strtok_r(NULL, " \n", &rest))
-        count_state(state, count);
+    for (char *line = strtok_r(out, "\n", &rest); line != NULL;
+         line = strtok_r(NULL, "\n", &rest)) {
+        char *used = NULL, *state = strtok_r(line, " ", &used);
+        if (state != NULL)
+            count_state(state, used + strspn(used, " "), count);
+    }
     free(out);
     return 0;
 }

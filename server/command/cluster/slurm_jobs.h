@@ -13,7 +13,7 @@ void slurm_jobs_name(const char *place, char name[SLURM_NAME_SIZE]);
 int slurm_jobs_submit(const char *script, unsigned count, struct error *err);
 
 struct slurm_count {
-    unsigned waiting, running; /* those that are about to end are neither */
+    unsigned waiting, running; /* those that are about to end, and for good, are neither */
     unsigned left;             /* all that Slurm has not done with */
 };
 /* Counts this user's pilots of a name; *count stays as it was where Slurm does not answer. */

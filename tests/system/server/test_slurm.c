@@ -24,6 +24,7 @@ static const char SBATCH[] =
     "done\n"
     "echo 77\n";
 static const char SQUEUE[] = "#!/bin/sh\n"
+                             "[ ! -e squeue.says ] || { cat squeue.says; exit 0; }\n"
                              "[ -e pilots ] || exit 0\n"
                              "for pilot in $(cat pilots); do\n"
                              "    ! kill -0 $pilot 2>/dev/null || echo RUNNING\n"
@@ -77,8 +78,8 @@ static void the_script_is_printed_and_kept(void **state) {
         "\n#SBATCH --ntasks-per-node=1\n#SBATCH --cpus-per-task=4\n#SBATCH --signal=B:TERM@60\n",
         "\n#SBATCH --time=2:00:00\n#SBATCH --partition=long,short\n#SBATCH --account=friction\n",
         "\n#SBATCH --mem=2G\n#SBATCH -C \"a&b\"\n",
-        "/it'\\''s 5% \"off\"/place' || exit\nexec '/",
-        "' work \"$@\" --idle-exit 300\n",
+        "/it'\\''s 5% \"off\"/place' || exit\n",
+        "' work \"$@\" --idle-exit 300 &\nworker=$!\ntrap 'kill -s TERM \"$worker\"' TERM\n",
     };
     assert_int_equal(run_rugo("print", arguments), 0);
     for (size_t l = 0; l < sizeof LINES / sizeof *LINES; l++)
@@ -95,7 +96,7 @@ static void the_command_as_a_job_is_itself_again(void **state) {
     (void)state;
     static const char *const LINES[] = {
         "#!/bin/sh\n#SBATCH --job-name=rugo-",
-        "/inside/inside.log\"\n",
+        "/inside/inside.log\"\n#SBATCH --open-mode=append\n#SBATCH --requeue\n",
         "\n#SBATCH --signal=B:TERM@120\n#SBATCH --time=1-0\n#SBATCH --partition=long\nexec '/",
         " slurm --nodes='3' ",
         " --sbatch='--mem=2G' --sbatch='--comment=it'\\''s' ",
@@ -121,7 +122,8 @@ static void several_processes_are_started_by_srun(void **state) {
                                                        "srun", "--tasks-per-node", "2", NULL}),
                      0);
     check_told("srun.out", "\n#SBATCH --signal=TERM@60\n");
-    check_told("srun.out", "\nexec srun --ntasks=2 --cpus-per-task=1 --kill-on-bad-exit=0 '/");
+    check_told("srun.out", "\nsrun --ntasks=2 --cpus-per-task=1 --kill-on-bad-exit=0 '/");
+    check_told("srun.out", "\nworker=$!\ntrap : TERM\n");
 }
 
 static void no_option_becomes_a_line_of_its_own(void **state) {
@@ -233,6 +235,11 @@ static void pilots_follow_the_queue(void **state) {
     assert_int_equal(run_rugo("submit", (const char *[]){"submit", "study.json", "--server", url,
                                                          "--token-file", "tokens", NULL}),
                      0);
+    /* two that end and will start again, as their seconds say */
+    spit("squeue.says", "COMPLETING 0:00\nCOMPLETING 0:00\n");
+    assert_int_equal(run_rugo("requeued", keeper), 0);
+    assert_int_not_equal(access("sbatch.told", F_OK), 0);
+    assert_int_equal(remove("squeue.says"), 0);
     assert_int_equal(run_rugo("two", keeper), 0);
     check_told("sbatch.told", "--array=1-2 /");
     char *id = slurp("submit.out");

@@ -355,9 +355,34 @@ static void interrupted_runs_keep_realisations(void **state) {
     free(whole);
 }
 
+/* Realisations that take long enough for a second signal to come while one runs. */
+static const char SLOW[] =
+    "{\"name\":\"slow\",\"kind\":\"statistics\",\"seed\":7,\"realisations\":100,"
+    "\"surface\":{\"dimension\":2,\"hurst\":0.5,\"wavelength_ratio\":64,\"length_ratio\":4,"
+    "\"points_per_wavelength\":8}}";
+
+/* SIGTERM that comes twice does not cut handing in short. So it comes under Slurm: to a worker, and
+ * by the script above it. */
+static void a_worker_that_is_ended_twice_hands_in(void **state) {
+    (void)state;
+    struct process worker;
+    spit("slow.json", SLOW);
+    assert_int_equal(
+        run_rugo("slow", (const char *[]){"submit", "--db", "slow.db", "slow.json", NULL}), 0);
+    process_start(&worker, "slow",
+                  (const char *[]){"work", "--db", "slow.db", "--workers", "2", NULL});
+    wait_until_at_work("slow.db", &worker);
+    process_kill(&worker, SIGTERM);
+    sleep_ms(200);
+    process_kill(&worker, SIGTERM);
+    assert_int_equal(process_wait(&worker, 60), 0);
+    assert_int_equal(sql_integer("slow.db", "SELECT count(*)" RUNNING), 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(own_workers_hand_in_at_the_end),
+        cmocka_unit_test(a_worker_that_is_ended_twice_hands_in),
         cmocka_unit_test(one_connection_keeps_all_leases),
         cmocka_unit_test(claims_wait_for_jobs),
         cmocka_unit_test(who_has_gone_gets_no_job),
