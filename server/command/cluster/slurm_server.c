@@ -78,15 +78,21 @@ static void own_address(char address[OWN_ADDRESS_SIZE]) {
 
 enum { VALID_DAYS = 3650, URL_SIZE = 128, START_MS = 20000, STOP_MS = 10000, PLACE_MOST = 1 << 16 };
 
-/* What is in a child between fork and exec: nothing that allocates. Ctrl-C does not reach it. */
+/* What is in a child between fork and exec: nothing that allocates. Ctrl-C does not reach it. Where
+ * the command is a job itself, Slurm sends SIGTERM to all of its processes: the server stays until
+ * pilots have handed in, and is ended by SIGINT. */
 static void become(const char *const *arguments, const char *out, const char *log, pid_t parent) {
     static const int APPEND = O_WRONLY | O_CREAT | O_APPEND, ANEW = O_WRONLY | O_CREAT | O_TRUNC;
     int none = open("/dev/null", O_RDONLY), printed = open(out, ANEW, 0600),
         said = open(log, APPEND, 0600);
+    sigset_t term;
+    sigemptyset(&term);
+    sigaddset(&term, SIGTERM);
     setpgid(0, 0);
     if (none < 0 || printed < 0 || said < 0 || dup2(none, STDIN_FILENO) < 0 ||
         dup2(printed, STDOUT_FILENO) < 0 || dup2(said, STDERR_FILENO) < 0 ||
-        prctl(PR_SET_PDEATHSIG, SIGTERM) != 0 || getppid() != parent)
+        sigprocmask(SIG_BLOCK, &term, NULL) != 0 || prctl(PR_SET_PDEATHSIG, SIGINT) != 0 ||
+        getppid() != parent)
         _exit(EXIT_FAILED);
     execv("/proc/self/exe", (char *const *)arguments);
     _exit(EXIT_FAILED);
@@ -235,7 +241,7 @@ int slurm_server_start(struct slurm_server *server, struct error *err) {
 void slurm_server_stop(struct slurm_server *server) {
     if (slurm_server_has_ended(server))
         return;
-    kill(server->pid, SIGTERM);
+    kill(server->pid, SIGINT);
     for (int64_t until_ms = clock_ms() + STOP_MS; !slurm_server_has_ended(server);) {
         if (clock_ms() >= until_ms)
             kill(server->pid, SIGKILL);
