@@ -316,7 +316,7 @@ nightly: all
 	RUGO_EFFORT=4 $(MAKE) unit validation
 	RUGO_EFFORT=4 $(MAKE) faults
 	$(MAKE) check-documents check-install check-python check-units check-openapi check-contract check-figures check-results tour
-	-@tests/install-deps "" "slurmctld slurmd slurm-client munge" munged slurmctld slurmd sbatch
+	-@tests/install-deps "" "slurmctld slurmd slurm-client munge sqlite3" munged slurmctld slurmd sbatch sqlite3
 	$(MAKE) slurm-test
 	$(MAKE) roll-test
 	$(MAKE) check-static check-dist check-deb
