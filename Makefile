@@ -57,6 +57,8 @@ embedded = $(filter %.html %.js %.css %.yaml %.py,$(wildcard $(addprefix $(1)/,w
 # The migrations of the store as one block of data in the order of their names, each ended by a NUL.
 MIGRATIONS = $(sort $(wildcard schema/store/migrations/*.sql))
 DATA_schema = $(BUILD)/schema/store/migrations.data.o
+# What all of them make of an empty file, likewise ended by a NUL.
+LAYOUT   = schema/store/layout.sql
 # The ready studies as one JSON list, for the page to begin new ones from.
 TEMPLATES = $(sort $(wildcard jobs/studies/*.json))
 DATA_server = $(BUILD)/server/web/templates.data.o
@@ -109,10 +111,11 @@ $(BUILD)/%.c.o: %.c $(BUILD)/flags
 	$(say) CC $<
 	$(Q)$(COMPILE) $(UNGUIDED) -MMD -MP -c $< -o $@
 
-$(DATA_schema): $(MIGRATIONS) schema/store/migrations
+$(DATA_schema): $(MIGRATIONS) $(LAYOUT) schema/store/migrations
 	@mkdir -p $(@D)
 	$(Q)for file in $(MIGRATIONS); do cat $$file && printf '\0' || exit; done > $(@D)/migrations.sql
-	$(Q)cd $(@D) && $(LD) -r -b binary -z noexecstack migrations.sql -o $(abspath $@)
+	$(Q){ cat $(LAYOUT) && printf '\0'; } > $(@D)/layout.sql
+	$(Q)cd $(@D) && $(LD) -r -b binary -z noexecstack migrations.sql layout.sql -o $(abspath $@)
 
 $(DATA_server): $(TEMPLATES) jobs/studies
 	@mkdir -p $(@D)

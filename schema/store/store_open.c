@@ -85,6 +85,8 @@ static int void_old_leases(struct store *store, struct error *err) {
  * version exist. */
 extern const char _binary_migrations_sql_start[];
 extern const char _binary_migrations_sql_end[];
+/* What all of them make of an empty file, ended by a NUL: in a tenth of their time. */
+extern const char _binary_layout_sql_start[];
 
 /* Returns a migration, or NULL behind the last. */
 static const char *migration_at(int64_t version) {
@@ -161,18 +163,30 @@ static void lease_digest(sqlite3_context *context, int count, sqlite3_value **va
     sqlite3_result_blob(context, digest, sizeof digest, SQLITE_TRANSIENT);
 }
 
+/* Writes what says that a file is a store of a version. */
+static int stamp_version(struct store *store, int64_t version, struct error *err) {
+    char sql[96];
+    snprintf(sql, sizeof sql, "PRAGMA application_id = %d; PRAGMA user_version = %d",
+             APPLICATION_ID, (int)version);
+    return store_execute(store, sql, err);
+}
+
+/* Makes the layout of the newest version in an empty file. */
+static int lay_out(struct store *store, struct error *err) {
+    int status = store_execute(store, _binary_layout_sql_start, err);
+    return status == 0 ? stamp_version(store, version_newest(), err) : status;
+}
+
+/* Brings a store of a version up to the newest one. */
 static int migrate(struct store *store, int64_t version, struct error *err) {
     int status = version == 1 ? complete_first_version(store, err) : 0;
     if (status == 0 && sqlite3_create_function(store->db, "lease_digest", 1, SQLITE_UTF8, NULL,
                                                lease_digest, NULL, NULL) != 0)
         status = store_error(store, err);
     for (const char *sql; status == 0 && (sql = migration_at(version)) != NULL; version++) {
-        char pragma[96];
-        snprintf(pragma, sizeof pragma, "PRAGMA application_id = %d; PRAGMA user_version = %d",
-                 APPLICATION_ID, (int)version + 1);
         status = store_execute(store, sql, err);
         if (status == 0)
-            status = store_execute(store, pragma, err);
+            status = stamp_version(store, version + 1, err);
     }
     return status;
 }
@@ -220,7 +234,7 @@ static int version_bring_up(struct store *store, struct error *err) {
         return status;
     status = read_version(store, &version, err); /* another process may have come first */
     if (status == 0)
-        status = migrate(store, version, err);
+        status = version == 0 ? lay_out(store, err) : migrate(store, version, err);
     return change_end(store, status, err);
 }
 
@@ -272,7 +286,7 @@ int version_check_layout(struct store *store, char *fault, size_t size, struct e
     if (sqlite3_open(":memory:", &fresh.db) != SQLITE_OK)
         status = store_error(&fresh, err);
     if (status == 0)
-        status = migrate(&fresh, 0, err);
+        status = lay_out(&fresh, err);
     if (status == 0 && sqlite3_prepare_v2(fresh.db, LAYOUT, -1, &wants, NULL) != SQLITE_OK)
         status = store_error(&fresh, err);
     if (status == 0 && sqlite3_prepare_v2(store->db, LAYOUT, -1, &has, NULL) != SQLITE_OK)

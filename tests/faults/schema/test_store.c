@@ -9,6 +9,7 @@
 #include "tests/support/failing/failing_allocator.h"
 #include "tests/support/fake_kind.h"
 #include "tests/support/store_files.h"
+#include <fcntl.h>
 #include <sqlite3.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,6 +39,39 @@ static int open_new(void *context, struct error *err) {
     int status = open_and_close(context, err);
     unlink(context);
     return status;
+}
+
+/* A file of an older program, which is migrated; copied without memory, as that is to fail. */
+static int open_older(void *context, struct error *err) {
+    char buffer[65536];
+    int from = open(context, O_RDONLY), to = open("copy.db", O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    assert_true(from >= 0 && to >= 0);
+    for (ssize_t got; (got = read(from, buffer, sizeof buffer)) > 0;)
+        assert_int_equal(write(to, buffer, (size_t)got), got);
+    close(from);
+    close(to);
+    char path[] = "copy.db";
+    int status = open_and_close(path, err);
+    remove_store(path);
+    return status;
+}
+
+/* Makes a store of version 17 out of its text. */
+static void make_older(const char *path) {
+    enum { MOST = 1 << 20 };
+    char name[512], *text = calloc(1, MOST);
+    const char *source = getenv("RUGO_SOURCE");
+    sqlite3 *db = NULL;
+    snprintf(name, sizeof name, "%s/tests/fixtures/stores/version-17.sql",
+             source != NULL ? source : ".");
+    FILE *file = fopen(name, "rb");
+    assert_true(file != NULL && text != NULL);
+    assert_true(fread(text, 1, MOST - 1, file) < MOST - 1);
+    fclose(file);
+    assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+    assert_int_equal(sqlite3_exec(db, text, NULL, NULL, NULL), SQLITE_OK);
+    sqlite3_close(db);
+    free(text);
 }
 
 static int complete_jobs(struct store_life *life, struct claimed_job *jobs, size_t count,
@@ -240,10 +274,13 @@ static int close_life(void **state) {
 
 static void opening(void **state) {
     (void)state;
-    char fresh[] = "new.db", old[] = "life.db";
+    char fresh[] = "new.db", old[] = "life.db", older[] = "older.db";
+    make_older(older);
     each_allocation(
         &(struct failing_call){.name = "store, new", open_new, fresh, .may_succeed = 1});
     each_allocation(&(struct failing_call){.name = "store", open_and_close, old, .may_succeed = 1});
+    each_allocation(
+        &(struct failing_call){.name = "store, older", open_older, older, .may_succeed = 1});
 }
 
 static uint64_t jobs_done(void) {

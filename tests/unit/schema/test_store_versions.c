@@ -1,5 +1,6 @@
 /* Protects: stores that people have. A migration that was released is never edited, none is left
- * out, and a store of every earlier version opens, is brought up to date and reads as before. */
+ * out, and a store of every earlier version opens, is brought up to date and reads as before. A new
+ * store, which runs none of them, has the layout that they make. */
 #include "schema/store/store.h"
 #include "tests/support/check.h"
 #include "tests/support/sql.h"
@@ -93,6 +94,98 @@ static void execute(sqlite3 *db, const char *sql) {
         fail_msg("%s", why);
 }
 
+/* Runs a migration of the tree. Returns whether there is one of this number. */
+static bool run_migration(sqlite3 *db, int number) {
+    char name[64];
+    size_t size = 0;
+    snprintf(name, sizeof name, "schema/store/migrations/%03d.sql", number);
+    char *text = read_source(name, &size);
+    if (text != NULL)
+        execute(db, text);
+    free(text);
+    return text != NULL;
+}
+
+static void print_value(FILE *file, sqlite3_stmt *row, int column) {
+    const char *text = (const char *)sqlite3_column_text(row, column);
+    bool quoted = sqlite3_column_type(row, column) == SQLITE_TEXT;
+    fprintf(file, quoted ? "'%s'" : "%s", text != NULL ? text : "NULL");
+}
+
+static void print_rows(FILE *file, sqlite3 *db, const char *table) {
+    sqlite3_stmt *row = NULL;
+    char sql[128];
+    snprintf(sql, sizeof sql, "SELECT * FROM \"%s\"", table);
+    assert_int_equal(sqlite3_prepare_v2(db, sql, -1, &row, NULL), SQLITE_OK);
+    while (sqlite3_step(row) == SQLITE_ROW) {
+        fprintf(file, "INSERT INTO %s VALUES (", table);
+        for (int c = 0; c < sqlite3_column_count(row); c++) {
+            fputs(c > 0 ? ", " : "", file);
+            print_value(file, row, c);
+        }
+        fputs(");\n", file);
+    }
+    sqlite3_finalize(row);
+}
+
+/* Gives the statements that make a database, in the order in which it was made; the caller frees.
+ */
+static char *statements_of(sqlite3 *db) {
+    static const char *const OBJECTS[] = {"", " AND type = 'table'"};
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    assert_non_null(file);
+    for (int rows = 0; rows < 2; rows++) {
+        sqlite3_stmt *object = NULL;
+        char sql[160];
+        snprintf(sql, sizeof sql,
+                 "SELECT name, sql FROM sqlite_schema WHERE name NOT LIKE 'sqlite_%%'%s ORDER BY "
+                 "rowid",
+                 OBJECTS[rows]);
+        assert_int_equal(sqlite3_prepare_v2(db, sql, -1, &object, NULL), SQLITE_OK);
+        while (sqlite3_step(object) == SQLITE_ROW)
+            if (rows == 0)
+                fprintf(file, "%s;\n", (const char *)sqlite3_column_text(object, 1));
+            else
+                print_rows(file, db, (const char *)sqlite3_column_text(object, 0));
+        sqlite3_finalize(object);
+    }
+    assert_int_equal(fclose(file), 0);
+    return text;
+}
+
+static void no_digest(sqlite3_context *context, int count, sqlite3_value **values) {
+    (void)count;
+    sqlite3_result_value(context, values[0]);
+}
+
+/* Tables, indices and views of a new store, and its rows, are those that the migrations make of an
+ * empty file, to the letter. */
+static void a_new_store_is_what_migrations_make(void **state) {
+    (void)state;
+    sqlite3 *migrated = NULL, *fresh = NULL;
+    struct store *store = NULL;
+    int count = 0;
+    assert_int_equal(sqlite3_open(":memory:", &migrated), SQLITE_OK);
+    sqlite3_create_function(migrated, "lease_digest", 1, SQLITE_UTF8, NULL, no_digest, NULL, NULL);
+    while (run_migration(migrated, count + 1))
+        count++;
+    assert_true(count >= 20);
+    assert_int_equal(store_open(&store, "fresh.db", NULL, NULL), 0);
+    store_close(&store);
+    assert_int_equal(sqlite3_open("fresh.db", &fresh), SQLITE_OK);
+    execute(fresh, "DELETE FROM boot"); /* which this machine's start has filled */
+    char *wanted = statements_of(migrated), *found = statements_of(fresh);
+    if (strcmp(wanted, found) != 0)
+        print_error("schema/store/layout.sql is not this:\n%s", wanted);
+    assert_true(strlen(wanted) > 1000 && strcmp(wanted, found) == 0);
+    free(wanted);
+    free(found);
+    sqlite3_close(migrated);
+    sqlite3_close(fresh);
+}
+
 /* Before version 15 the token of a lease was in the store as it is. It becomes a digest there,
  * under which its holder goes on; nothing of it is left in the file. */
 static void a_live_lease_outlives_the_digests(void **state) {
@@ -101,15 +194,8 @@ static void a_live_lease_outlives_the_digests(void **state) {
     sqlite3 *db = NULL;
     struct store *store = NULL;
     assert_int_equal(sqlite3_open("plain.db", &db), SQLITE_OK);
-    for (int n = 1; n <= 14; n++) {
-        char name[64];
-        size_t size = 0;
-        snprintf(name, sizeof name, "schema/store/migrations/%03d.sql", n);
-        char *text = read_source(name, &size);
-        assert_non_null(text);
-        execute(db, text);
-        free(text);
-    }
+    for (int n = 1; n <= 14; n++)
+        assert_true(run_migration(db, n));
     execute(db,
             "PRAGMA application_id = 0x5255474f; PRAGMA user_version = 14;"
             "INSERT INTO study (id, public, name, kind, seed, realisations, state, cases, jobs, "
@@ -148,6 +234,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(released_migrations_are_frozen),
         cmocka_unit_test(every_migration_is_linked_in),
+        cmocka_unit_test(a_new_store_is_what_migrations_make),
         cmocka_unit_test(a_live_lease_outlives_the_digests),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
