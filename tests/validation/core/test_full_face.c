@@ -144,8 +144,9 @@ static void a_linear_model_knows_the_stretch(void **state) {
     static const double SLOPES[] = {0.01, 0.03, 0.1};
     static const struct grid FINE[] = {{256, 1, 1, 1}, {32, 32, 1, 1}, {24, 16, 1, 0.8}};
     for (size_t c = 0; c < 27; c++) {
-        if (c >= 9 && c / 3 % 3 == 1 && effort() == 1)
-            continue; /* surfaces of the slope between */
+        /* Without effort each ratio is tried on one of the two surfaces, at the outer slopes. */
+        if (c >= 9 && effort() == 1 && (c / 3 % 3 == 1 || c % 2 == 1))
+            continue;
         struct pressed p;
         double poisson = MATERIALS[c % 3].poisson, slope = SLOPES[c / 3 % 3];
         struct block block = {.model = MODEL_LAYERED,
