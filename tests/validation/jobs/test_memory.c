@@ -16,8 +16,8 @@
 static const struct {
     const char *kind, *name, *parameters;
 } CASES[] = {
-    {"statistics", "Gaussian, 8192 x 8192",
-     "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 128}}"},
+    {"statistics", "Gaussian, 4096 x 4096",
+     "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 64}}"},
     {"statistics", "Weibull, 2048 x 2048",
      "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 32,"
      " \"heights\": {\"distribution\": \"weibull_max\", \"shape\": 2, \"max_iterations\": 5}}}"},
