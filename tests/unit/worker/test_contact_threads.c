@@ -38,13 +38,14 @@ static char *curves_text(struct fixture *fixture) {
     return text;
 }
 
+/* Under sanitizers five threads alone: one by itself has nobody to share with. */
 static void same_bits(const char *study, bool noted) {
     static const struct {
         unsigned threads;
         uint64_t block;
     } table[] = {{1, 12}, {2, 4}, {5, 1}};
     char *first = NULL;
-    for (size_t n = 0; n < sizeof table / sizeof table[0]; n += case_step()) {
+    for (size_t n = case_step() - 1; n < sizeof table / sizeof table[0]; n++) {
         struct fixture fixture;
         struct error err = {0};
         fixture_open(&fixture);
