@@ -1,6 +1,7 @@
 /* Workers and their server: one connection a process, claims that wait, jobs that reach nobody,
  * and what is kept of a job that is stopped. */
 #include "tests/support/check.h"
+#include "tests/support/effort.h"
 #include "tests/support/process.h"
 #include "tests/support/sql.h"
 #include <poll.h>
@@ -21,9 +22,9 @@ static const char LONG[] = "{\"name\":\"long\",\"kind\":\"statistics\",\"seed\":
                            "\"realisations\":1000000," SURFACE "}";
 static const char ONE_JOB[] = "{\"name\":\"one\",\"kind\":\"statistics\",\"seed\":7,"
                               "\"realisations\":1," SURFACE "}";
-/* About two seconds of one processor. */
+/* About two seconds of one processor; under sanitizers fewer realisations take longer. */
 static const char SOME[] = "{\"name\":\"some\",\"kind\":\"statistics\",\"seed\":7,"
-                           "\"realisations\":4000," SURFACE "}";
+                           "\"realisations\":%u," SURFACE "}";
 
 static double now(void) {
     struct timespec time;
@@ -317,7 +318,11 @@ static void wait_until_at_work(const char *database, const struct process *run) 
 static void interrupted_runs_keep_realisations(void **state) {
     (void)state;
     struct process process;
-    spit("some.json", SOME);
+    char study[512], total[64];
+    const unsigned realisations = 4000 / (unsigned)case_step();
+    snprintf(study, sizeof study, SOME, realisations);
+    snprintf(total, sizeof total, "\"realisations\":{\"total\":%u,\"done\":", realisations);
+    spit("some.json", study);
     const char *const arguments[] = {"run", "--db", "cut.db", "some.json", NULL};
     double done = 0;
     for (int cut = 0; cut < 2; cut++) {
@@ -331,7 +336,7 @@ static void interrupted_runs_keep_realisations(void **state) {
                                                              "json", "some", NULL}),
                          0);
         char *status = slurp("status.out");
-        const char *at = strstr(status, "\"realisations\":{\"total\":4000,\"done\":");
+        const char *at = strstr(status, total);
         assert_non_null(at);
         double more = strtod(strstr(at, "\"done\":") + strlen("\"done\":"), NULL);
         assert_true(more > done);
