@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 static const char STUDY[] =
-    "{\"name\":\"small\",\"kind\":\"contact\",\"seed\":7,\"realisations\":4,\"surface\":{"
+    "{\"name\":\"small\",\"kind\":\"contact\",\"seed\":7,\"realisations\":2,\"surface\":{"
     "\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":4,\"length_ratio\":1,"
     "\"points_per_wavelength\":4,\"rms_slope\":0.3},\"contact\":{\"block_height\":{\"lengths\":1},"
     "\"model\":["
