@@ -304,9 +304,11 @@ run-fuzz: $(patsubst %,run-fuzz-%,$(filter-out $(WITHOUT),$(notdir $(call all_te
 .PHONY: fuzz fuzz-deps run-fuzz
 
 # Under sanitizers: all unit tests, or (for SAN=thread) those of the layers that own threads, and
-# system tests but those that count what is lost or reported within seconds, or memory, which the sanitizer takes.
+# system tests but those that count what is lost or reported within seconds, or memory, which the sanitizer takes. Left
+# out as well are those without a second thread (map_commands), and those whose study or store alone is special, while its
+# threads do what they do in test_workers and test_publishing.
 UNTIMED := $(filter-out $(addprefix %/test_,same_answer slurm supervised target target_coverage \
-	commands contact_shown python memory),$(TESTS_system_server))
+	commands contact_shown python memory map_commands own_heights third_kind like names folders),$(TESTS_system_server))
 run-unit:
 	@$(MAKE) --no-print-directory -j$$(nproc) $(call all_tests,unit)
 	@tests/run-tests $(call all_tests,unit)
