@@ -87,16 +87,15 @@ double cost_caches(double points) {
 /* --- linear contact --- */
 
 /* bench_contact: transforms a load at a tolerance of 1e-8 are FRONT * nx^POWER, for profiles of 64
- * to 8192 points and surfaces of 128 x 128 to 1024 x 1024, loads up to 0.3. Few loads are farther
+ * to 8192 points and surfaces of 64 x 64 to 2048 x 2048, loads up to 0.5. Few loads are farther
  * apart and take more each. */
-static const double PROFILE_FRONT = 30, PROFILE_POWER = 0.18;
-static const double SURFACE_FRONT = 9.3, SURFACE_POWER = 0.45;
-static const double FEW_LOADS = 1.5;
+static const double PROFILE_FRONT = 30, PROFILE_POWER = 0.18, PROFILE_FEW_LOADS = 1.5;
+static const double SURFACE_FRONT = 32, SURFACE_POWER = 0.125, SURFACE_FEW_LOADS = 0.2;
 /* The tolerance enters by the factor (digits + 2)/10. */
 static const double DIGITS_MORE = 2, DIGITS_WHOLE = 10;
-/* bench_contact: nanoseconds a point and transform, with the other work of an iteration; a tenth
- * more with each doubling of the points from 2^14 on. */
-static const double PROFILE_TRANSFORM_NS = 4, SURFACE_TRANSFORM_NS = 5;
+/* bench_contact: nanoseconds a point and transform, with the other work of an iteration and the
+ * areas; a tenth more with each doubling of the points from 2^14 on. */
+static const double PROFILE_TRANSFORM_NS = 4, SURFACE_TRANSFORM_NS = 9;
 static const double TRANSFORM_CACHE_SLOPE = 0.1, TRANSFORM_CACHE_DOUBLINGS = 14;
 
 /* Returns the points a side; of a rectangle the geometric mean, which is exact for squares. */
@@ -106,9 +105,11 @@ static double mean_side(const struct grid *grid) {
 
 static double load_transforms(const struct grid *grid, double tolerance, size_t loads) {
     double side = mean_side(grid), digits = -log10(tolerance);
-    double transforms = grid_is_profile(grid) ? PROFILE_FRONT * pow(side, PROFILE_POWER)
-                                              : SURFACE_FRONT * pow(side, SURFACE_POWER);
-    return transforms * (1 + FEW_LOADS / (double)loads) * (DIGITS_MORE + digits) / DIGITS_WHOLE;
+    bool profile = grid_is_profile(grid);
+    double transforms = profile ? PROFILE_FRONT * pow(side, PROFILE_POWER)
+                                : SURFACE_FRONT * pow(side, SURFACE_POWER);
+    double few_loads = profile ? PROFILE_FEW_LOADS : SURFACE_FEW_LOADS;
+    return transforms * (1 + few_loads / (double)loads) * (DIGITS_MORE + digits) / DIGITS_WHOLE;
 }
 
 double cost_linear_contact(const struct grid *grid, double tolerance, size_t loads) {

@@ -3,6 +3,7 @@
 #include "core/sum.h"
 #include <fftw3.h>
 #include <float.h>
+#include <gsl/gsl_statistics_double.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,6 +13,10 @@ const struct contact_options CONTACT_DEFAULTS = {
 
 /* Sides up to this number of nodes take the max_iterations of the options. */
 static const double SIDE_USUAL = 4096;
+
+/* The first set is so many times what Persson's theory expects in contact. Of 1, 1.6 and 2 this
+ * took the fewest steps. */
+static const double FIRST_SET = 2;
 
 /* In this file heights are in units of the surface's RMS height and pressures in RMS height over
  * the largest compliance, so that all numbers are near 1 whatever the user's units. */
@@ -25,6 +30,7 @@ struct contact {
     double unit;     /* RMS height, the grid's length; for a flat surface 0, where open lx */
     double highest;  /* of the solver's heights */
     double full;     /* smallest mean pressure of full contact */
+    double flatten;  /* RMS of the pressures that flatten the surface, but for their mean */
     double mean;     /* mean of the solver's p, the load that it solves; 0 before the first load */
     bool tangent;    /* the solver's q is the tangent at the last load, else the secant to it */
     double *last;    /* without tangent: the solver's p at the load before; NULL with it */
@@ -141,9 +147,13 @@ int contact_begin(struct contact *c, const double *z, struct error *err) {
     if (c->compliance->open)
         return 0;
     transform_filter(d->transform, d->inverse, 1, d->z, d->w);
+    struct sum square = {0};
     c->full = 0;
-    for (size_t i = 0; i < d->n; i++)
+    for (size_t i = 0; i < d->n; i++) {
         c->full = fmax(c->full, -d->w[i]);
+        sum_add(&square, d->w[i] * d->w[i]);
+    }
+    c->flatten = sqrt(sum_value(&square) / (double)d->n);
     return 0;
 }
 
@@ -214,22 +224,35 @@ static void take_secant(struct contact *c, double change) {
         d->q[i] = (d->p[i] - c->last[i]) / change;
 }
 
-/* Predicts the pressures at a mean from those of the last load and their tangent or secant; they
- * are uniform before the first load. */
+/* Guesses pressures for a first load, in proportion to how far the highest nodes stand out; their
+ * number is that of FIRST_SET. Returns their sum. */
+static double guess(struct contact *c, double mean) {
+    struct conjugate_gradient *d = &c->solver;
+    double part = FIRST_SET * erf(mean / (M_SQRT2 * c->flatten)), sum = 0;
+    size_t highest = (size_t)fmin(fmax(1, (double)d->n * part), (double)d->n - 1);
+    memcpy(d->w, d->z, d->n * sizeof *d->w);
+    double above = gsl_stats_select(d->w, 1, d->n, d->n - 1 - highest);
+    for (size_t i = 0; i < d->n; i++)
+        sum += d->p[i] = fmax(0, d->z[i] - above);
+    return sum;
+}
+
+/* Predicts the pressures at a mean from those of the last load and their tangent or secant, and
+ * guesses them before the first load. */
 static void predict(struct contact *c, double mean) {
     struct conjugate_gradient *d = &c->solver;
     double sum = 0;
     for (size_t i = 0; !c->tangent && i < d->n; i++)
         c->last[i] = c->mean > 0 ? d->p[i] : 0;
-    for (size_t i = 0; i < d->n; i++) {
-        double p = c->mean > 0 ? d->p[i] + (mean - c->mean) * d->q[i] : mean;
-        d->p[i] = fmax(0, p);
-        sum += d->p[i];
-    }
+    if (c->mean > 0)
+        for (size_t i = 0; i < d->n; i++)
+            sum += d->p[i] = fmax(0, d->p[i] + (mean - c->mean) * d->q[i]);
+    else if (!c->compliance->open && !grid_is_profile(&c->compliance->grid))
+        sum = guess(c, mean);
     /* When the load falls by many orders, it may be below the rounding of the last pressures. */
     double factor = mean * (double)d->n / sum;
     for (size_t i = 0; i < d->n; i++)
-        d->p[i] = isfinite(factor) ? d->p[i] * factor : mean;
+        d->p[i] = sum > 0 && isfinite(factor) ? d->p[i] * factor : mean;
 }
 
 /* Returns the limit of iterations, which grows with the square root of the longer side, as their

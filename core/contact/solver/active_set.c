@@ -8,10 +8,10 @@ enum {
     STEPS_MOST = 8, /* within one set */
     SETS_STALLED = 12
 };
-/* A set is solved until its gaps are ENOUGH of the initial ones, mostly in two steps. After a
+/* A set is solved until its gaps are ENOUGH of the initial ones, mostly in one step. After a
  * set that was no better they must be CLOSER times smaller still: long waves that are left over
  * make nodes leave and join again and again. */
-static const double ENOUGH = 0.03, CLOSER = 0.3;
+static const double ENOUGH = 0.1, CLOSER = 0.3;
 
 /* A set after its steps. */
 struct set {
@@ -95,9 +95,10 @@ WIDE_VECTORS static struct set follow(size_t n, const double *u, const double *z
  * inside, and counts the steps, max_iterations at most. */
 static void close_set(struct conjugate_gradient *solver, double enough, double share,
                       size_t max_iterations, struct conjugate_gradient_end *end) {
-    struct step_memory memory = {.continuation = CONTINUED_BY_LINES};
+    struct step_memory memory = {.continued = true};
     double members, sum = fill(solver->padded, solver->u, solver->z, solver->r, &members);
     double begun = 0;
+    conjugate_step_take_set(solver, solver->r);
     end->approach = 0;
     for (size_t i = 0; i < solver->padded; i++)
         solver->t[i] = solver->old[i] = 0;

@@ -1,5 +1,5 @@
-/* Profiles are solved by active sets (active_set.h); where these do not converge, by what follows,
- * as surfaces are.
+/* Faces are solved by active sets (active_set.h); surfaces in free space, and where sets do not
+ * converge, by what follows.
  *
  * Conjugate gradients in the set of nodes in contact (Polonsky & Keer 1999), preconditioned by the
  * inverse compliance restricted to the set: the residual is transformed, multiplied and transformed
@@ -29,8 +29,11 @@ enum {
 /* Length of a projected step over the inverse of the largest compliance, which is 1 here; below
  * 2. */
 static const double STRIDE = 1.8;
-static const double TANGENT_TOLERANCE =
-    1e-2; /* residual over slope; measured errors of the slope are below 3e-4 */
+/* Residual of a tangent over its approach. Continued steps are close to it after the first few;
+ * edges at light loads see it node by node. */
+static const double TANGENT_TOLERANCE = 1e-4;
+/* ... of steps with zeros: measured errors of the slope are below 3e-4. */
+static const double ZEROS_TOLERANCE = 1e-2;
 /* The approach at which nodes under pressure touch on average: minus the mean of u - z over them.
  */
 WIDE_VECTORS static double mean_approach(size_t n, const double *p, const double *u,
@@ -271,14 +274,17 @@ void conjugate_gradient_run(struct conjugate_gradient *solver, double mean, doub
                             size_t stall_iterations, size_t max_iterations,
                             struct conjugate_gradient_end *end) {
     *end = (struct conjugate_gradient_end){0};
-    if (solver->grid.ny > 1 || !solve_by_sets(solver, mean, tolerance, max_iterations, end))
+    if (!conjugate_step_is_continued(solver) ||
+        !solve_by_sets(solver, mean, tolerance, max_iterations, end))
         solve_by_steps(solver, mean, tolerance, stall_iterations, max_iterations, end);
 }
 
 double conjugate_gradient_tangent(struct conjugate_gradient *solver) {
-    struct step_memory memory = {.continuation =
-                                     solver->grid.ny == 1 ? CONTINUED_BY_LINES : CONTINUED_BY_ZERO};
+    struct step_memory memory = {.continued = conjugate_step_is_continued(solver)};
+    const double tolerance = memory.continued ? TANGENT_TOLERANCE : ZEROS_TOLERANCE;
     double sum = 0, slope = 0;
+    if (memory.continued)
+        conjugate_step_take_set(solver, solver->p);
     for (size_t i = 0; i < solver->padded; i++) {
         solver->q[i] = solver->p[i] > 0 ? solver->q[i] : 0;
         solver->t[i] = solver->old[i] = 0;
@@ -300,7 +306,7 @@ double conjugate_gradient_tangent(struct conjugate_gradient *solver) {
         approach /= (double)members;
         slope = energy / (double)solver->n;
         double most = tangent_residual(solver->padded, solver->p, solver->u, approach, solver->r);
-        if (most <= TANGENT_TOLERANCE * fabs(approach) || iteration == TANGENT_MOST)
+        if (most <= tolerance * fabs(approach) || iteration == TANGENT_MOST)
             return slope;
         conjugate_step_direct(solver, &memory);
         advance_tangent(solver->padded, conjugate_step_length(solver), solver->t, solver->w,

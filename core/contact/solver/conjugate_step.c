@@ -21,7 +21,8 @@ enum { ARRAYS = 10 };
 
 double conjugate_gradient_bytes(const struct grid *grid) {
     double waves = ((double)grid->nx / 2 + 1) * (double)grid->ny;
-    return sizeof(double) * (ARRAYS * (double)padded(grid_points(grid)) + 4 * waves);
+    double pyramid = grid_is_profile(grid) ? 0 : pyramid_bytes(grid);
+    return sizeof(double) * (ARRAYS * (double)padded(grid_points(grid)) + 4 * waves) + pyramid;
 }
 
 static int arrays_create(struct conjugate_gradient *solver, struct error *err) {
@@ -83,6 +84,8 @@ int conjugate_gradient_create(struct conjugate_gradient *out, const struct compl
         status = transform_create(&out->wide, waved, waved->nx / 2, waved->ny / 2, err);
     if (status == 0)
         status = arrays_create(out, err);
+    if (status == 0 && !compliance->open && !grid_is_profile(grid))
+        status = pyramid_create(&out->pyramid, grid, err);
     if (status == 0)
         status = symbols_create(out, compliance, err);
     if (status != 0)
@@ -98,6 +101,7 @@ void conjugate_gradient_clear(struct conjugate_gradient *solver) {
         fftw_free(arrays[a]);
     free(solver->compliance);
     free(solver->inverse);
+    pyramid_clear(&solver->pyramid);
     transform_destroy(&solver->transform);
     transform_destroy(&solver->wide);
     *solver = (struct conjugate_gradient){0};
@@ -198,15 +202,28 @@ static void continue_by_lines_transposed(size_t n, const double *r, double *w) {
     }
 }
 
+bool conjugate_step_is_continued(const struct conjugate_gradient *solver) {
+    return solver->wide == NULL || grid_is_profile(&solver->grid);
+}
+
+void conjugate_step_take_set(struct conjugate_gradient *solver, const double *r) {
+    if (!grid_is_profile(&solver->grid))
+        pyramid_set(&solver->pyramid, r);
+}
+
 /* out = inverse compliance times r, to be read in the set r != 0 alone. */
-static void precondition(struct conjugate_gradient *solver, enum continuation continuation,
-                         const double *r, double *out) {
-    bool lines = continuation == CONTINUED_BY_LINES;
-    if (lines)
+static void precondition(struct conjugate_gradient *solver, bool continued, const double *r,
+                         double *out) {
+    bool profile = grid_is_profile(&solver->grid);
+    if (continued && profile)
         continue_by_lines(solver->n, r, out);
-    transform_filter(solver->transform, solver->inverse, 1, lines ? out : r, out);
-    if (lines)
+    else if (continued)
+        pyramid_continue(&solver->pyramid, r, out);
+    transform_filter(solver->transform, solver->inverse, 1, continued ? out : r, out);
+    if (continued && profile)
         continue_by_lines_transposed(solver->n, r, out);
+    else if (continued)
+        pyramid_transpose(&solver->pyramid, r, out);
     solver->transforms += 2;
 }
 
@@ -251,7 +268,7 @@ WIDE_VECTORS static void redirect(size_t n, const double *r, const double *w, do
 }
 
 void conjugate_step_direct(struct conjugate_gradient *solver, struct step_memory *memory) {
-    precondition(solver, memory->continuation, solver->r, solver->w);
+    precondition(solver, memory->continued, solver->r, solver->w);
     struct products s = multiply(solver->padded, solver->r, solver->w, solver->old, solver->t);
     double mean = s.w / s.members;
     double energy = s.w_r - mean * s.r, change = energy - (s.w_old - mean * s.old);

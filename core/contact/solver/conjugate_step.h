@@ -7,6 +7,7 @@
 #define RUGO_CORE_CONTACT_SOLVER_CONJUGATE_STEP_H
 
 #include "core/contact/compliance.h"
+#include "core/contact/solver/pyramid.h"
 #include "core/surface/transform.h"
 #include <float.h>
 
@@ -29,6 +30,7 @@ struct conjugate_gradient {
     double *q;     /* tangent dp/d(mean p): of mean 1, 0 outside of the contact */
     double *r, *old, *t, *w;    /* scratch */
     double *kept_p, *kept_u;    /* before a step that may be shortened */
+    struct pyramid pyramid;     /* of surfaces that repeat */
     double transforms;          /* Fourier transforms made so far, forward and inverse */
     int (*stop)(void *context); /* called every few iterations, non-zero stops; may be NULL */
     void *stop_context;
@@ -53,21 +55,25 @@ struct conjugate_gradient_end {
 /* Steps between calls of stop, which may take as long as a step on a small grid. */
 enum { CONJUGATE_ASK = 8 };
 
-/* How a residual is continued outside the set before it is multiplied by the inverse compliance;
- * the product is brought back by the transpose. With zeros, long waves on a sparse set look like
- * short ones: on a profile the condition number grows with the number of patches in contact (from
- * 44 to 132 for 142 to 433 patches). With straight lines between patches it is about 2, however
- * long the cell. Lines serve sets that are solved before nodes leave or join. Pressures that are
- * cut at 0 after one such step make long waves overshoot. */
-enum continuation { CONTINUED_BY_ZERO, CONTINUED_BY_LINES };
-
 /* What a step of the iteration passes on to the next one. */
 struct step_memory {
-    enum continuation continuation; /* lines: of profiles alone */
-    double energy;                  /* w.r of the last direction; 0 restarts */
-    bool blocked;                   /* a careful step ended where a pressure came to 0 */
+    /* Whether the residual is continued outside the set before it is multiplied by the inverse
+     * compliance; the product is brought back by the transpose. With zeros there, long waves on a
+     * sparse set look like short ones: on a profile the condition number grows with the number of
+     * patches in contact (from 44 to 132 for 142 to 433 patches), and the steps on a surface with
+     * its side. Profiles are continued by straight lines between patches (2, however long the
+     * cell), surfaces by a pyramid (pyramid.h). This serves sets that are solved before nodes leave
+     * or join: pressures that are cut at 0 after one such step make long waves overshoot. */
+    bool continued;
+    double energy; /* w.r of the last direction; 0 restarts */
+    bool blocked;  /* a careful step ended where a pressure came to 0 */
 };
 
+/* Returns whether steps are better continued: all but those of surfaces in free space, where sets
+ * with steps by the pyramid took twice as many as plain ones. */
+bool conjugate_step_is_continued(const struct conjugate_gradient *solver);
+/* Prepares continued steps in the set r != 0, which holds until the next call. */
+void conjugate_step_take_set(struct conjugate_gradient *solver, const double *r);
 /* Computes the next direction t in the set r != 0 of nodes, and w = S t. r is old from then on. */
 void conjugate_step_direct(struct conjugate_gradient *solver, struct step_memory *memory);
 /* Returns old.t/t.w, the multiple of t at which the energy is least. */
