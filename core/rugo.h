@@ -335,8 +335,7 @@ RUGO_API void rugo_contact_destroy(struct rugo_contact **contact);
 RUGO_API int rugo_contact_begin(struct rugo_contact *contact, const double *z,
                                 struct rugo_error *err);
 /* Presses to a mean pressure >= 0 over E*, without friction or adhesion: linear models by active
- * sets (Hintermueller, Ito & Kunisch 2003), in free space by constrained conjugate gradients
- * (Polonsky & Keer 1999), the full model by Newton's method with an active set. Loads may
+ * sets (Hintermueller, Ito & Kunisch 2003), the full model by Newton's method with one. Loads may
  * rise and fall. INPUT where rugo_contact_begin has not succeeded before. NUMERIC, with the
  * accuracy reached, where there is no convergence; linear models then begin the next load anew. */
 RUGO_API int rugo_contact_press(struct rugo_contact *contact, double pressure,

@@ -129,6 +129,20 @@ static int take_heights(struct contact *c, const double *z, struct error *err) {
     return 0;
 }
 
+/* Returns the RMS slope by differences within the rectangle. */
+static double slope(const struct grid *grid, const double *z) {
+    double along = 0, across = 0;
+    for (size_t j = 0; j < grid->ny; j++)
+        for (size_t i = 0; i + 1 < grid->nx; i++) {
+            double rise = z[j * grid->nx + i + 1] - z[j * grid->nx + i];
+            along += rise * rise;
+        }
+    for (size_t i = 0; i + grid->nx < grid_points(grid); i++)
+        across += (z[i + grid->nx] - z[i]) * (z[i + grid->nx] - z[i]);
+    return hypot(sqrt(along) / grid_dx(grid), sqrt(across) / grid_dy(grid)) /
+           sqrt((double)grid_points(grid));
+}
+
 int contact_begin(struct contact *c, const double *z, struct error *err) {
     struct conjugate_gradient *d = &c->solver;
     c->mean = 0;
@@ -144,8 +158,10 @@ int contact_begin(struct contact *c, const double *z, struct error *err) {
     for (size_t i = 0; i < d->n; i++)
         c->highest = fmax(c->highest, d->z[i]);
     c->full = INFINITY;
-    if (c->compliance->open)
+    if (c->compliance->open) {
+        c->flatten = slope(&c->compliance->grid, d->z) * d->largest / 2;
         return 0;
+    }
     transform_filter(d->transform, d->inverse, 1, d->z, d->w);
     struct sum square = {0};
     c->full = 0;
@@ -247,7 +263,7 @@ static void predict(struct contact *c, double mean) {
     if (c->mean > 0)
         for (size_t i = 0; i < d->n; i++)
             sum += d->p[i] = fmax(0, d->p[i] + (mean - c->mean) * d->q[i]);
-    else if (!c->compliance->open && !grid_is_profile(&c->compliance->grid))
+    else if (!grid_is_profile(&c->compliance->grid))
         sum = guess(c, mean);
     /* When the load falls by many orders, it may be below the rounding of the last pressures. */
     double factor = mean * (double)d->n / sum;

@@ -11,6 +11,9 @@ static const double EULER = 0.57721566490153286061;
  * its waves beyond the grid's are below erfc(SPLIT). The near part is below erfc(NEAR) of its value
  * beyond NEAR/alpha. */
 static const double SPLIT = 6, NEAR = 6;
+enum { MARGIN = 8 }; /* of the grid around: a part of the side */
+/* A point more of the grid around: two arrays and a transform of it, its symbol, and a pyramid. */
+static const double AROUND_BYTES = (2 + 1 + 0.5 + 2. / 3) * sizeof(double);
 
 /* Returns the greater spacing: waves of the grid are at least twice as long. */
 static double spacing_of(const struct grid *grid) {
@@ -38,6 +41,16 @@ void free_space_padded(const struct grid *grid, struct grid *padded) {
         return;
     padded->ny = padded_count(grid->ny, grid_dy(grid), reach);
     padded->ly = grid_dy(grid) * (double)padded->ny;
+}
+
+void free_space_around(const struct grid *grid, struct grid *around) {
+    *around = *grid;
+    around->nx = transform_fast_count(grid->nx + grid->nx / MARGIN);
+    around->lx = grid_dx(grid) * (double)around->nx;
+    if (grid_is_profile(grid))
+        return;
+    around->ny = transform_fast_count(grid->ny + grid->ny / MARGIN);
+    around->ly = grid_dy(grid) * (double)around->ny;
 }
 
 /* Returns the far part of the displacement E* at a distance from a unit force; for a profile, from
@@ -98,8 +111,10 @@ int free_space_symbol(const struct grid *grid, const struct grid *padded, double
 }
 
 double free_space_bytes(const struct grid *grid) {
-    struct grid padded;
+    struct grid padded, around;
     free_space_padded(grid, &padded);
     double waves = ((double)padded.nx / 2 + 1) * (double)padded.ny;
-    return (sizeof(double _Complex) + 2 * sizeof(double)) * waves;
+    free_space_around(grid, &around);
+    double more = (double)grid_points(&around) - (double)grid_points(grid);
+    return (sizeof(double _Complex) + 2 * sizeof(double)) * waves + AROUND_BYTES * more;
 }

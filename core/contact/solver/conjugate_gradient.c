@@ -1,5 +1,4 @@
-/* Faces are solved by active sets (active_set.h); surfaces in free space, and where sets do not
- * converge, by what follows.
+/* Faces are solved by active sets (active_set.h), and where these do not converge by what follows.
  *
  * Conjugate gradients in the set of nodes in contact (Polonsky & Keer 1999), preconditioned by the
  * inverse compliance restricted to the set: the residual is transformed, multiplied and transformed
@@ -32,8 +31,6 @@ static const double STRIDE = 1.8;
 /* Residual of a tangent over its approach. Continued steps are close to it after the first few;
  * edges at light loads see it node by node. */
 static const double TANGENT_TOLERANCE = 1e-4;
-/* ... of steps with zeros: measured errors of the slope are below 3e-4. */
-static const double ZEROS_TOLERANCE = 1e-2;
 /* The approach at which nodes under pressure touch on average: minus the mean of u - z over them.
  */
 WIDE_VECTORS static double mean_approach(size_t n, const double *p, const double *u,
@@ -163,10 +160,9 @@ static bool stalled(struct stall_watch *progress, double violation, size_t itera
     return progress->since >= iterations;
 }
 
-/* Makes one iteration from r; *stale says whether u must be computed anew from p. */
+/* Goes along the direction t; *stale says whether u must be computed anew from p. */
 static void iterate(struct conjugate_gradient *solver, double mean, bool careful,
                     struct step_memory *memory, bool *stale) {
-    conjugate_step_direct(solver, memory);
     double step = conjugate_step_length(solver);
     if (careful) {
         double longest = feasible_step(solver, step);
@@ -189,34 +185,34 @@ static void step_projected(struct conjugate_gradient *solver, double mean,
 /* Shortens the step from kept_p and kept_u to a p that was cut at 0, to the least energy between
  * them. If the energy does not fall towards p at all, a projected step from kept_p is made instead.
  * *stale: as for iterate. */
-static void shorten(struct conjugate_gradient *solver, double mean, struct step_memory *memory,
-                    bool *stale) {
+static void shorten(struct conjugate_gradient *solver, double mean, const double *kept_p,
+                    const double *kept_u, struct step_memory *memory, bool *stale) {
     double slope = 0, curvature = 0;
     conjugate_step_apply_compliance(solver, solver->p, solver->u);
     for (size_t i = 0; i < solver->n; i++) {
-        double change = solver->p[i] - solver->kept_p[i];
-        slope += (solver->kept_u[i] - solver->z[i]) * change;
-        curvature += (solver->u[i] - solver->kept_u[i]) * change;
+        double change = solver->p[i] - kept_p[i];
+        slope += (kept_u[i] - solver->z[i]) * change;
+        curvature += (solver->u[i] - kept_u[i]) * change;
     }
     bool falls = slope < 0;
     double share = !falls ? 0 : -slope < curvature ? -slope / curvature : 1;
     for (size_t i = 0; share < 1 && i < solver->n; i++) {
-        solver->p[i] = solver->kept_p[i] + share * (solver->p[i] - solver->kept_p[i]);
-        solver->u[i] = solver->kept_u[i] + share * (solver->u[i] - solver->kept_u[i]);
+        solver->p[i] = kept_p[i] + share * (solver->p[i] - kept_p[i]);
+        solver->u[i] = kept_u[i] + share * (solver->u[i] - kept_u[i]);
     }
     *stale = false;
     if (!falls)
         step_projected(solver, mean, memory, stale);
 }
 
-/* Makes an iteration, and shortens its step where pressures were cut. */
+/* The same, and shortens the step where pressures were cut. */
 static void iterate_shortened(struct conjugate_gradient *solver, double mean,
                               struct step_memory *memory, bool *stale) {
-    memcpy(solver->kept_p, solver->p, solver->n * sizeof *solver->p);
-    memcpy(solver->kept_u, solver->u, solver->n * sizeof *solver->u);
+    memcpy(solver->spare[0], solver->p, solver->n * sizeof *solver->p);
+    memcpy(solver->spare[1], solver->u, solver->n * sizeof *solver->u);
     iterate(solver, mean, false, memory, stale);
     if (*stale)
-        shorten(solver, mean, memory, stale);
+        shorten(solver, mean, solver->spare[0], solver->spare[1], memory, stale);
 }
 
 /* Returns whether it converged or was stopped. */
@@ -262,11 +258,13 @@ static void solve_by_steps(struct conjugate_gradient *solver, double mean, doubl
         }
         if (careful && (memory.blocked || end->penetration >= end->inside)) {
             step_projected(solver, mean, &memory, &stale);
-        } else if (!careful && progress.since >= SLOW) {
-            iterate_shortened(solver, mean, &memory, &stale);
-        } else {
-            iterate(solver, mean, careful, &memory, &stale);
+            continue;
         }
+        conjugate_step_direct(solver, &memory);
+        if (!careful && progress.since >= SLOW)
+            iterate_shortened(solver, mean, &memory, &stale);
+        else
+            iterate(solver, mean, careful, &memory, &stale);
     }
 }
 
@@ -274,17 +272,14 @@ void conjugate_gradient_run(struct conjugate_gradient *solver, double mean, doub
                             size_t stall_iterations, size_t max_iterations,
                             struct conjugate_gradient_end *end) {
     *end = (struct conjugate_gradient_end){0};
-    if (!conjugate_step_is_continued(solver) ||
-        !solve_by_sets(solver, mean, tolerance, max_iterations, end))
+    if (!solve_by_sets(solver, mean, tolerance, max_iterations, end))
         solve_by_steps(solver, mean, tolerance, stall_iterations, max_iterations, end);
 }
 
 double conjugate_gradient_tangent(struct conjugate_gradient *solver) {
-    struct step_memory memory = {.continued = conjugate_step_is_continued(solver)};
-    const double tolerance = memory.continued ? TANGENT_TOLERANCE : ZEROS_TOLERANCE;
+    struct step_memory memory = {.continued = true};
     double sum = 0, slope = 0;
-    if (memory.continued)
-        conjugate_step_take_set(solver, solver->p);
+    conjugate_step_take_set(solver, solver->p);
     for (size_t i = 0; i < solver->padded; i++) {
         solver->q[i] = solver->p[i] > 0 ? solver->q[i] : 0;
         solver->t[i] = solver->old[i] = 0;
@@ -306,7 +301,7 @@ double conjugate_gradient_tangent(struct conjugate_gradient *solver) {
         approach /= (double)members;
         slope = energy / (double)solver->n;
         double most = tangent_residual(solver->padded, solver->p, solver->u, approach, solver->r);
-        if (most <= tolerance * fabs(approach) || iteration == TANGENT_MOST)
+        if (most <= TANGENT_TOLERANCE * fabs(approach) || iteration == TANGENT_MOST)
             return slope;
         conjugate_step_direct(solver, &memory);
         advance_tangent(solver->padded, conjugate_step_length(solver), solver->t, solver->w,

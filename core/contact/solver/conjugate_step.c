@@ -1,4 +1,5 @@
 #include "core/contact/solver/conjugate_step.h"
+#include "core/contact/free_space.h"
 #include "core/vectors.h"
 #include <fftw3.h>
 #include <math.h>
@@ -17,7 +18,7 @@ static size_t padded(size_t n) {
     return (n + LANES - 1) / LANES * LANES;
 }
 
-enum { ARRAYS = 10 };
+enum { ARRAYS = 10, SPARES = 2 }; /* in all, and those that are larger in free space */
 
 double conjugate_gradient_bytes(const struct grid *grid) {
     double waves = ((double)grid->nx / 2 + 1) * (double)grid->ny;
@@ -26,23 +27,25 @@ double conjugate_gradient_bytes(const struct grid *grid) {
 }
 
 static int arrays_create(struct conjugate_gradient *solver, struct error *err) {
-    double **const arrays[ARRAYS] = {&solver->z,      &solver->p,     &solver->u, &solver->q,
-                                     &solver->r,      &solver->old,   &solver->t, &solver->w,
-                                     &solver->kept_p, &solver->kept_u};
+    double **const arrays[ARRAYS] = {&solver->spare[0], &solver->spare[1], &solver->z, &solver->p,
+                                     &solver->u,        &solver->q,        &solver->r, &solver->old,
+                                     &solver->t,        &solver->w};
     for (size_t a = 0; a < ARRAYS; a++) {
-        *arrays[a] = fftw_alloc_real(solver->padded);
+        size_t count = a < SPARES ? grid_points(&solver->around) : solver->padded;
+        *arrays[a] = fftw_alloc_real(count);
         if (*arrays[a] == NULL)
-            return error_memory(err, solver->padded * sizeof(double), "a contact");
-        memset(*arrays[a], 0, solver->padded * sizeof(double));
+            return error_memory(err, count * sizeof(double), "a contact");
+        if (a >= SPARES) /* most solutions never touch those, which then take no memory */
+            memset(*arrays[a], 0, count * sizeof(double));
     }
     for (size_t i = solver->n; i < solver->padded; i++)
         solver->z[i] = -FAR;
     return 0;
 }
 
-/* Inverse compliance of the periodic half-space. */
+/* Inverse compliance of the half-space that repeats `around`. */
 static void fill_periodic_inverse(struct conjugate_gradient *solver) {
-    const struct grid *grid = &solver->grid;
+    const struct grid *grid = &solver->around;
     for (size_t mx = 0; mx <= grid->nx / 2; mx++)
         for (size_t row = 0; row < grid->ny; row++) {
             size_t my = row <= grid->ny / 2 ? row : grid->ny - row;
@@ -53,7 +56,7 @@ static void fill_periodic_inverse(struct conjugate_gradient *solver) {
 
 static int symbols_create(struct conjugate_gradient *solver, const struct compliance *compliance,
                           struct error *err) {
-    size_t waves = (solver->grid.nx / 2 + 1) * solver->grid.ny;
+    size_t waves = (solver->around.nx / 2 + 1) * solver->around.ny;
     solver->compliance = array_create(compliance->waves, sizeof *solver->compliance);
     solver->inverse = array_create(waves, sizeof *solver->inverse);
     if (solver->compliance == NULL || solver->inverse == NULL)
@@ -77,15 +80,20 @@ int conjugate_gradient_create(struct conjugate_gradient *out, const struct compl
                               struct error *err) {
     const struct grid *grid = &compliance->grid;
     const struct grid *waved = &compliance->waved;
-    *out = (struct conjugate_gradient){
-        .grid = *grid, .n = grid_points(grid), .padded = padded(grid_points(grid))};
-    int status = transform_create(&out->transform, grid, grid->nx / 2, grid->ny / 2, err);
+    *out = (struct conjugate_gradient){.grid = *grid,
+                                       .around = *grid,
+                                       .n = grid_points(grid),
+                                       .padded = padded(grid_points(grid))};
+    if (compliance->open)
+        free_space_around(grid, &out->around);
+    const struct grid *around = &out->around;
+    int status = transform_create(&out->transform, around, around->nx / 2, around->ny / 2, err);
     if (status == 0 && compliance->open)
         status = transform_create(&out->wide, waved, waved->nx / 2, waved->ny / 2, err);
     if (status == 0)
         status = arrays_create(out, err);
-    if (status == 0 && !compliance->open && !grid_is_profile(grid))
-        status = pyramid_create(&out->pyramid, grid, err);
+    if (status == 0 && !grid_is_profile(grid))
+        status = pyramid_create(&out->pyramid, around, err);
     if (status == 0)
         status = symbols_create(out, compliance, err);
     if (status != 0)
@@ -94,9 +102,9 @@ int conjugate_gradient_create(struct conjugate_gradient *out, const struct compl
 }
 
 void conjugate_gradient_clear(struct conjugate_gradient *solver) {
-    double *const arrays[ARRAYS] = {solver->z,      solver->p,     solver->u, solver->q,
-                                    solver->r,      solver->old,   solver->t, solver->w,
-                                    solver->kept_p, solver->kept_u};
+    double *const arrays[ARRAYS] = {solver->spare[0], solver->spare[1], solver->z, solver->p,
+                                    solver->u,        solver->q,        solver->r, solver->old,
+                                    solver->t,        solver->w};
     for (size_t a = 0; a < ARRAYS; a++)
         fftw_free(arrays[a]);
     free(solver->compliance);
@@ -202,29 +210,44 @@ static void continue_by_lines_transposed(size_t n, const double *r, double *w) {
     }
 }
 
-bool conjugate_step_is_continued(const struct conjugate_gradient *solver) {
-    return solver->wide == NULL || grid_is_profile(&solver->grid);
+/* Returns r in the corner of `around`, with zeros about it; where that is the grid itself, r. */
+static const double *embed(struct conjugate_gradient *solver, const double *r) {
+    const struct grid *grid = &solver->grid, *around = &solver->around;
+    double *out = solver->spare[0];
+    if (solver->wide == NULL)
+        return r;
+    for (size_t j = 0; j < grid->ny; j++, r += grid->nx, out += around->nx) {
+        memcpy(out, r, grid->nx * sizeof *out);
+        memset(out + grid->nx, 0, (around->nx - grid->nx) * sizeof *out);
+    }
+    memset(out, 0, (around->ny - grid->ny) * around->nx * sizeof *out);
+    return solver->spare[0];
 }
 
 void conjugate_step_take_set(struct conjugate_gradient *solver, const double *r) {
     if (!grid_is_profile(&solver->grid))
-        pyramid_set(&solver->pyramid, r);
+        pyramid_set(&solver->pyramid, embed(solver, r));
 }
 
 /* out = inverse compliance times r, to be read in the set r != 0 alone. */
 static void precondition(struct conjugate_gradient *solver, bool continued, const double *r,
                          double *out) {
-    bool profile = grid_is_profile(&solver->grid);
+    const struct grid *grid = &solver->grid, *around = &solver->around;
+    const bool profile = grid_is_profile(grid);
+    double *x = solver->wide != NULL ? solver->spare[1] : out;
+    const double *set = embed(solver, r);
     if (continued && profile)
-        continue_by_lines(solver->n, r, out);
+        continue_by_lines(around->nx, set, x);
     else if (continued)
-        pyramid_continue(&solver->pyramid, r, out);
-    transform_filter(solver->transform, solver->inverse, 1, continued ? out : r, out);
+        pyramid_continue(&solver->pyramid, set, x);
+    transform_filter(solver->transform, solver->inverse, 1, continued ? x : set, x);
     if (continued && profile)
-        continue_by_lines_transposed(solver->n, r, out);
+        continue_by_lines_transposed(around->nx, set, x);
     else if (continued)
-        pyramid_transpose(&solver->pyramid, r, out);
-    solver->transforms += 2;
+        pyramid_transpose(&solver->pyramid, set, x);
+    for (size_t j = 0; x != out && j < grid->ny; j++)
+        memcpy(out + j * grid->nx, x + j * around->nx, grid->nx * sizeof *out);
+    solver->transforms += 2 * (double)grid_points(around) / (double)solver->n;
 }
 
 /* --- directions --- */

@@ -16,22 +16,25 @@ enum { CONJUGATE_GRADIENT_LANES = 8 }; /* independent partial sums, so that redu
 /* Arrays of the grid have `padded` entries, a multiple of the lanes. Those from n on stand for
  * nodes that never touch: their z is far below and all else 0. */
 struct conjugate_gradient {
-    struct transform *transform; /* owned, as all below */
+    struct transform *transform; /* of `around`; owned, as all below */
     struct transform *wide;      /* of the padded grid where the compliance is open; else NULL */
     struct grid grid;
+    struct grid around; /* what residuals are continued over: the grid itself, where open with a
+                           margin, so that opposite sides do not meet */
     size_t n, padded;
     double largest; /* largest compliance, the unit of the two below; the grid's length */
     double *compliance,
         *inverse;  /* by wave: weighted compliance over largest, and its inverse; 0 for the mean.
                       Where open, compliance is that of the padded grid, and inverse that of the
-                      periodic half-space: a preconditioner alone */
+                      half-space which repeats `around`: a preconditioner alone */
     double *z;     /* heights of mean 0, filled by the caller */
     double *p, *u; /* pressures, and the displacements that they make */
     double *q;     /* tangent dp/d(mean p): of mean 1, 0 outside of the contact */
-    double *r, *old, *t, *w;    /* scratch */
-    double *kept_p, *kept_u;    /* before a step that may be shortened */
-    struct pyramid pyramid;     /* of surfaces that repeat */
-    double transforms;          /* Fourier transforms made so far, forward and inverse */
+    double *r, *old, *t, *w; /* scratch */
+    double *spare[2];        /* points of `around` each: scratch of preconditioning where open, and
+                                of steps that may be shortened */
+    struct pyramid pyramid;  /* of surfaces, over `around` */
+    double transforms;       /* Fourier transforms made so far, forward and inverse */
     int (*stop)(void *context); /* called every few iterations, non-zero stops; may be NULL */
     void *stop_context;
 };
@@ -69,9 +72,6 @@ struct step_memory {
     bool blocked;  /* a careful step ended where a pressure came to 0 */
 };
 
-/* Returns whether steps are better continued: all but those of surfaces in free space, where sets
- * with steps by the pyramid took twice as many as plain ones. */
-bool conjugate_step_is_continued(const struct conjugate_gradient *solver);
 /* Prepares continued steps in the set r != 0, which holds until the next call. */
 void conjugate_step_take_set(struct conjugate_gradient *solver, const double *r);
 /* Computes the next direction t in the set r != 0 of nodes, and w = S t. r is old from then on. */
