@@ -15,6 +15,7 @@
 #include "server/show/map/press_print.h"
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 
 /* Paths; NULL: not wanted. By their endings maps are npy, csv, xyz, or pictures (png, svg); without
  * one npy. */
@@ -350,11 +351,19 @@ static int print(const struct press_report *report, int format, struct error *er
     return output_flush(err);
 }
 
+static double seconds_of(const struct rusage *usage) {
+    const struct timeval *user = &usage->ru_utime, *system = &usage->ru_stime;
+    return (double)(user->tv_sec + system->tv_sec) +
+           1e-6 * (double)(user->tv_usec + system->tv_usec);
+}
+
 static int report(const struct press_order *order, const struct pressed *pressed,
                   const struct height_map *map, struct error *err) {
     static const char *const BOUNDARY_NAMES[] = {"open", "mirrored", "periodic"};
     const struct map_press *press = &pressed->press;
     struct case_result result = {0};
+    struct rusage usage = {0};
+    getrusage(RUSAGE_SELF, &usage);
     const struct press_report report = {.press = press,
                                         .record = &order->record,
                                         .boundary = BOUNDARY_NAMES[order->boundary],
@@ -368,6 +377,8 @@ static int report(const struct press_order *order, const struct pressed *pressed
                                         .map_area = map_area(press),
                                         .loads = order->loads.count,
                                         .with_errors = order->options->without_error == 0,
+                                        .cpu_seconds = seconds_of(&usage),
+                                        .peak_bytes = 1024. * (double)usage.ru_maxrss,
                                         .result = &result};
     int status = map_press_result(&result, press, order->model_count, pressed->series,
                                   order->loads.count, err);

@@ -219,6 +219,8 @@ void press_print_table(FILE *file, const struct press_report *report) {
             fputc('\n', file);
         print_part(file, &part);
     }
+    fprintf(file, "\ntook %.3g s of CPU time and %.3g MB of memory at most\n", report->cpu_seconds,
+            1e-6 * report->peak_bytes);
 }
 
 /* --- JSON --- */
@@ -346,11 +348,16 @@ static bool add_parts(cJSON *document, const struct press_report *report, double
     return complete;
 }
 
+static bool add_cost(cJSON *document, const struct press_report *report) {
+    return cJSON_AddNumberToObject(document, "cpu_seconds", report->cpu_seconds) != NULL &&
+           cJSON_AddNumberToObject(document, "peak_bytes", report->peak_bytes) != NULL;
+}
+
 static bool fill_document(cJSON *document, const struct press_report *report, double *column) {
     const struct part first = part_of(report, 0);
     bool one = report->model_count == 1;
     return add_heading(document, report) && (!one || add_model(document, &first)) &&
-           add_scales(document, report) &&
+           add_scales(document, report) && add_cost(document, report) &&
            (one ? add_part(document, &first, column) : add_parts(document, report, column));
 }
 

@@ -19,12 +19,13 @@ struct press_report {
     bool metres;                       /* the map's lengths are */
     double map_area;                   /* of a profile its length */
     size_t loads;
-    bool with_errors;           /* they are estimated (map_press_error.h) */
+    bool with_errors;               /* they are estimated (map_press_error.h) */
+    double cpu_seconds, peak_bytes; /* of the process so far */
     struct case_result *result; /* curves (map_press_curves.h), of which the columns are printed */
 };
 
 /* Prints for each model heading, values, those in physical units where these are known, and errors
- * by source. */
+ * by source; at the end what it took. */
 void press_print_table(FILE *file, const struct press_report *report);
 /* Returns the same as a document, for the caller to delete; NULL when out of memory. What several
  * models have of their own is an element of "models" for each. */

@@ -243,6 +243,8 @@ static void a_measured_map_is_pressed_in_units(void **state) {
         check_relative(cJSON_GetArrayItem(values, 1)->valuedouble, HERTZ[h].value, 0.005);
     }
     assert_string_equal(cJSON_GetObjectItem(document, "boundary")->valuestring, "open");
+    assert_true(cJSON_GetObjectItem(document, "cpu_seconds")->valuedouble > 0);
+    assert_true(cJSON_GetObjectItem(document, "peak_bytes")->valuedouble > 1e6);
     cJSON_Delete(document);
     free(text);
     assert_int_equal(run_shell("$RUGO press sphere.csv --model layered"), 2);
