@@ -1,24 +1,44 @@
 #include "core/statistics/measured_map.h"
+#include "core/vectors.h"
 
-/* Turns marks along a line of n into marks of the points whose neighbours from -before to after are
+/* Turns marks along a row of n into marks of the points whose neighbours from -before to after are
  * marked; meanwhile the new mark is the second bit. */
-static void line_erode(unsigned char *mark, size_t n, size_t step, size_t before, size_t after,
-                       bool periodic) {
-    size_t reach = before + after + 1, run = 0;
-    if (n == 0)
-        return;
-    /* `run` marks in a row end at the point that is looked at; of a periodic line as many points
+static void row_erode(unsigned char *mark, size_t n, size_t before, size_t after, bool periodic) {
+    const size_t reach = before + after + 1;
+    size_t run = 0, at = 0, middle = n - after % n;
+    /* `run` marks in a row end at the point that is looked at; of a periodic row as many points
      * more are looked at, first, as a run needs. */
-    for (size_t visit = 0; visit < (periodic ? reach + n : n); visit++) {
-        size_t at = visit % n;
-        run = (mark[at * step] & 1) != 0 ? run + 1 : 0;
-        if (run < reach || (periodic && visit < reach))
-            continue;
-        size_t middle = (at + n - after % n) % n;
-        mark[middle * step] |= 2;
+    for (size_t visit = 0; visit < (periodic ? reach + n : n); visit++, at++, middle++) {
+        at = at < n ? at : 0;
+        middle = middle < n ? middle : 0;
+        run = (mark[at] & 1) != 0 ? run + 1 : 0;
+        if (run >= reach && (!periodic || visit >= reach))
+            mark[middle] |= 2;
     }
-    for (size_t at = 0; at < n; at++)
-        mark[at * step] = mark[at * step] >> 1;
+    for (at = 0; at < n; at++)
+        mark[at] = mark[at] >> 1;
+}
+
+/* Keeps the second bit where the first one of the other row is set. */
+WIDE_VECTORS static void keep_beside(size_t nx, const unsigned char *other, unsigned char *row) {
+    for (size_t i = 0; i < nx; i++)
+        row[i] &= (unsigned char)((other[i] & 1) << 1 | 1);
+}
+
+/* The same along all columns. */
+static void columns_erode(unsigned char *mark, size_t nx, size_t ny, size_t before, size_t after,
+                          bool periodic) {
+    for (size_t j = 0; j < ny; j++) {
+        if (!periodic && (j < before || j + after >= ny))
+            continue;
+        unsigned char *row = mark + j * nx;
+        for (size_t i = 0; i < nx; i++)
+            row[i] |= (unsigned char)(row[i] << 1);
+        for (size_t k = 0; k <= before + after; k++)
+            keep_beside(nx, mark + (j + ny - before % ny + k) % ny * nx, row);
+    }
+    for (size_t point = 0; point < nx * ny; point++)
+        mark[point] = mark[point] >> 1;
 }
 
 size_t map_mark_whole(const struct measured_map *map, size_t before, size_t after,
@@ -28,9 +48,9 @@ size_t map_mark_whole(const struct measured_map *map, size_t before, size_t afte
     for (size_t point = 0; point < nx * ny; point++)
         whole[point] = (unsigned char)(isnan(map->z[point]) ? 0 : 1);
     for (size_t j = 0; j < ny; j++)
-        line_erode(whole + j * nx, nx, 1, before, after, periodic);
-    for (size_t i = 0; i < nx && !grid_is_profile(map->grid); i++)
-        line_erode(whole + i, ny, nx, before, after, periodic);
+        row_erode(whole + j * nx, nx, before, after, periodic);
+    if (!grid_is_profile(map->grid))
+        columns_erode(whole, nx, ny, before, after, periodic);
     for (size_t point = 0; point < nx * ny; point++)
         count += whole[point];
     return count;

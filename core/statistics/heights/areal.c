@@ -8,25 +8,28 @@ static const uint32_t NONE = UINT32_MAX;
 
 struct search {
     const struct measured_map *map;
-    uint32_t *order;           /* owned: points with heights, sorted */
+    uint32_t *parent;          /* owned: the highest neighbour; a peak is its own parent */
+    uint32_t *saddles;         /* owned: points that have neighbours of other hills above them */
     size_t count;              /* of them */
-    uint32_t *parent;          /* owned; NONE: not yet flooded; a peak is its own parent */
     unsigned char *whole;      /* owned: points with all neighbours */
     struct summit_list *peaks; /* borrowed; NULL: not wanted */
     struct average bends;      /* of the peaks that count */
 };
 
-/* Highest first; of equal ones the first point. */
+/* Of equal points the first one is above. A hole is above nothing, and nothing is above it. */
+static inline bool is_above(const double *z, uint32_t s, uint32_t t) {
+    return z[s] > z[t] || (z[s] == z[t] && s < t);
+}
+
+/* Highest first. */
 static int by_height(const void *a, const void *b, void *search) {
     const double *z = ((const struct search *)search)->map->z;
     uint32_t s = *(const uint32_t *)a, t = *(const uint32_t *)b;
-    if (z[s] != z[t])
-        return z[s] > z[t] ? -1 : 1;
-    return (s > t) - (s < t);
+    return is_above(z, s, t) ? -1 : is_above(z, t, s) ? 1 : 0;
 }
 
 static void search_clear(struct search *s) {
-    free(s->order);
+    free(s->saddles);
     free(s->parent);
     free(s->whole);
 }
@@ -37,23 +40,17 @@ static int search_create(struct search *s, const struct measured_map *map, struc
         return error_set(err, ERROR_INPUT, "hills of %zu points; allowed: fewer than 2^32 - 1",
                          points);
     *s = (struct search){.map = map,
-                         .order = array_create(points, sizeof *s->order),
+                         .saddles = array_create(points, sizeof *s->saddles),
                          .parent = array_create(points, sizeof *s->parent),
                          .whole = array_create(points, 1)};
-    if (s->order == NULL || s->parent == NULL || s->whole == NULL) {
+    if (s->saddles == NULL || s->parent == NULL || s->whole == NULL) {
         search_clear(s);
-        return error_memory(err, points * (sizeof *s->order + sizeof *s->parent + 1), "hills");
+        return error_memory(err, points * (sizeof *s->saddles + sizeof *s->parent + 1), "hills");
     }
-    for (uint32_t point = 0; point < points; point++) {
-        s->parent[point] = NONE;
-        if (!isnan(map->z[point]))
-            s->order[s->count++] = point;
-    }
-    qsort_r(s->order, s->count, sizeof *s->order, by_height, s);
     return 0;
 }
 
-/* Returns the peak of the hill that a flooded point belongs to (Tarjan 1975). */
+/* Returns the peak of the hill that a point belongs to (Tarjan 1975). */
 static uint32_t peak_of(uint32_t *parent, uint32_t at) {
     while (parent[at] != at) {
         parent[at] = parent[parent[at]];
@@ -84,23 +81,62 @@ static uint32_t neighbour(const struct measured_map *map, long i, long j) {
     return (uint32_t)((j + ny) % ny * nx + (i + nx) % nx);
 }
 
-/* Lets a point rise out of the falling water: it begins a hill, or joins the hills around it, of
- * which the highest goes on. */
-static int point_flood(struct search *s, uint32_t at, double least, struct error *err) {
-    const double *z = s->map->z;
-    long nx = (long)s->map->grid->nx, i = (long)at % nx, j = (long)at / nx;
-    int status = 0;
-    s->parent[at] = at;
-    for (long step = 0; step < 9 && status == 0; step++) {
-        uint32_t beside = neighbour(s->map, i + step % 3 - 1, j + step / 3 - 1);
-        if (beside == NONE || s->parent[beside] == NONE)
+/* Fills the numbers of the 8 points around one; NONE beside an open map. */
+static void neighbours_of(const struct measured_map *map, uint32_t at, uint32_t *beside) {
+    const uint32_t nx = (uint32_t)map->grid->nx, ny = (uint32_t)map->grid->ny;
+    const uint32_t i = at % nx, j = at / nx;
+    bool inside = i > 0 && i + 1 < nx && j > 0 && j + 1 < ny;
+    for (int step = 0, n = 0; step < 9; step++) {
+        int x = step % 3 - 1, y = step / 3 - 1;
+        if (step == 4)
             continue;
-        uint32_t here = peak_of(s->parent, at), there = peak_of(s->parent, beside);
+        beside[n++] = inside ? (uint32_t)(at + y * (int64_t)nx + x)
+                             : neighbour(map, (long)i + x, (long)j + y);
+    }
+}
+
+/* Every point climbs to its highest neighbour, and so to a peak; where neighbours above it climb to
+ * other peaks, it is a saddle. */
+static void climb(struct search *s) {
+    const double *z = s->map->z;
+    const uint32_t points = (uint32_t)grid_points(s->map->grid);
+    uint32_t beside[8];
+    for (uint32_t at = 0; at < points; at++) {
+        uint32_t highest = at;
+        neighbours_of(s->map, at, beside);
+        for (int n = 0; n < 8; n++)
+            if (beside[n] != NONE && is_above(z, beside[n], highest))
+                highest = beside[n];
+        s->parent[at] = highest;
+    }
+    for (uint32_t at = 0; at < points; at++) {
+        bool saddle = false;
+        uint32_t peak = peak_of(s->parent, at);
+        neighbours_of(s->map, at, beside);
+        for (int n = 0; n < 8 && !saddle; n++)
+            saddle = beside[n] != NONE && is_above(z, beside[n], at) &&
+                     peak_of(s->parent, beside[n]) != peak;
+        if (saddle)
+            s->saddles[s->count++] = at;
+    }
+    qsort_r(s->saddles, s->count, sizeof *s->saddles, by_height, s);
+}
+
+/* Joins the hills that meet in a saddle, of which the highest goes on. */
+static int saddle_flood(struct search *s, uint32_t at, double least, struct error *err) {
+    const double *z = s->map->z;
+    uint32_t beside[8];
+    int status = 0;
+    neighbours_of(s->map, at, beside);
+    for (int n = 0; n < 8 && status == 0; n++) {
+        if (beside[n] == NONE || !is_above(z, beside[n], at))
+            continue;
+        uint32_t here = peak_of(s->parent, at), there = peak_of(s->parent, beside[n]);
         if (here == there)
             continue;
-        bool higher = z[there] > z[here] || (z[there] == z[here] && there < here);
+        bool higher = is_above(z, there, here);
         uint32_t stays = higher ? there : here, ends = higher ? here : there;
-        if (ends != at && z[ends] - z[at] >= least)
+        if (z[ends] - z[at] >= least)
             status = peak_count(s, ends, err);
         s->parent[ends] = stays;
     }
@@ -115,12 +151,13 @@ int hills_find(const struct measured_map *map, double least, struct summit_list 
         return status;
     size_t searched = map_mark_whole(map, 1, 1, s.whole);
     s.peaks = peaks;
+    climb(&s);
     for (size_t n = 0; n < s.count && status == 0; n++)
-        status = point_flood(&s, s.order[n], least, err);
-    for (size_t n = 0; n < s.count && status == 0; n++)
-        if (s.parent[s.order[n]] == s.order[n])
-            status = peak_count(&s, s.order[n], err); /* the highest, and one in each part cut off
-                                                         by holes */
+        status = saddle_flood(&s, s.saddles[n], least, err);
+    for (uint32_t at = 0; at < grid_points(map->grid) && status == 0; at++)
+        if (s.parent[at] == at && !isnan(map->z[at]))
+            status =
+                peak_count(&s, at, err); /* the highest, and one in each part cut off by holes */
     *out = (struct hills){.count = s.bends.count,
                           .density = (double)s.bends.count / (double)searched /
                                      (grid_dx(map->grid) * grid_dy(map->grid)),

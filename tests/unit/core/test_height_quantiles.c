@@ -3,6 +3,8 @@
 #include "core/statistics/heights/height_quantiles.h"
 #include "core/surface/heights.h"
 #include "tests/support/check.h"
+#include "tests/support/seed.h"
+#include <math.h>
 #include <stdlib.h>
 
 enum { NX = 50, NY = 40, POINTS = NX * NY, HOLES = 500, HEIGHTS = POINTS - HOLES };
@@ -51,6 +53,32 @@ static void quantiles_are_those_of_the_heights(void **state) {
     height_table_destroy(&table);
 }
 
+static int by_value(const void *a, const void *b) {
+    double one = *(const double *)a, other = *(const double *)b;
+    return (one > other) - (one < other);
+}
+
+/* Quantiles lie between two heights in order, of any number of heights, equal ones too. */
+static void they_lie_between_heights_in_order(void **state) {
+    (void)state;
+    uint64_t words = seed_of_now();
+    for (size_t n = 50; n < POINTS; n += n < 70 ? 1 : n / 3) {
+        double z[POINTS], sorted[POINTS], probability[200], quantile[200];
+        const struct grid grid = {n, 1, (double)n, 1};
+        const struct measured_map map = {&grid, z, BOUNDARY_OPEN};
+        for (size_t i = 0; i < n; i++)
+            sorted[i] = z[i] = (double)(next_word(&words) % 1000);
+        qsort(sorted, n, sizeof *sorted, by_value);
+        assert_int_equal(height_quantiles_measure(&map, n, probability, quantile, NULL), 0);
+        for (size_t a = 0; a < height_quantiles_count(n); a++) {
+            double position = probability[a] * (double)n - 0.5;
+            const double *below = sorted + (size_t)position;
+            double part = position - floor(position);
+            check_close(quantile[a], below[0] + part * (below[1] - below[0]), 1e-12);
+        }
+    }
+}
+
 static void few_heights_have_none(void **state) {
     (void)state;
     assert_int_equal(height_quantiles_count(0), 0);
@@ -62,6 +90,7 @@ static void few_heights_have_none(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(quantiles_are_those_of_the_heights),
+        cmocka_unit_test(they_lie_between_heights_in_order),
         cmocka_unit_test(few_heights_have_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
