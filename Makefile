@@ -394,6 +394,8 @@ check-documents: all
 FIGURES = jobs/studies/figures
 figures: all
 	@$(FIGURES)/draw $(BUILD)/rugo $(FIGURES)
+	@tests/install-deps "" python3 python3
+	@python3 tests/bench/growth_picture.py schema/README.md >schema/growth.svg
 page-figures: all
 	@tests/browser/run $(abspath $(BUILD))/rugo $(FIGURES)
 # Needs sqlite3, as the documents do.
@@ -406,6 +408,8 @@ check-figures: all
 	@tests/same-figures --self-test
 	@$(FIGURES)/draw $(BUILD)/rugo $(BUILD)/figures
 	@tests/same-figures $(FIGURES) $(BUILD)/figures
+	@tests/install-deps "" python3 python3
+	@python3 tests/bench/growth_picture.py schema/README.md | cmp - schema/growth.svg
 	@echo "figures: as the program draws them"
 .PHONY: check-citations figures page-figures check-figures
 
