@@ -352,6 +352,18 @@ bench: deps
 	@$(MAKE) --no-print-directory -j$$(nproc) all $(call all_tests,bench)
 	@RUGO=$(abspath $(BUILD))/rugo tests/bench/run $(call all_tests,bench)
 
+# Beside codes of others from PyPI, in a virtual environment of its own; minutes, and part of no other target.
+PEERS = numpy scipy tamaas contactmechanics surfacetopography surfalize
+PEER_SIDES = 256 512
+bench-peers: all
+	@python3 -m venv $(BUILD)/peers >$(BUILD)/peers.log 2>&1 || { tests/install-deps "" python3-venv python3-venv && \
+	    python3 -m venv $(BUILD)/peers; }
+	@for package in $(PEERS); do \
+	    $(BUILD)/peers/bin/python -m pip --disable-pip-version-check install --quiet $$package >>$(BUILD)/peers.log 2>&1 || \
+	        echo "bench-peers: $$package is not available: $$(tail -n 1 $(BUILD)/peers.log)"; done
+	@$(BUILD)/peers/bin/python tests/bench/peers.py $(abspath $(BUILD))/rugo $(BUILD)/peers/maps $(PEER_SIDES)
+.PHONY: bench-peers
+
 SOURCES = $(shell git ls-files --cached --others --exclude-standard '*.c' '*.h')
 format:
 	@clang-format -i $(SOURCES)
