@@ -253,7 +253,7 @@ def equal_error(program, folder, ratio=8, cells=4):
                        run_child("press_contactmechanics", path, "", *pressures)):
             peers += ["not available", ""] if isinstance(result, str) else [f"{furthest(result[2], limit):.2%}",
                                                                             f"{result[0]:.2f}"]
-        row(factor * COARSEST, factor * side, f"{furthest(found['edges'], limit):.2%}",
+        row(factor * COARSEST, factor * side, f"{furthest(found['edges'], limit):.3%}",
             f"{furthest(found['nodes'], limit):.2%}", f"{seconds:.2f}", *peers)
 
 
