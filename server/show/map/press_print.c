@@ -213,14 +213,14 @@ static void print_part(FILE *file, const struct part *part) {
 
 void press_print_table(FILE *file, const struct press_report *report) {
     print_preparation(file, report);
+    fprintf(file, "cost: %.3g s of CPU time, %.3g MB of memory at most\n", report->cpu_seconds,
+            1e-6 * report->peak_bytes);
     for (size_t m = 0; m < report->model_count; m++) {
         const struct part part = part_of(report, m);
         if (m > 0)
             fputc('\n', file);
         print_part(file, &part);
     }
-    fprintf(file, "\ntook %.3g s of CPU time and %.3g MB of memory at most\n", report->cpu_seconds,
-            1e-6 * report->peak_bytes);
 }
 
 /* --- JSON --- */

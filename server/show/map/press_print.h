@@ -24,8 +24,8 @@ struct press_report {
     struct case_result *result; /* curves (map_press_curves.h), of which the columns are printed */
 };
 
-/* Prints for each model heading, values, those in physical units where these are known, and errors
- * by source; at the end what it took. */
+/* Prints how the map was prepared and what the command took; for each model heading, values, those
+ * in physical units where these are known, and errors by source. */
 void press_print_table(FILE *file, const struct press_report *report);
 /* Returns the same as a document, for the caller to delete; NULL when out of memory. What several
  * models have of their own is an element of "models" for each. */

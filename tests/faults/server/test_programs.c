@@ -157,7 +157,7 @@ static void commands_that_show(void **state) {
         {"convert", {"convert", "map.csv", "converted.npy", NULL}, "", NULL},
         {"press",
          {"press", "map.csv", "--loads", "0.05", "--steps", "pressed", "--nodes", "p.csv", NULL},
-         "",
+         "\nboundary",
          NULL},
         {"steps",
          {"generate", "study.json", "--steps", "made", "--nodes", "m.csv", NULL},
