@@ -1,5 +1,6 @@
 #include "core/contact/contact.h"
 #include "core/contact/solver/conjugate_gradient.h"
+#include "core/statistics/heights/roughness.h"
 #include "core/sum.h"
 #include <fftw3.h>
 #include <float.h>
@@ -30,7 +31,8 @@ struct contact {
     double unit;     /* RMS height, the grid's length; for a flat surface 0, where open lx */
     double highest;  /* of the solver's heights */
     double full;     /* smallest mean pressure of full contact */
-    double flatten;  /* RMS of the pressures that flatten the surface, but for their mean */
+    double flatten;  /* RMS of the pressures that flatten the surface, but for their mean; where
+                        open about that, by the slope */
     double mean;     /* mean of the solver's p, the load that it solves; 0 before the first load */
     bool tangent;    /* the solver's q is the tangent at the last load, else the secant to it */
     double *last;    /* without tangent: the solver's p at the load before; NULL with it */
@@ -129,20 +131,6 @@ static int take_heights(struct contact *c, const double *z, struct error *err) {
     return 0;
 }
 
-/* Returns the RMS slope by differences within the rectangle. */
-static double slope(const struct grid *grid, const double *z) {
-    double along = 0, across = 0;
-    for (size_t j = 0; j < grid->ny; j++)
-        for (size_t i = 0; i + 1 < grid->nx; i++) {
-            double rise = z[j * grid->nx + i + 1] - z[j * grid->nx + i];
-            along += rise * rise;
-        }
-    for (size_t i = 0; i + grid->nx < grid_points(grid); i++)
-        across += (z[i + grid->nx] - z[i]) * (z[i + grid->nx] - z[i]);
-    return hypot(sqrt(along) / grid_dx(grid), sqrt(across) / grid_dy(grid)) /
-           sqrt((double)grid_points(grid));
-}
-
 int contact_begin(struct contact *c, const double *z, struct error *err) {
     struct conjugate_gradient *d = &c->solver;
     c->mean = 0;
@@ -159,7 +147,10 @@ int contact_begin(struct contact *c, const double *z, struct error *err) {
         c->highest = fmax(c->highest, d->z[i]);
     c->full = INFINITY;
     if (c->compliance->open) {
-        c->flatten = slope(&c->compliance->grid, d->z) * d->largest / 2;
+        const struct measured_map map = {&c->compliance->grid, d->z, BOUNDARY_OPEN};
+        struct roughness roughness;
+        open_roughness_measure(&map, &roughness);
+        c->flatten = roughness.rms_slope * d->largest / 2;
         return 0;
     }
     transform_filter(d->transform, d->inverse, 1, d->z, d->w);
@@ -228,7 +219,7 @@ static void fill_partial(struct contact *c, const struct conjugate_gradient_end 
         out->mean_gap = 0; /* without rounding errors */
     out->stiffness = full ? INFINITY : (double)NAN;
     if (c->tangent && !full) {
-        out->stiffness = 1 / (conjugate_gradient_tangent(d) * d->largest);
+        out->stiffness = 1 / (conjugate_gradient_tangent(d, c->options.tolerance) * d->largest);
         out->tangent = d->q;
     }
 }
@@ -268,7 +259,7 @@ static void predict(struct contact *c, double mean) {
     /* When the load falls by many orders, it may be below the rounding of the last pressures. */
     double factor = mean * (double)d->n / sum;
     for (size_t i = 0; i < d->n; i++)
-        d->p[i] = sum > 0 && isfinite(factor) ? d->p[i] * factor : mean;
+        d->p[i] = isfinite(factor) ? d->p[i] * factor : mean;
 }
 
 /* Returns the limit of iterations, which grows with the square root of the longer side, as their

@@ -32,25 +32,26 @@ static size_t padded_count(size_t count, double step, double reach) {
     return transform_fast_count(count + far);
 }
 
-void free_space_padded(const struct grid *grid, struct grid *padded) {
-    double reach = NEAR / alpha_of(grid);
-    *padded = *grid;
-    padded->nx = padded_count(grid->nx, grid_dx(grid), reach);
-    padded->lx = grid_dx(grid) * (double)padded->nx;
+/* A grid of the same spacings, of a profile again a profile. */
+static void extend(const struct grid *grid, size_t nx, size_t ny, struct grid *out) {
+    *out = *grid;
+    out->nx = nx;
+    out->lx = grid_dx(grid) * (double)nx;
     if (grid_is_profile(grid))
         return;
-    padded->ny = padded_count(grid->ny, grid_dy(grid), reach);
-    padded->ly = grid_dy(grid) * (double)padded->ny;
+    out->ny = ny;
+    out->ly = grid_dy(grid) * (double)ny;
+}
+
+void free_space_padded(const struct grid *grid, struct grid *padded) {
+    double reach = NEAR / alpha_of(grid);
+    extend(grid, padded_count(grid->nx, grid_dx(grid), reach),
+           padded_count(grid->ny, grid_dy(grid), reach), padded);
 }
 
 void free_space_around(const struct grid *grid, struct grid *around) {
-    *around = *grid;
-    around->nx = transform_fast_count(grid->nx + grid->nx / MARGIN);
-    around->lx = grid_dx(grid) * (double)around->nx;
-    if (grid_is_profile(grid))
-        return;
-    around->ny = transform_fast_count(grid->ny + grid->ny / MARGIN);
-    around->ly = grid_dy(grid) * (double)around->ny;
+    extend(grid, transform_fast_count(grid->nx + grid->nx / MARGIN),
+           transform_fast_count(grid->ny + grid->ny / MARGIN), around);
 }
 
 /* Returns the far part of the displacement E* at a distance from a unit force; for a profile, from

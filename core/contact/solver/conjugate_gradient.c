@@ -28,8 +28,7 @@ enum {
 /* Length of a projected step over the inverse of the largest compliance, which is 1 here; below
  * 2. */
 static const double STRIDE = 1.8;
-/* Residual of a tangent over its approach. Continued steps are close to it after the first few;
- * edges at light loads see it node by node. */
+/* Largest residual of a tangent over its approach. */
 static const double TANGENT_TOLERANCE = 1e-4;
 /* The approach at which nodes under pressure touch on average: minus the mean of u - z over them.
  */
@@ -276,7 +275,8 @@ void conjugate_gradient_run(struct conjugate_gradient *solver, double mean, doub
         solve_by_steps(solver, mean, tolerance, stall_iterations, max_iterations, end);
 }
 
-double conjugate_gradient_tangent(struct conjugate_gradient *solver) {
+double conjugate_gradient_tangent(struct conjugate_gradient *solver, double tolerance) {
+    const double enough = fmin(TANGENT_TOLERANCE, sqrt(tolerance));
     struct step_memory memory = {.continued = true};
     double sum = 0, slope = 0;
     conjugate_step_take_set(solver, solver->p);
@@ -301,7 +301,7 @@ double conjugate_gradient_tangent(struct conjugate_gradient *solver) {
         approach /= (double)members;
         slope = energy / (double)solver->n;
         double most = tangent_residual(solver->padded, solver->p, solver->u, approach, solver->r);
-        if (most <= TANGENT_TOLERANCE * fabs(approach) || iteration == TANGENT_MOST)
+        if (most <= enough * fabs(approach) || iteration == TANGENT_MOST)
             return slope;
         conjugate_step_direct(solver, &memory);
         advance_tangent(solver->padded, conjugate_step_length(solver), solver->t, solver->w,

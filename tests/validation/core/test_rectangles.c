@@ -80,7 +80,7 @@ static void check_states(const struct scene *one, const struct scene *other, dou
     check_relative(again.upper, area.upper, 1e-13);
     check_relative(again.edges, area.edges, 1e-7);
     check_relative(again.perimeter, area.perimeter, 1e-7);
-    check_relative(again.mean_gap, area.mean_gap, 1e-7);
+    check_relative(again.mean_gap, area.mean_gap, 1e-8);
 }
 
 static void linear_models_see_a_tiled_square(void **state) {
