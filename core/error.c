@@ -6,6 +6,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+
+/* Bytes of an array from which on it is given huge pages. */
+#define LARGE ((size_t)8 << 20)
 
 /* As vsnprintf, with a decimal point. */
 static int print_text(char *to, size_t size, const char *format, va_list arguments) {
@@ -50,8 +54,20 @@ int error_context(struct error *err, const char *format, ...) {
     return err->code;
 }
 
+/* Columns of a large spectrum are pages apart: huge pages keep their addresses at hand. */
+static void use_huge_pages(void *memory, size_t bytes) {
+    const uintptr_t HUGE_PAGE = (uintptr_t)1 << 21;
+    uintptr_t first = ((uintptr_t)memory + HUGE_PAGE - 1) & ~(HUGE_PAGE - 1);
+    uintptr_t end = ((uintptr_t)memory + bytes) & ~(HUGE_PAGE - 1);
+    if (first < end) /* a wish: where the system has none, nothing changes */
+        madvise((void *)first, end - first, MADV_HUGEPAGE);
+}
+
 void *array_create(size_t count, size_t size) {
     if (size != 0 && count > SIZE_MAX / size)
         return NULL;
-    return calloc(count != 0 ? count : 1, size != 0 ? size : 1);
+    void *memory = calloc(count != 0 ? count : 1, size != 0 ? size : 1);
+    if (memory != NULL && size != 0 && count >= LARGE / size)
+        use_huge_pages(memory, count * size);
+    return memory;
 }

@@ -5,28 +5,41 @@
 #include <math.h>
 #include <stdlib.h>
 
+enum { PART_ROWS = 16 }; /* of the grid, that a thread counts together */
+
+/* Numbers of nodes in contact, and of cells with all corners in contact and with any. */
+struct corners {
+    size_t nodes, all, any;
+};
+
 struct area_workspace {
     struct grid grid;
     bool open; /* nothing is in contact beyond the sides */
     struct area_law law;
     struct mesh_error_workspace *mesh_error;
-    double *rise; /* grid_points: scratch */
+    struct edge_scan *scan;
+    size_t parts;
+    struct corners *corners; /* of each part of the rows */
+    const double *p;         /* pressures that are counted */
+    struct team *team;       /* borrowed; NULL: the caller alone */
 };
 
 int area_workspace_create(struct area_workspace **out, const struct compliance *compliance,
                           struct error *err) {
     const struct grid *grid = &compliance->grid;
-    size_t n = grid_points(grid);
     struct area_workspace *workspace = array_create(1, sizeof *workspace);
-    if (workspace != NULL)
-        workspace->rise = array_create(n, sizeof *workspace->rise);
-    if (workspace == NULL || workspace->rise == NULL) {
-        area_workspace_destroy(&workspace);
-        return error_memory(err, n * sizeof(double), "contact areas");
-    }
+    if (workspace == NULL)
+        return error_memory(err, sizeof *workspace, "contact areas");
     workspace->grid = *grid;
     workspace->open = compliance->open;
-    int status = area_law_make(grid, &compliance->block, &workspace->law, err);
+    workspace->parts = grid->ny / PART_ROWS + 1;
+    workspace->corners = array_create(workspace->parts, sizeof *workspace->corners);
+    int status = workspace->corners == NULL
+                     ? error_memory(err, workspace->parts * sizeof(struct corners), "contact areas")
+                     : area_law_make(grid, &compliance->block, &workspace->law, err);
+    if (status == 0)
+        status =
+            edge_scan_create(&workspace->scan, &workspace->law.edge, grid, compliance->open, err);
     if (status == 0)
         status = mesh_error_create(&workspace->mesh_error, compliance, err);
     if (status != 0)
@@ -39,13 +52,21 @@ void area_workspace_destroy(struct area_workspace **workspace) {
     if (*workspace == NULL)
         return;
     mesh_error_destroy(&(*workspace)->mesh_error);
-    free((*workspace)->rise);
+    edge_scan_destroy(&(*workspace)->scan);
+    free((*workspace)->corners);
     free(*workspace);
     *workspace = NULL;
 }
 
+int area_workspace_set_team(struct area_workspace *workspace, struct team *team,
+                            struct error *err) {
+    workspace->team = team;
+    edge_scan_set_team(workspace->scan, team);
+    return mesh_error_set_team(workspace->mesh_error, team, err);
+}
+
 double area_workspace_bytes(const struct grid *grid, const struct block *block) {
-    return 8.0 * (double)grid_points(grid) + mesh_error_bytes(grid, block);
+    return edge_scan_bytes(grid) + mesh_error_bytes(grid, block);
 }
 
 const struct grid *area_workspace_grid(const struct area_workspace *workspace) {
@@ -56,23 +77,39 @@ const struct area_law *area_workspace_law(const struct area_workspace *workspace
     return &workspace->law;
 }
 
-static void count_nodes(const struct grid *grid, bool open, const double *p,
-                        struct contact_area *out) {
-    size_t nx = grid->nx, ny = grid->ny, nodes = 0, all = 0, any = 0;
-    for (size_t j = 0; j < ny; j++)
+static void count_part(void *context, size_t part, size_t thread) {
+    (void)thread;
+    const struct area_workspace *w = context;
+    const size_t nx = w->grid.nx, ny = w->grid.ny;
+    struct corners sums = {0};
+    for (size_t j = part * PART_ROWS; j < (part + 1) * PART_ROWS && j < ny; j++) {
+        const double *row = w->p + j * nx;
+        const double *next = w->p + (w->open && j + 1 == ny ? j : (j + 1) % ny) * nx;
         for (size_t i = 0; i < nx; i++) {
-            size_t i2 = open && i + 1 == nx ? i : (i + 1) % nx;
-            size_t j2 = open && j + 1 == ny ? j : (j + 1) % ny;
-            bool a = p[j * nx + i] > 0, b = p[j * nx + i2] > 0;
-            bool c = p[j2 * nx + i] > 0, d = p[j2 * nx + i2] > 0;
-            nodes += a;
-            all += a && b && c && d;
-            any += a || b || c || d;
+            size_t i2 = i + 1 < nx ? i + 1 : w->open ? i : 0;
+            bool a = row[i] > 0, b = row[i2] > 0, c = next[i] > 0, d = next[i2] > 0;
+            sums.nodes += a;
+            sums.all += a & b & c & d;
+            sums.any += a | b | c | d;
         }
-    double n = (double)grid_points(grid);
-    out->nodes = (double)nodes / n;
-    out->lower = (double)all / n;
-    out->upper = (double)any / n;
+    }
+    w->corners[part] = sums;
+}
+
+static void count_nodes(struct area_workspace *workspace, const double *p,
+                        struct contact_area *out) {
+    struct corners total = {0};
+    workspace->p = p;
+    team_share(workspace->team, workspace->parts, count_part, workspace);
+    for (size_t part = 0; part < workspace->parts; part++) {
+        total.nodes += workspace->corners[part].nodes;
+        total.all += workspace->corners[part].all;
+        total.any += workspace->corners[part].any;
+    }
+    double n = (double)grid_points(&workspace->grid);
+    out->nodes = (double)total.nodes / n;
+    out->lower = (double)total.all / n;
+    out->upper = (double)total.any / n;
 }
 
 /* Limits an estimate to what an area can be; only states that are no solutions exceed it. */
@@ -86,8 +123,8 @@ void contact_area(struct area_workspace *workspace, const struct contact_state *
     const struct area_law *law = &workspace->law;
     struct edge_area edges;
     struct mesh_error error;
-    count_nodes(grid, workspace->open, state->p, out);
-    edge_area_measure(&law->edge, grid, workspace->open, state, workspace->rise, &edges);
+    count_nodes(workspace, state->p, out);
+    edge_area_measure(workspace->scan, state, &edges);
     mesh_error_measure(workspace->mesh_error, state, &error);
     out->mean_gap = state->mean_gap - error.weighting - error.compliance;
     /* The pressure that the exact block would have at this mean gap, less the mesh's. */

@@ -25,6 +25,9 @@ struct area_workspace;
 int area_workspace_create(struct area_workspace **out, const struct compliance *compliance,
                           struct error *err);
 void area_workspace_destroy(struct area_workspace **workspace);
+/* Lets a team of threads work along, with the same digits; it is borrowed until the next call.
+ * ERROR_MEMORY. */
+int area_workspace_set_team(struct area_workspace *workspace, struct team *team, struct error *err);
 double area_workspace_bytes(const struct grid *grid, const struct block *block);
 /* Both live as long as the workspace. */
 const struct grid *area_workspace_grid(const struct area_workspace *workspace);

@@ -44,7 +44,8 @@ struct double_sine {
     struct compliance *compliance;
     struct contact *contact;
     struct mesh_error_workspace *mesh_error;
-    double *z, *rise;
+    struct edge_scan *scan;
+    double *z;
 };
 
 static void double_sine_close(struct double_sine *wave) {
@@ -52,25 +53,25 @@ static void double_sine_close(struct double_sine *wave) {
     contact_destroy(&wave->contact);
     compliance_destroy(&wave->compliance);
     free(wave->z);
-    free(wave->rise);
+    edge_scan_destroy(&wave->scan);
 }
 
-static int double_sine_open(struct double_sine *wave, const struct grid *grid,
-                            const struct block *block, struct error *err) {
+static int double_sine_open(struct double_sine *wave, const struct edge_law *law,
+                            const struct grid *grid, const struct block *block, struct error *err) {
     double dx = grid_dx(grid), dy = grid_dy(grid), length = WAVE_STEPS * fmax(dx, dy);
     struct block deep = *block;
     size_t nx = (size_t)(length / dx + 0.5), ny = (size_t)(length / dy + 0.5);
     *wave = (struct double_sine){.grid = {nx, ny, (double)nx * dx, (double)ny * dy}};
     deep.height = block->model == MODEL_HALFSPACE ? INFINITY : 1.5 * length;
     wave->z = array_create(nx * ny, sizeof *wave->z);
-    wave->rise = array_create(nx * ny, sizeof *wave->rise);
-    int status = wave->z == NULL || wave->rise == NULL
-                     ? error_memory(err, 2 * nx * ny * sizeof(double), "a double sine")
-                     : compliance_create(&wave->compliance, &wave->grid, &deep, err);
+    int status = wave->z == NULL ? error_memory(err, nx * ny * sizeof *wave->z, "a double sine")
+                                 : compliance_create(&wave->compliance, &wave->grid, &deep, err);
     if (status == 0)
         status = contact_create(&wave->contact, wave->compliance, &CONTACT_DEFAULTS, err);
     if (status == 0)
         status = mesh_error_create(&wave->mesh_error, wave->compliance, err);
+    if (status == 0)
+        status = edge_scan_create(&wave->scan, law, &wave->grid, false, err);
     return status;
 }
 
@@ -98,7 +99,7 @@ static int add_loads(struct double_sine *wave, const struct area_law *law, struc
         status = contact_press(wave->contact, LOAD[k] * full, &state, err);
         if (status != 0)
             break;
-        edge_area_measure(&law->edge, &wave->grid, false, &state, wave->rise, &area);
+        edge_area_measure(wave->scan, &state, &area);
         mesh_error_measure(wave->mesh_error, &state, &error);
         double rate = state.tangent != NULL ? area.rate * state.stiffness : 0;
         double moved = rate * error.compliance, counted = area.nodes - law->overlap * area.sides;
@@ -126,7 +127,7 @@ int area_law_make(const struct grid *grid, const struct block *block, struct are
     out->weighting = 1;
     if (grid_is_profile(grid))
         return 0;
-    status = double_sine_open(&wave, grid, block, err);
+    status = double_sine_open(&wave, &out->edge, grid, block, err);
     for (size_t a = 0; status == 0 && a < POSITIONS; a++) {
         wave_shift(&wave, a);
         status = add_loads(&wave, out, &squares, err);

@@ -97,6 +97,10 @@ void contact_set_stop(struct contact *c, int (*stop)(void *context), void *conte
     c->solver.stop_context = context;
 }
 
+int contact_set_team(struct contact *c, struct team *team, struct error *err) {
+    return conjugate_gradient_set_team(&c->solver, team, err);
+}
+
 /* Returns the unit of the solver's pressures, in E*. */
 static double pressure_unit(const struct contact *c) {
     return c->unit / c->solver.largest;

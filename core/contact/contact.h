@@ -13,6 +13,7 @@
 #define RUGO_CORE_CONTACT_CONTACT_H
 
 #include "core/contact/compliance.h"
+#include "core/team.h"
 
 struct contact_options {
     double tolerance;        /* on the largest violation of complementarity, over the largest
@@ -64,6 +65,9 @@ double contact_bytes(const struct grid *grid);
  * with ERROR_STOPPED, as it fails where it does not converge. NULL, the initial value, never
  * stops. */
 void contact_set_stop(struct contact *contact, int (*stop)(void *context), void *context);
+/* Lets a team of threads work along, with the same digits; it is borrowed until the next call or
+ * contact_destroy. NULL, the initial value: the caller alone. ERROR_MEMORY. */
+int contact_set_team(struct contact *contact, struct team *team, struct error *err);
 
 /* Copies a surface (any mean height) and removes the load: the next load starts anew. ERROR_INPUT
  * for a height that is not finite. */

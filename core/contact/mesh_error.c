@@ -61,6 +61,11 @@ void mesh_error_destroy(struct mesh_error_workspace **workspace) {
     *workspace = NULL;
 }
 
+int mesh_error_set_team(struct mesh_error_workspace *workspace, struct team *team,
+                        struct error *err) {
+    return workspace->transform != NULL ? transform_set_team(workspace->transform, team, err) : 0;
+}
+
 double mesh_error_bytes(const struct grid *grid, const struct block *block) {
     double waves = ((double)grid->nx / 2 + 1) * (double)grid->ny;
     return block->model == MODEL_LAYERED ? 8.0 * (waves + (double)grid_points(grid)) + 16.0 * waves

@@ -20,6 +20,9 @@ struct mesh_error_workspace;
 int mesh_error_create(struct mesh_error_workspace **out, const struct compliance *compliance,
                       struct error *err);
 void mesh_error_destroy(struct mesh_error_workspace **workspace);
+/* Lets a team of threads work along, with the same digits; borrowed. ERROR_MEMORY. */
+int mesh_error_set_team(struct mesh_error_workspace *workspace, struct team *team,
+                        struct error *err);
 double mesh_error_bytes(const struct grid *grid, const struct block *block);
 /* Zeros for a half-space, and for a state without a tangent. */
 void mesh_error_measure(struct mesh_error_workspace *workspace, const struct contact_state *state,

@@ -279,7 +279,9 @@ static double pressure_of(const struct pressures *p, size_t i) {
 int pressures_share(struct pressures *pressures, const struct contact_state *state, double area,
                     const struct bins *bins, double unit, double *shares, struct error *err) {
     size_t n = grid_points(&pressures->grid);
-    double most = edge_fill_rise(&pressures->grid, state, pressures->rise);
+    const size_t points = grid_points(&pressures->grid);
+    double most = edge_highest_pressure(points, state->p);
+    edge_fill_rise(state, most, 0, points, pressures->rise);
     int status = find_strips(pressures, err);
     if (status != 0)
         return status;

@@ -10,20 +10,43 @@
 /* FFTW's planner is its only part that is not safe from many threads. */
 static pthread_mutex_t planner = PTHREAD_MUTEX_INITIALIZER;
 
-enum { ROWS = TRANSFORM_ROWS }; /* a cache line of each column serves four of them */
+enum {
+    ROWS = TRANSFORM_ROWS, /* transformed by one plan where rows are short */
+    GROUP = 2 * ROWS,      /* rows that go to columns, or come from them, together */
+    LONG = 256,            /* points of a line from which FFTW plans one alone as well as many */
+    SHARE = 16             /* columns of a part, for a thread */
+};
+
+/* Scratch of a thread. */
+struct desk {
+    double complex *rows; /* GROUP x half */
+    double *lines;        /* GROUP x nx */
+    double complex *line; /* ny: a single column between its two transforms */
+};
 
 struct transform {
     size_t nx, ny, columns; /* columns = mode_x + 1 */
     size_t mode_y;
     size_t half;  /* nx/2 + 1: values of one row's half spectrum */
-    size_t batch; /* rows transformed together: ROWS, or ny where that is less */
+    size_t batch; /* rows of a plan: 1 where they are long, else ROWS, or ny where that is less */
+    size_t group; /* rows of a desk: GROUP, or ny where that is less than ROWS */
     double complex *spectrum;
-    double complex *rows; /* batch x half */
-    double *lines;        /* batch x nx */
-    double complex *line; /* ny: a single column between its two transforms */
-    fftw_plan column_inverse, column_forward, row_inverse, row_forward;
+    struct team *team; /* borrowed; NULL: this thread alone */
+    size_t threads;    /* that have desks */
+    struct desk *desks;
+    fftw_plan column_inverse, column_forward; /* all columns, NULL where they are long */
+    fftw_plan row_inverse, row_forward;
     fftw_plan one_inverse, one_forward; /* a single column */
 };
+
+static size_t least(size_t a, size_t b) {
+    return a < b ? a : b;
+}
+
+static size_t desk_bytes(const struct transform *t) {
+    return (t->group * t->half + t->ny) * sizeof(double complex) +
+           t->group * t->nx * sizeof(double);
+}
 
 /* FFTW aborts the process where it runs out of memory in a plan. Its tables, and its buffers
  * as it transforms, took up to 193 bytes a point of the sides (a prime of 10^6) and 1 MB. */
@@ -56,42 +79,54 @@ static bool has_memory(size_t bytes) {
     return munmap(pages, bytes) == 0 && has_planner;
 }
 
+static bool columns_plan(struct transform *t) {
+    int ny = (int)t->ny, columns = (int)t->columns;
+    double complex *line = t->desks->line, *all = t->spectrum;
+    t->one_inverse =
+        fftw_plan_dft_1d(ny, line, all, FFTW_BACKWARD, FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
+    t->one_forward =
+        fftw_plan_dft_1d(ny, all, line, FFTW_FORWARD, FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
+    bool planned = t->one_inverse != NULL && t->one_forward != NULL;
+    if (ny >= LONG)
+        return planned;
+    t->column_inverse = fftw_plan_many_dft(1, &ny, columns, all, NULL, 1, ny, all, NULL, 1, ny,
+                                           FFTW_BACKWARD, FFTW_ESTIMATE);
+    t->column_forward = fftw_plan_many_dft(1, &ny, columns, all, NULL, 1, ny, all, NULL, 1, ny,
+                                           FFTW_FORWARD, FFTW_ESTIMATE);
+    return planned && t->column_inverse != NULL && t->column_forward != NULL;
+}
+
 /* Under the lock of the planner. Returns false for want of memory. */
 static bool plans_create(struct transform *t) {
-    int nx = (int)t->nx, ny = (int)t->ny, half = (int)t->half, batch = (int)t->batch;
-    if (!has_memory(plan_bytes(t)))
+    int nx = (int)t->nx, half = (int)t->half, batch = (int)t->batch;
+    if (!has_memory(plan_bytes(t)) || (t->ny > 1 && !columns_plan(t)))
         return false;
-    if (t->ny > 1) {
-        int columns = (int)t->columns;
-        t->column_inverse =
-            fftw_plan_many_dft(1, &ny, columns, t->spectrum, NULL, 1, ny, t->spectrum, NULL, 1, ny,
-                               FFTW_BACKWARD, FFTW_ESTIMATE);
-        t->column_forward =
-            fftw_plan_many_dft(1, &ny, columns, t->spectrum, NULL, 1, ny, t->spectrum, NULL, 1, ny,
-                               FFTW_FORWARD, FFTW_ESTIMATE);
-        t->one_inverse = fftw_plan_dft_1d(ny, t->line, t->spectrum, FFTW_BACKWARD,
-                                          FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
-        t->one_forward = fftw_plan_dft_1d(ny, t->spectrum, t->line, FFTW_FORWARD,
-                                          FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
-    }
-    t->row_inverse = fftw_plan_many_dft_c2r(1, &nx, batch, t->rows, NULL, 1, half, t->lines, NULL,
-                                            1, nx, FFTW_ESTIMATE);
-    t->row_forward = fftw_plan_many_dft_r2c(1, &nx, batch, t->lines, NULL, 1, nx, t->rows, NULL, 1,
-                                            half, FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
-    return t->row_inverse != NULL && t->row_forward != NULL &&
-           (t->ny == 1 || (t->column_inverse != NULL && t->column_forward != NULL &&
-                           t->one_inverse != NULL && t->one_forward != NULL));
+    t->row_inverse = fftw_plan_many_dft_c2r(1, &nx, batch, t->desks->rows, NULL, 1, half,
+                                            t->desks->lines, NULL, 1, nx, FFTW_ESTIMATE);
+    t->row_forward =
+        fftw_plan_many_dft_r2c(1, &nx, batch, t->desks->lines, NULL, 1, nx, t->desks->rows, NULL, 1,
+                               half, FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
+    return t->row_inverse != NULL && t->row_forward != NULL;
+}
+
+static bool desk_create(const struct transform *t, struct desk *out) {
+    out->rows = fftw_alloc_complex(t->group * t->half);
+    out->lines = fftw_alloc_real(t->group * t->nx);
+    out->line = fftw_alloc_complex(t->ny);
+    return out->rows != NULL && out->lines != NULL && out->line != NULL;
+}
+
+static void desk_clear(struct desk *desk) {
+    fftw_free(desk->rows);
+    fftw_free(desk->lines);
+    fftw_free(desk->line);
 }
 
 /* Other threads' arrays wait, too: they would take what these plans were just promised. */
 static bool parts_create(struct transform *t) {
     pthread_mutex_lock(&planner);
-    t->spectrum = fftw_alloc_complex(t->columns * t->ny);
-    t->rows = fftw_alloc_complex(t->batch * t->half);
-    t->lines = fftw_alloc_real(t->batch * t->nx);
-    t->line = fftw_alloc_complex(t->ny);
-    bool created = t->spectrum != NULL && t->rows != NULL && t->lines != NULL && t->line != NULL &&
-                   plans_create(t);
+    t->spectrum = array_create(t->columns * t->ny, sizeof *t->spectrum);
+    bool created = t->spectrum != NULL && desk_create(t, t->desks) && plans_create(t);
     pthread_mutex_unlock(&planner);
     return created;
 }
@@ -117,21 +152,29 @@ int transform_create(struct transform **out, const struct grid *grid, size_t mod
             "a band of %zu by %zu waves on a grid of %zu by %zu points; allowed: up to "
             "half the points",
             mode_x, mode_y, grid->nx, grid->ny);
-    if (grid->nx > INT_MAX / (2 * ROWS) || grid->ny > INT_MAX / 2)
+    if (grid->nx > INT_MAX / (2 * GROUP) || grid->ny > INT_MAX / 2)
         return error_set(err, ERROR_INPUT, "a grid of %zu by %zu points has too long a side",
                          grid->nx, grid->ny);
     struct transform *t = array_create(1, sizeof *t);
-    if (t == NULL)
+    struct desk *desks = array_create(1, sizeof *desks);
+    if (t == NULL || desks == NULL) {
+        free(t);
+        free(desks);
         return error_memory(err, sizeof *t, "a transform");
-    t->nx = grid->nx;
-    t->ny = grid->ny;
-    t->columns = mode_x + 1;
-    t->mode_y = mode_y;
-    t->half = grid->nx / 2 + 1;
-    t->batch = t->ny < ROWS ? t->ny : ROWS;
+    }
+    /* Rows of an odd length would not be aligned as the first one is. */
+    bool alone = grid->nx >= LONG && grid->nx % 2 == 0;
+    *t = (struct transform){.nx = grid->nx,
+                            .ny = grid->ny,
+                            .columns = mode_x + 1,
+                            .mode_y = mode_y,
+                            .half = grid->nx / 2 + 1,
+                            .batch = alone ? 1 : least(grid->ny, ROWS),
+                            .group = grid->ny < ROWS ? grid->ny : GROUP,
+                            .threads = 1,
+                            .desks = desks};
     if (!parts_create(t)) {
-        size_t bytes = ((t->columns + 1) * t->ny + t->batch * t->half) * sizeof *t->spectrum +
-                       t->batch * t->nx * sizeof *t->lines + plan_bytes(t);
+        size_t bytes = t->columns * t->ny * sizeof *t->spectrum + desk_bytes(t) + plan_bytes(t);
         transform_destroy(&t);
         return error_memory(err, bytes, "a transform");
     }
@@ -150,44 +193,161 @@ void transform_destroy(struct transform **transform) {
         if (plans[p] != NULL)
             fftw_destroy_plan(plans[p]);
     pthread_mutex_unlock(&planner);
-    fftw_free(t->spectrum);
-    fftw_free(t->rows);
-    fftw_free(t->lines);
-    fftw_free(t->line);
+    for (size_t n = 0; n < t->threads; n++)
+        desk_clear(&t->desks[n]);
+    free(t->desks);
+    free(t->spectrum);
     free(t);
     *transform = NULL;
+}
+
+int transform_set_team(struct transform *t, struct team *team, struct error *err) {
+    size_t threads = team_threads(team);
+    struct desk *desks = array_create(threads, sizeof *desks);
+    if (desks == NULL)
+        return error_memory(err, threads * sizeof *desks, "a transform");
+    for (size_t n = 1; n < threads; n++)
+        if (!desk_create(t, &desks[n])) {
+            for (; n > 0; n--)
+                desk_clear(&desks[n]);
+            free(desks);
+            return error_memory(err, desk_bytes(t), "a transform");
+        }
+    for (size_t n = 1; n < t->threads; n++)
+        desk_clear(&t->desks[n]);
+    desks[0] = t->desks[0];
+    free(t->desks);
+    t->desks = desks;
+    t->threads = threads;
+    t->team = team;
+    return 0;
 }
 
 double complex *transform_spectrum(struct transform *transform) {
     return transform->spectrum;
 }
 
-void transform_inverse_columns(struct transform *t) {
-    if (t->ny > 1)
-        fftw_execute(t->column_inverse);
-}
+/* --- lines of a group of rows, on one thread's desk --- */
 
-/* Computes the lines of rows j .. j + rows - 1, at most ROWS of them, from the spectrum. */
-static void inverse_lines(struct transform *t, size_t j, size_t rows) {
-    for (size_t row = 0; row < t->batch; row++)
-        memset(t->rows + row * t->half + t->columns, 0, (t->half - t->columns) * sizeof *t->rows);
+/* Computes the lines of rows j .. j + rows - 1, at most a group, from the spectrum. */
+static void inverse_lines(const struct transform *t, const struct desk *desk, size_t j,
+                          size_t rows) {
+    for (size_t row = 0; row < rows; row++)
+        memset(desk->rows + row * t->half + t->columns, 0,
+               (t->half - t->columns) * sizeof *desk->rows);
     for (size_t i = 0; i < t->columns; i++)
         for (size_t row = 0; row < rows; row++)
-            t->rows[row * t->half + i] = t->spectrum[i * t->ny + j + row];
-    fftw_execute(t->row_inverse);
+            desk->rows[row * t->half + i] = t->spectrum[i * t->ny + j + row];
+    for (size_t row = 0; row < rows; row += t->batch)
+        fftw_execute_dft_c2r(t->row_inverse, desk->rows + row * t->half, desk->lines + row * t->nx);
+}
+
+/* Transforms the lines as rows j .. j + rows - 1, at most a group, into the spectrum. */
+static void forward_lines(const struct transform *t, const struct desk *desk, size_t j, size_t rows,
+                          double scale) {
+    for (size_t row = 0; row < rows; row += t->batch)
+        fftw_execute_dft_r2c(t->row_forward, desk->lines + row * t->nx, desk->rows + row * t->half);
+    for (size_t i = 0; i < t->columns; i++)
+        for (size_t row = 0; row < rows; row++)
+            t->spectrum[i * t->ny + j + row] = scale * desk->rows[row * t->half + i];
+}
+
+/* --- rows and columns of a field, shared by the team --- */
+
+/* Rows first .. first + count - 1 of the transform's grid, and the nx first points of them. */
+struct field {
+    struct transform *transform;
+    size_t first, count, nx;
+    const double *in;
+    double *out;
+    double scale;
+    const double *symbol;
+};
+
+static size_t parts_of(size_t count, size_t part) {
+    return count / part + (count % part != 0);
+}
+
+static size_t rows_of(const struct field *f, size_t part) {
+    return least(f->count - part * f->transform->group, f->transform->group);
+}
+
+static void forward_part(void *context, size_t part, size_t thread) {
+    const struct field *f = context;
+    struct transform *t = f->transform;
+    const struct desk *desk = &t->desks[thread];
+    size_t j = part * t->group, rows = rows_of(f, part);
+    for (size_t row = 0; row < rows; row++) {
+        memcpy(desk->lines + row * t->nx, f->in + (j + row) * f->nx, f->nx * sizeof *f->in);
+        memset(desk->lines + row * t->nx + f->nx, 0, (t->nx - f->nx) * sizeof *f->in);
+    }
+    forward_lines(t, desk, f->first + j, rows, f->scale);
+}
+
+static void inverse_part(void *context, size_t part, size_t thread) {
+    const struct field *f = context;
+    struct transform *t = f->transform;
+    const struct desk *desk = &t->desks[thread];
+    size_t j = part * t->group, rows = rows_of(f, part);
+    inverse_lines(t, desk, f->first + j, rows);
+    for (size_t row = 0; row < rows; row++)
+        memcpy(f->out + (j + row) * f->nx, desk->lines + row * t->nx, f->nx * sizeof *f->out);
+}
+
+static void share_rows(const struct field *field, team_work *work) {
+    struct field f = *field;
+    team_share(f.transform->team, parts_of(f.count, f.transform->group), work, &f);
+}
+
+static void columns_transform(struct transform *t, fftw_plan all, team_work *one) {
+    if (t->ny == 1)
+        return;
+    if (all != NULL)
+        fftw_execute(all);
+    else
+        team_share(t->team, parts_of(t->columns, SHARE), one, t);
+}
+
+/* Transforms the columns of a part. In place, FFTW would take a buffer from the heap for each of
+ * them, of which the heap gives back the pages: half of the time of 2048 x 2048 points in free
+ * space went into page faults. */
+static void columns_part(struct transform *t, size_t part, size_t thread, fftw_plan plan) {
+    double complex *line = t->desks[thread].line;
+    size_t end = least((part + 1) * SHARE, t->columns);
+    for (size_t i = part * SHARE; i < end; i++) {
+        double complex *column = t->spectrum + i * t->ny;
+        memcpy(line, column, t->ny * sizeof *line);
+        fftw_execute_dft(plan, line, column);
+    }
+}
+
+static void inverse_columns_part(void *context, size_t part, size_t thread) {
+    struct transform *t = context;
+    columns_part(t, part, thread, t->one_inverse);
+}
+
+static void forward_columns_part(void *context, size_t part, size_t thread) {
+    struct transform *t = context;
+    double complex *line = t->desks[thread].line;
+    size_t end = least((part + 1) * SHARE, t->columns);
+    for (size_t i = part * SHARE; i < end; i++) {
+        double complex *column = t->spectrum + i * t->ny;
+        fftw_execute_dft(t->one_forward, column, line);
+        memcpy(column, line, t->ny * sizeof *line);
+    }
+}
+
+void transform_inverse_columns(struct transform *t) {
+    columns_transform(t, t->column_inverse, inverse_columns_part);
 }
 
 double *transform_inverse_strip(struct transform *t, size_t first, size_t count) {
-    inverse_lines(t, first, count);
-    return t->lines;
+    inverse_lines(t, t->desks, first, count);
+    return t->desks->lines;
 }
 
 void transform_inverse_rows(struct transform *t, size_t first, size_t count, double *z) {
-    for (size_t j = first; j < first + count; j += ROWS) {
-        size_t rows = first + count - j < ROWS ? first + count - j : ROWS;
-        inverse_lines(t, j, rows);
-        memcpy(z + (j - first) * t->nx, t->lines, rows * t->nx * sizeof *z);
-    }
+    share_rows(&(struct field){t, first, count, t->nx, .out = z}, inverse_part);
 }
 
 void transform_inverse(struct transform *t, double *z) {
@@ -215,30 +375,17 @@ void transform_pad(struct transform *from, struct transform *to) {
     }
 }
 
-/* Transforms the lines as rows j .. j + rows - 1, at most ROWS of them, into the spectrum. */
-static void forward_lines(struct transform *t, size_t j, size_t rows, double scale) {
-    fftw_execute(t->row_forward);
-    for (size_t i = 0; i < t->columns; i++)
-        for (size_t row = 0; row < rows; row++)
-            t->spectrum[i * t->ny + j + row] = scale * t->rows[row * t->half + i];
-}
-
-static void forward_rows(struct transform *t, size_t first, size_t count, const double *z,
-                         double scale) {
-    for (size_t j = first; j < first + count; j += ROWS) {
-        size_t rows = first + count - j < ROWS ? first + count - j : ROWS;
-        memcpy(t->lines, z + (j - first) * t->nx, rows * t->nx * sizeof *z);
-        forward_lines(t, j, rows, scale);
-    }
+static double scale_of(const struct transform *t) {
+    return 1 / ((double)t->nx * (double)t->ny);
 }
 
 void transform_forward_rows(struct transform *t, size_t first, size_t count, const double *z) {
-    forward_rows(t, first, count, z, 1 / ((double)t->nx * (double)t->ny));
+    share_rows(&(struct field){t, first, count, t->nx, .in = z, .scale = scale_of(t)},
+               forward_part);
 }
 
 void transform_forward_columns(struct transform *t) {
-    if (t->ny > 1)
-        fftw_execute(t->column_forward);
+    columns_transform(t, t->column_forward, forward_columns_part);
 }
 
 void transform_forward(struct transform *t, const double *z) {
@@ -246,45 +393,33 @@ void transform_forward(struct transform *t, const double *z) {
     transform_forward_columns(t);
 }
 
-/* Multiplies each column by its symbol, in cache; rows from ny on are 0 before. In place FFTW would
- * take a buffer from the heap for each transform of a long column, of which the heap gives back the
- * pages: half of the time of 2048 x 2048 points in free space went into page faults. */
-static void filter_columns(struct transform *t, const double *symbol, size_t ny) {
-    for (size_t i = 0; i < t->columns; i++) {
+/* Multiplies the columns of a part by their symbol, in cache; rows from count on are 0 before. */
+static void filter_part(void *context, size_t part, size_t thread) {
+    const struct field *f = context;
+    struct transform *t = f->transform;
+    size_t end = least((part + 1) * SHARE, t->columns);
+    for (size_t i = part * SHARE; i < end; i++) {
         double complex *column = t->spectrum + i * t->ny;
-        memset(column + ny, 0, (t->ny - ny) * sizeof *column);
-        double complex *line = t->ny > 1 ? t->line : column;
+        memset(column + f->count, 0, (t->ny - f->count) * sizeof *column);
+        double complex *line = t->ny > 1 ? t->desks[thread].line : column;
         if (t->ny > 1)
             fftw_execute_dft(t->one_forward, column, line);
         for (size_t row = 0; row < t->ny; row++)
-            line[row] *= symbol[i * t->ny + row];
+            line[row] *= f->symbol[i * t->ny + row];
         if (t->ny > 1)
             fftw_execute_dft(t->one_inverse, line, column);
     }
 }
 
-void transform_filter(struct transform *t, const double *symbol, double factor, const double *in,
-                      double *out) {
-    forward_rows(t, 0, t->ny, in, factor / ((double)t->nx * (double)t->ny));
-    filter_columns(t, symbol, t->ny);
-    transform_inverse_rows(t, 0, t->ny, out);
-}
-
 void transform_filter_part(struct transform *t, const double *symbol, double factor, size_t nx,
                            size_t ny, const double *in, double *out) {
-    double scale = factor / ((double)t->nx * (double)t->ny);
-    for (size_t j = 0; j < ny; j += ROWS) {
-        size_t rows = ny - j < ROWS ? ny - j : ROWS;
-        memset(t->lines, 0, t->batch * t->nx * sizeof *t->lines);
-        for (size_t row = 0; row < rows; row++)
-            memcpy(t->lines + row * t->nx, in + (j + row) * nx, nx * sizeof *in);
-        forward_lines(t, j, rows, scale);
-    }
-    filter_columns(t, symbol, ny);
-    for (size_t j = 0; j < ny; j += ROWS) {
-        size_t rows = ny - j < ROWS ? ny - j : ROWS;
-        inverse_lines(t, j, rows);
-        for (size_t row = 0; row < rows; row++)
-            memcpy(out + (j + row) * nx, t->lines + row * t->nx, nx * sizeof *out);
-    }
+    struct field f = {t, 0, ny, nx, in, out, factor / ((double)t->nx * (double)t->ny), symbol};
+    share_rows(&f, forward_part);
+    team_share(t->team, parts_of(t->columns, SHARE), filter_part, &f);
+    share_rows(&f, inverse_part);
+}
+
+void transform_filter(struct transform *t, const double *symbol, double factor, const double *in,
+                      double *out) {
+    transform_filter_part(t, symbol, factor, t->nx, t->ny, in, out);
 }

@@ -11,6 +11,7 @@
 #define RUGO_CORE_SURFACE_TRANSFORM_H
 
 #include "core/surface/grid.h"
+#include "core/team.h"
 #include <complex.h>
 
 struct transform;
@@ -24,6 +25,9 @@ size_t transform_fast_count(size_t n);
 int transform_create(struct transform **out, const struct grid *grid, size_t mode_x, size_t mode_y,
                      struct error *err);
 void transform_destroy(struct transform **transform);
+/* Lets a team work along, in all but strips, with the same digits; it is borrowed until the plan is
+ * destroyed or has another one. NULL: the caller alone. ERROR_MEMORY. */
+int transform_set_team(struct transform *transform, struct team *team, struct error *err);
 
 /* Returns the plan's own half spectrum, (mode_x + 1) * ny values, aligned; valid as long as the
  * plan. */

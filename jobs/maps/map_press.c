@@ -149,6 +149,10 @@ static int solver_create(struct map_press *press, struct error *err) {
     if (status == 0)
         status = area_workspace_create(&press->areas, press->compliance, err);
     if (status == 0)
+        status = area_workspace_set_team(press->areas, press->team, err);
+    if (status == 0 && model_of(press)->set_team != NULL)
+        status = model_of(press)->set_team(press->solver, press->team, err);
+    if (status == 0)
         status = patch_finder_create(&press->patches, grid, err);
     if (status == 0 && open)
         patch_finder_open(press->patches);

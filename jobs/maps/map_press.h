@@ -80,6 +80,7 @@ struct map_press {
     double copies;        /* of the map in that */
     double slope, height; /* RMS, of the map */
     enum press_boundary boundary;
+    struct team *team;            /* threads that work along; borrowed; NULL: the caller alone */
     double full_contact;          /* as of a series, of the model that was lifted last */
     struct contact_state state;   /* under the last load, on the grid as it is pressed */
     struct contact_case one_case; /* of the one model, as its functions need it */

@@ -100,8 +100,10 @@ static int forgive(int status) {
 static int sides_begin(struct sides *sides, const struct map_press *press,
                        const struct height_map *map, size_t step, size_t loads,
                        const double *pressures, struct error *err) {
-    *sides = (struct sides){
-        .press = press, .loads = loads, .pressures = array_create(loads, sizeof *sides->pressures)};
+    *sides = (struct sides){.press = press,
+                            .side = {.team = press->team},
+                            .loads = loads,
+                            .pressures = array_create(loads, sizeof *sides->pressures)};
     if (sides->pressures == NULL)
         return error_memory(err, loads * sizeof *pressures, "errors of contact");
     int status = take_points(&sides->map, press, map, step, err);

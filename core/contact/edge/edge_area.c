@@ -1,6 +1,7 @@
 #include "core/contact/edge/edge_area.h"
 #include "core/contact/edge/edge_find.h"
 #include <math.h>
+#include <stdlib.h>
 
 /* Adds to the sums, in cells, the area between the edge of a crossing and the cells of the nodes in
  * contact. */
@@ -18,56 +19,141 @@ static void add_crossing(const struct edge_crossing *x, const struct edge_law *l
         sums->rate += f.part * (f.rate * state->tangent[x->inside] / state->p[x->inside]) / f.apart;
 }
 
-static void add_family(const struct edge_family *f, const struct edge_law *law,
-                       const struct contact_state *state, const double *rise,
-                       struct edge_area *sums) {
-    for (size_t line = 0; line < f->lines; line++)
-        for (size_t node = 0; node < f->nodes - (f->open ? 1 : 0); node++) {
-            bool first = rise[edge_node(f, line, node)] > 0;
-            bool second = rise[edge_node(f, line, node + 1)] > 0;
-            if (first == second)
-                continue;
-            size_t a = f->nodes + node + (first ? 0 : 1), b = f->nodes + node + (first ? 1 : 0);
-            struct edge_crossing crossing = edge_crossing_at(f, line, a, b);
-            add_crossing(&crossing, law, state, rise, sums);
-        }
+struct edge_scan {
+    const struct edge_law *law; /* borrowed */
+    struct grid grid;
+    bool open;
+    size_t parts;
+    double *rise;           /* grid_points: scratch */
+    struct edge_area *sums; /* of each part */
+    struct team *team;      /* borrowed; NULL: the caller alone */
+    const struct contact_state *state;
+    double highest; /* pressure */
+};
+
+/* Rows of a part: those of some ten thousand nodes. */
+static size_t part_rows(const struct grid *grid) {
+    return (1 << 14) / grid->nx + 1;
+}
+
+static size_t part_count(const struct grid *grid) {
+    return grid->ny / part_rows(grid) + (grid->ny % part_rows(grid) != 0);
+}
+
+int edge_scan_create(struct edge_scan **out, const struct edge_law *law, const struct grid *grid,
+                     bool open, struct error *err) {
+    struct edge_scan *scan = array_create(1, sizeof *scan);
+    *out = NULL;
+    if (scan == NULL)
+        return error_memory(err, sizeof *scan, "contact areas");
+    *scan = (struct edge_scan){.law = law, .grid = *grid, .open = open, .parts = part_count(grid)};
+    scan->rise = array_create(grid_points(grid), sizeof *scan->rise);
+    scan->sums = array_create(scan->parts, sizeof *scan->sums);
+    if (scan->rise == NULL || scan->sums == NULL) {
+        edge_scan_destroy(&scan);
+        return error_memory(err, edge_scan_bytes(grid), "contact areas");
+    }
+    *out = scan;
+    return 0;
+}
+
+void edge_scan_destroy(struct edge_scan **scan) {
+    if (*scan == NULL)
+        return;
+    free((*scan)->rise);
+    free((*scan)->sums);
+    free(*scan);
+    *scan = NULL;
+}
+
+double edge_scan_bytes(const struct grid *grid) {
+    return sizeof(double) * (double)grid_points(grid) +
+           sizeof(struct edge_area) * (double)part_count(grid);
+}
+
+void edge_scan_set_team(struct edge_scan *scan, struct team *team) {
+    scan->team = team;
+}
+
+/* Adds the crossing between a node of a line and the next one, if there is one. */
+static void add_between(const struct edge_scan *scan, const struct edge_family *f, size_t line,
+                        size_t node, bool first, bool second, struct edge_area *sums) {
+    if (first == second)
+        return;
+    size_t a = f->nodes + node + (first ? 0 : 1), b = f->nodes + node + (first ? 1 : 0);
+    struct edge_crossing crossing = edge_crossing_at(f, line, a, b);
+    add_crossing(&crossing, scan->law, scan->state, scan->rise, sums);
 }
 
 /* Counts patches less holes by the turns of their boundary: a cell with one corner in contact turns
  * it by a quarter, a cell with three turns it back by one. Counts the sides of the boundary, too.
  * It ends at the sides of an open grid. */
-static void count_boundary(const struct grid *grid, bool open, const double *p,
-                           struct edge_area *sums) {
-    size_t nx = grid->nx, ny = grid->ny;
-    for (size_t j = 0; j < ny; j++)
-        for (size_t i = 0; i < nx; i++) {
-            size_t i2 = open && i + 1 == nx ? i : (i + 1) % nx;
-            size_t j2 = open && j + 1 == ny ? j : (j + 1) % ny;
-            bool in = p[j * nx + i] > 0, right = p[j * nx + i2] > 0, back = p[j2 * nx + i] > 0;
-            int corners = in + right + back + (p[j2 * nx + i2] > 0);
-            sums->patches += corners == 1 ? 0.25 : corners == 3 ? -0.25 : 0;
-            sums->sides += (in != right) + (in != back);
-        }
+static void count_corners(bool in, bool right, bool back, bool across, struct edge_area *sums) {
+    int corners = in + right + back + across;
+    sums->patches += corners == 1 ? 0.25 : corners == 3 ? -0.25 : 0;
+    sums->sides += (in != right) + (in != back);
 }
 
-void edge_area_measure(const struct edge_law *law, const struct grid *grid, bool open,
-                       const struct contact_state *state, double *rise, struct edge_area *out) {
-    double n = (double)grid_points(grid);
-    struct edge_family rows = edge_rows(grid), columns = edge_columns(grid);
-    rows.open = columns.open = open;
-    edge_fill_rise(grid, state, rise);
-    *out = (struct edge_area){0};
-    for (size_t i = 0; i < grid_points(grid); i++)
-        out->nodes += rise[i] > 0;
-    out->straight = out->nodes;
-    add_family(&rows, law, state, rise, out);
-    if (!grid_is_profile(grid)) {
-        add_family(&columns, law, state, rise, out);
-        count_boundary(grid, open, state->p, out);
+static void scan_row(const struct edge_scan *scan, size_t j, struct edge_area *sums) {
+    const size_t nx = scan->grid.nx, ny = scan->grid.ny;
+    const bool profile = ny == 1, last = scan->open && j + 1 == ny;
+    struct edge_family rows = edge_rows(&scan->grid), columns = edge_columns(&scan->grid);
+    rows.open = columns.open = scan->open;
+    const double *row = scan->rise + j * nx, *next = scan->rise + (last ? j : (j + 1) % ny) * nx;
+    for (size_t i = 0; i < nx; i++) {
+        bool end = i + 1 == nx;
+        size_t i2 = !end ? i + 1 : scan->open ? i : 0;
+        bool in = row[i] > 0, right = row[i2] > 0, back = next[i] > 0, across = next[i2] > 0;
+        sums->nodes += in;
+        if (in == right && in == back && in == across)
+            continue;
+        if (!(end && scan->open))
+            add_between(scan, &rows, j, i, in, right, sums);
+        if (!profile && !last)
+            add_between(scan, &columns, i, j, in, back, sums);
+        if (!profile)
+            count_corners(in, right, back, across, sums);
     }
-    *out = (struct edge_area){.straight = out->straight / n,
-                              .rate = out->rate / n,
-                              .patches = out->patches / n,
-                              .nodes = out->nodes / n,
-                              .sides = out->sides / n};
+}
+
+static void scan_part(void *context, size_t part, size_t thread) {
+    (void)thread;
+    const struct edge_scan *scan = context;
+    struct edge_area sums = {0};
+    size_t rows = part_rows(&scan->grid);
+    for (size_t j = part * rows; j < (part + 1) * rows && j < scan->grid.ny; j++)
+        scan_row(scan, j, &sums);
+    scan->sums[part] = sums;
+}
+
+static void fill_part(void *context, size_t part, size_t thread) {
+    (void)thread;
+    const struct edge_scan *scan = context;
+    size_t size = part_rows(&scan->grid) * scan->grid.nx, first = part * size;
+    size_t end = first + size < grid_points(&scan->grid) ? first + size : grid_points(&scan->grid);
+    edge_fill_rise(scan->state, scan->highest, first, end, scan->rise);
+}
+
+void edge_area_measure(struct edge_scan *scan, const struct contact_state *state,
+                       struct edge_area *out) {
+    const size_t points = grid_points(&scan->grid);
+    const double n = (double)points;
+    struct edge_area total = {0};
+    scan->state = state;
+    scan->highest = edge_highest_pressure(points, state->p);
+    team_share(scan->team, scan->parts, fill_part, scan);
+    team_share(scan->team, scan->parts, scan_part, scan);
+    for (size_t part = 0; part < scan->parts; part++) {
+        const struct edge_area *sums = &scan->sums[part];
+        total.straight += sums->straight;
+        total.rate += sums->rate;
+        total.patches += sums->patches;
+        total.nodes += sums->nodes;
+        total.sides += sums->sides;
+    }
+    *out = (struct edge_area){.straight = (total.nodes + total.straight) / n,
+                              .rate = total.rate / n,
+                              .patches = total.patches / n,
+                              .nodes = total.nodes / n,
+                              .sides = total.sides / n};
 }

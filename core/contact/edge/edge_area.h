@@ -20,9 +20,17 @@ struct edge_area {
     double sides;   /* of nodes in contact that face open ones, over the number of nodes */
 };
 
-/* rise: scratch of grid_points. open: contact ends at the sides of the grid, on the borders of the
- * cells of the outermost nodes. */
-void edge_area_measure(const struct edge_law *law, const struct grid *grid, bool open,
-                       const struct contact_state *state, double *rise, struct edge_area *out);
+/* Measures the area of states on one grid. */
+struct edge_scan;
+/* open: contact ends at the sides of the grid, on the borders of the cells of the outermost nodes.
+ * Borrows the law, which must outlive it. */
+int edge_scan_create(struct edge_scan **out, const struct edge_law *law, const struct grid *grid,
+                     bool open, struct error *err);
+void edge_scan_destroy(struct edge_scan **scan);
+double edge_scan_bytes(const struct grid *grid);
+/* Lets a team work along, with the same digits; it is borrowed until the next call. */
+void edge_scan_set_team(struct edge_scan *scan, struct team *team);
+void edge_area_measure(struct edge_scan *scan, const struct contact_state *state,
+                       struct edge_area *out);
 
 #endif

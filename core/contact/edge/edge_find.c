@@ -8,16 +8,23 @@ static const double COSINE_LEAST = 0.1;
 static const double BEND_MOST = 0.5, SLOPE_LEAST = 0.75;
 enum { ROUNDS = 4, INVERSE_STEPS = 2 };
 
-double edge_fill_rise(const struct grid *grid, const struct contact_state *state, double *rise) {
-    size_t n = grid_points(grid);
+double edge_highest_pressure(size_t n, const double *p) {
     double most = 0;
     for (size_t i = 0; i < n; i++)
-        most = fmax(most, state->p[i]);
-    for (size_t i = 0; i < n; i++) {
-        double open = most > 0 ? cbrt(0.75 * fmax(0, state->opening[i]) / most) : 1;
-        rise[i] = state->p[i] > 0 ? (state->p[i] / most) * (state->p[i] / most) : -open * open;
-    }
+        most = p[i] > most ? p[i] : most;
     return most;
+}
+
+void edge_fill_rise(const struct contact_state *state, double highest, size_t first, size_t end,
+                    double *rise) {
+    for (size_t i = first; i < end; i++) {
+        if (state->p[i] > 0) {
+            rise[i] = (state->p[i] / highest) * (state->p[i] / highest);
+            continue;
+        }
+        double open = highest > 0 ? cbrt(0.75 * fmax(0, state->opening[i]) / highest) : 1;
+        rise[i] = -open * open;
+    }
 }
 
 /* Returns the index a few steps from another one, of count, which closes upon itself or not. */

@@ -43,11 +43,14 @@ struct edge_crossing {
 struct edge_crossing edge_crossing_at(const struct edge_family *family, size_t line, size_t a,
                                       size_t b);
 
-/* Fills rise with quantities that are proportional to a distance from the edge: in contact the
- * square of the pressure over the largest one; elsewhere -(3 gap/4)^(2/3) of the gap over that
- * pressure. Returns the largest pressure. An edge does not depend on this unit, and squares stay in
- * range. Gaps are in the grid's lengths. */
-double edge_fill_rise(const struct grid *grid, const struct contact_state *state, double *rise);
+/* Returns the largest pressure of n nodes. */
+double edge_highest_pressure(size_t n, const double *p);
+/* Fills rise, of nodes first .. end - 1, with quantities that are proportional to a distance from
+ * the edge: in contact the square of the pressure over the highest one of all nodes; elsewhere
+ * -(3 gap/4)^(2/3) of the gap over that pressure. An edge does not depend on this unit, and squares
+ * stay in range. Gaps are in the grid's lengths. */
+void edge_fill_rise(const struct contact_state *state, double highest, size_t first, size_t end,
+                    double *rise);
 
 /* The result of a crossing. Distances are true ones; t is the distance to the edge along the line,
  * in steps. */

@@ -14,59 +14,96 @@ enum {
  * still: long waves that are left over make nodes leave and join again and again. */
 static const double PROFILE_PART = 0.03, SURFACE_PART = 0.1, CLOSER = 0.3;
 
-/* A set after its steps. */
-struct set {
-    double members, left, joined; /* numbers of nodes */
-    double penetration, deepest;  /* as in struct conjugate_gradient_end */
-    double sum;                   /* of p, without negative pressures */
-};
+/* Sums and largest values of the passes below. */
+enum { GAP, MEMBERS };                 /* over the nodes of the set */
+enum { HIGHEST, LOWEST };              /* gap in the set; the lowest one with its sign changed */
+enum { STAY, LEFT, JOINED, PRESSURE }; /* numbers of nodes, and their pressures */
+enum { PENETRATION, DEEPEST };         /* as in struct conjugate_gradient_end */
 
-/* r = u - z in the set r != 0, never 0 there. Returns the sum, and the size of the set. */
-WIDE_VECTORS static double fill(size_t n, const double *u, const double *z, double *r,
-                                double *members) {
-    double sum[LANES] = {0}, count[LANES] = {0};
+static double larger(double a, double b) {
+    return a > b ? a : b;
+}
+
+static double highest_of(const double *lanes) {
+    double highest = lanes[0];
+    for (size_t a = 1; a < LANES; a++)
+        highest = larger(lanes[a], highest);
+    return highest;
+}
+
+/* r = u - z in the set r != 0, never 0 there. */
+WIDE_VECTORS static void fill(size_t n, const double *u, const double *z, double *r,
+                              struct pass_result *out) {
+    double sum[LANES] = {0}, count[LANES] = {0}, high[LANES], low[LANES];
+    for (size_t a = 0; a < LANES; a++)
+        high[a] = low[a] = -INFINITY;
     for (size_t i = 0; i < n; i += LANES)
         for (size_t a = 0; a < LANES; a++) {
             double in = r[i + a] != 0 ? 1 : 0, gap = in * (u[i + a] - z[i + a]);
+            double above = in > 0 ? gap : -INFINITY, below = in > 0 ? -gap : -INFINITY;
+            high[a] = above > high[a] ? above : high[a];
+            low[a] = below > low[a] ? below : low[a];
             sum[a] += gap;
             count[a] += in;
             r[i + a] = in * (gap == 0 ? DBL_MIN : gap);
         }
-    *members = conjugate_lanes_sum(count);
-    return conjugate_lanes_sum(sum);
+    out->sum[GAP] = conjugate_lanes_sum(sum);
+    out->sum[MEMBERS] = conjugate_lanes_sum(count);
+    out->most[HIGHEST] = highest_of(high);
+    out->most[LOWEST] = highest_of(low);
 }
 
-/* Takes the mean off r in the set r != 0, where it is never 0. Returns the largest |r|. */
-WIDE_VECTORS static double centre(size_t n, double mean, double *r) {
-    double most[LANES] = {0};
-    for (size_t i = 0; i < n; i += LANES)
-        for (size_t a = 0; a < LANES; a++) {
-            double in = r[i + a] != 0 ? 1 : 0, gap = in * (r[i + a] - mean);
-            r[i + a] = in * (gap == 0 ? DBL_MIN : gap);
-            most[a] = fabs(gap) > most[a] ? fabs(gap) : most[a];
-        }
-    return conjugate_lanes_most(most);
+static void fill_block(const struct pass *pass, size_t first, size_t n, struct pass_result *out) {
+    const struct conjugate_gradient *s = pass->solver;
+    fill(n, s->u + first, s->z + first, s->r + first, out);
 }
 
-/* p -= step t, u -= step w, r = old - step w in the set old != 0, never 0 there. Returns the sum of
- * r. */
-WIDE_VECTORS static double advance(size_t n, double step, const double *t, const double *w,
-                                   const double *old, double *p, double *u, double *r) {
-    double sum[LANES] = {0};
+/* Takes the mean off r in the set r != 0, where it is never 0. */
+WIDE_VECTORS static void centre(size_t n, double mean, double *r) {
+    for (size_t i = 0; i < n; i++) {
+        double in = r[i] != 0 ? 1 : 0, gap = in * (r[i] - mean);
+        r[i] = in * (gap == 0 ? DBL_MIN : gap);
+    }
+}
+
+static void centre_block(const struct pass *pass, size_t first, size_t n, struct pass_result *out) {
+    (void)out;
+    centre(n, pass->mean, pass->solver->r + first);
+}
+
+/* p -= step t, u -= step w, r = old - step w in the set old != 0, never 0 there. */
+WIDE_VECTORS static void advance(size_t n, double step, const double *t, const double *w,
+                                 const double *old, double *p, double *u, double *r,
+                                 struct pass_result *out) {
+    double sum[LANES] = {0}, high[LANES], low[LANES];
+    for (size_t a = 0; a < LANES; a++)
+        high[a] = low[a] = -INFINITY;
     for (size_t i = 0; i < n; i += LANES)
         for (size_t a = 0; a < LANES; a++) {
             double in = old[i + a] != 0 ? 1 : 0, gap = in * (old[i + a] - step * w[i + a]);
+            double above = in > 0 ? gap : -INFINITY, below = in > 0 ? -gap : -INFINITY;
+            high[a] = above > high[a] ? above : high[a];
+            low[a] = below > low[a] ? below : low[a];
             p[i + a] -= step * t[i + a];
             u[i + a] -= step * w[i + a];
             r[i + a] = in * (gap == 0 ? DBL_MIN : gap);
             sum[a] += gap;
         }
-    return conjugate_lanes_sum(sum);
+    out->sum[GAP] = conjugate_lanes_sum(sum);
+    out->most[HIGHEST] = highest_of(high);
+    out->most[LOWEST] = highest_of(low);
+}
+
+static void advance_block(const struct pass *pass, size_t first, size_t n,
+                          struct pass_result *out) {
+    const struct conjugate_gradient *s = pass->solver;
+    advance(n, pass->step, s->t + first, s->w + first, s->old + first, s->p + first, s->u + first,
+            s->r + first, out);
 }
 
 /* Makes r != 0 the next set, and sets negative p to 0. */
-WIDE_VECTORS static struct set follow(size_t n, const double *u, const double *z, double approach,
-                                      double *p, double *r) {
+WIDE_VECTORS static void follow(size_t n, const double *u, const double *z, double approach,
+                                double *p, double *r, struct pass_result *out) {
     double members[LANES] = {0}, left[LANES] = {0}, joined[LANES] = {0}, sum[LANES] = {0};
     double through[LANES] = {0}, deep[LANES] = {0};
     for (size_t i = 0; i < n; i += LANES)
@@ -84,12 +121,17 @@ WIDE_VECTORS static struct set follow(size_t n, const double *u, const double *z
             sum[a] += p[i + a];
             r[i + a] = in - leaves + joins;
         }
-    return (struct set){.members = conjugate_lanes_sum(members),
-                        .left = conjugate_lanes_sum(left),
-                        .joined = conjugate_lanes_sum(joined),
-                        .penetration = conjugate_lanes_most(through),
-                        .deepest = conjugate_lanes_most(deep),
-                        .sum = conjugate_lanes_sum(sum)};
+    out->sum[STAY] = conjugate_lanes_sum(members);
+    out->sum[LEFT] = conjugate_lanes_sum(left);
+    out->sum[JOINED] = conjugate_lanes_sum(joined);
+    out->sum[PRESSURE] = conjugate_lanes_sum(sum);
+    out->most[PENETRATION] = conjugate_lanes_most(through);
+    out->most[DEEPEST] = conjugate_lanes_most(deep);
+}
+
+static void follow_block(const struct pass *pass, size_t first, size_t n, struct pass_result *out) {
+    const struct conjugate_gradient *s = pass->solver;
+    follow(n, s->u + first, s->z + first, pass->approach, s->p + first, s->r + first, out);
 }
 
 /* Reduces the gap in the set r != 0 to a share of what it was, or to `enough`. Fills approach and
@@ -97,22 +139,24 @@ WIDE_VECTORS static struct set follow(size_t n, const double *u, const double *z
 static void close_set(struct conjugate_gradient *solver, double enough, double share,
                       size_t max_iterations, struct conjugate_gradient_end *end) {
     struct step_memory memory = {.continued = true};
-    double members, sum = fill(solver->padded, solver->u, solver->z, solver->r, &members);
+    struct pass pass = {.solver = solver};
+    struct pass_result gaps = pass_run(&pass, fill_block);
+    const double members = gaps.sum[MEMBERS];
     double begun = 0;
     conjugate_step_take_set(solver, solver->r);
     end->approach = 0;
-    for (size_t i = 0; i < solver->padded; i++)
-        solver->t[i] = solver->old[i] = 0;
     for (int step = 0;; step++) {
-        end->inside = centre(solver->padded, sum / members, solver->r);
-        end->approach -= sum / members;
+        pass.mean = gaps.sum[GAP] / members;
+        end->inside = larger(gaps.most[HIGHEST] - pass.mean, gaps.most[LOWEST] + pass.mean);
+        end->approach -= pass.mean;
         begun = step == 0 ? end->inside : begun;
         if (end->inside <= enough || (step > 0 && end->inside <= share * begun) ||
             step == STEPS_MOST || end->iterations >= max_iterations || !isfinite(end->approach))
             return;
+        pass_run(&pass, centre_block);
         conjugate_step_direct(solver, &memory);
-        sum = advance(solver->padded, conjugate_step_length(solver), solver->t, solver->w,
-                      solver->old, solver->p, solver->u, solver->r);
+        pass.step = conjugate_step_length(solver);
+        gaps = pass_run(&pass, advance_block);
         end->iterations++;
     }
 }
@@ -127,12 +171,12 @@ void active_set_run(struct conjugate_gradient *solver, double mean, double toler
     while (stalled < SETS_STALLED && end->iterations < max_iterations) {
         close_set(solver, fmax(tolerance * end->deepest, rounding), part * pow(CLOSER, stalled),
                   max_iterations, end);
-        struct set next =
-            follow(solver->padded, solver->u, solver->z, end->approach, solver->p, solver->r);
-        end->penetration = next.penetration;
-        end->deepest = next.deepest;
+        const struct pass pass = {.solver = solver, .approach = end->approach};
+        struct pass_result next = pass_run(&pass, follow_block);
+        end->penetration = next.most[PENETRATION];
+        end->deepest = next.most[DEEPEST];
         double violation = fmax(end->inside, end->penetration);
-        end->converged = !(next.left > 0) && isfinite(end->approach) &&
+        end->converged = !(next.sum[LEFT] > 0) && isfinite(end->approach) &&
                          violation <= fmax(tolerance * end->deepest, rounding);
         if (end->converged || !isfinite(end->approach))
             return;
@@ -140,15 +184,15 @@ void active_set_run(struct conjugate_gradient *solver, double mean, double toler
             asked = end->iterations;
             end->stopped = solver->stop != NULL && solver->stop(solver->stop_context) != 0;
         }
-        double changed = next.left + next.joined;
+        double changed = next.sum[LEFT] + next.sum[JOINED];
         bool better = changed < least || violation < 0.5 * best;
         stalled = better ? 0 : stalled + 1;
         if (better) {
             least = changed;
             best = violation;
         }
-        if (next.left > 0) {
-            conjugate_step_scale(solver->n, mean, next.sum, solver->p);
+        if (next.sum[LEFT] > 0) {
+            conjugate_step_scale(solver, mean, next.sum[PRESSURE], solver->p);
             conjugate_step_apply_compliance(solver, solver->p, solver->u);
         }
         if (end->stopped)

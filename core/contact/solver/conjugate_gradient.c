@@ -22,14 +22,11 @@
 enum {
     LANES = CONJUGATE_GRADIENT_LANES,
     REFRESH = 50, /* iterations after which u is computed anew from p */
-    TANGENT_MOST = 300,
     SLOW = 30, /* iterations that have not halved the violation, after which steps are shortened */
 };
 /* Length of a projected step over the inverse of the largest compliance, which is 1 here; below
  * 2. */
 static const double STRIDE = 1.8;
-/* Largest residual of a tangent over its approach. */
-static const double TANGENT_TOLERANCE = 1e-4;
 /* The approach at which nodes under pressure touch on average: minus the mean of u - z over them.
  */
 WIDE_VECTORS static double mean_approach(size_t n, const double *p, const double *u,
@@ -71,20 +68,6 @@ WIDE_VECTORS static double residual(size_t n, const double *p, const double *u, 
     return conjugate_lanes_sum(members);
 }
 
-/* The same for the tangent: r = u + approach in the set p > 0. Returns the largest |r|. */
-WIDE_VECTORS static double tangent_residual(size_t n, const double *p, const double *u,
-                                            double approach, double *r) {
-    double most[LANES] = {0};
-    for (size_t i = 0; i < n; i += LANES)
-        for (size_t a = 0; a < LANES; a++) {
-            double slope = u[i + a] + approach;
-            slope = p[i + a] > 0 ? (slope == 0 ? DBL_MIN : slope) : 0;
-            most[a] = fabs(slope) > most[a] ? fabs(slope) : most[a];
-            r[i + a] = slope;
-        }
-    return conjugate_lanes_most(most);
-}
-
 /* p -= step t, cut at 0, and u -= step w. Returns the sum of p; *cut: whether any was. */
 WIDE_VECTORS static double advance(size_t n, double step, const double *t, const double *w,
                                    double *p, double *u, bool *cut) {
@@ -100,14 +83,6 @@ WIDE_VECTORS static double advance(size_t n, double step, const double *t, const
         }
     *cut = conjugate_lanes_sum(below) > 0;
     return conjugate_lanes_sum(sum);
-}
-
-WIDE_VECTORS static void advance_tangent(size_t n, double step, const double *t, const double *w,
-                                         double *q, double *u) {
-    for (size_t i = 0; i < n; i++) {
-        q[i] -= step * t[i];
-        u[i] -= step * w[i];
-    }
 }
 
 /* Replaces p by the pressures nearest to p - STRIDE gap among those >= 0 of this mean (Michelot
@@ -135,7 +110,7 @@ static void project(struct conjugate_gradient *solver, double mean) {
     sum = 0;
     for (size_t i = 0; i < solver->n; i++)
         sum += solver->p[i] = fmax(0, solver->t[i] - top - level);
-    conjugate_step_scale(solver->n, mean, sum, solver->p);
+    conjugate_step_scale(solver, mean, sum, solver->p);
 }
 
 /* Returns the longest step along t that leaves no pressure negative. */
@@ -170,7 +145,7 @@ static void iterate(struct conjugate_gradient *solver, double mean, bool careful
     }
     double sum = advance(solver->padded, step, solver->t, solver->w, solver->p, solver->u, stale);
     if (*stale)
-        conjugate_step_scale(solver->n, mean, sum, solver->p);
+        conjugate_step_scale(solver, mean, sum, solver->p);
 }
 
 /* Makes a projected step, after which the last search direction is no longer used. */
@@ -232,8 +207,6 @@ static void solve_by_steps(struct conjugate_gradient *solver, double mean, doubl
     struct stall_watch progress = {.best = INFINITY};
     bool careful = false, stale = true;
     const double highest = conjugate_step_highest(solver);
-    for (size_t i = 0; i < solver->padded; i++)
-        solver->t[i] = solver->old[i] = 0;
     for (;; end->iterations++) {
         if (stale || end->iterations % REFRESH == 0)
             conjugate_step_apply_compliance(solver, solver->p, solver->u);
@@ -273,38 +246,4 @@ void conjugate_gradient_run(struct conjugate_gradient *solver, double mean, doub
     *end = (struct conjugate_gradient_end){0};
     if (!solve_by_sets(solver, mean, tolerance, max_iterations, end))
         solve_by_steps(solver, mean, tolerance, stall_iterations, max_iterations, end);
-}
-
-double conjugate_gradient_tangent(struct conjugate_gradient *solver, double tolerance) {
-    const double enough = fmin(TANGENT_TOLERANCE, sqrt(tolerance));
-    struct step_memory memory = {.continued = true};
-    double sum = 0, slope = 0;
-    conjugate_step_take_set(solver, solver->p);
-    for (size_t i = 0; i < solver->padded; i++) {
-        solver->q[i] = solver->p[i] > 0 ? solver->q[i] : 0;
-        solver->t[i] = solver->old[i] = 0;
-        sum += solver->q[i];
-    }
-    if (!(sum > 0))
-        for (size_t i = 0; i < solver->padded; i++)
-            sum += solver->q[i] = solver->p[i];
-    conjugate_step_scale(solver->n, 1, sum, solver->q);
-    conjugate_step_apply_compliance(solver, solver->q, solver->u);
-    for (size_t iteration = 0;; iteration++) {
-        double approach = 0, energy = 0;
-        size_t members = 0;
-        for (size_t i = 0; i < solver->n; i++) {
-            approach -= solver->p[i] > 0 ? solver->u[i] : 0;
-            members += solver->p[i] > 0;
-            energy += solver->q[i] * solver->u[i];
-        }
-        approach /= (double)members;
-        slope = energy / (double)solver->n;
-        double most = tangent_residual(solver->padded, solver->p, solver->u, approach, solver->r);
-        if (most <= enough * fabs(approach) || iteration == TANGENT_MOST)
-            return slope;
-        conjugate_step_direct(solver, &memory);
-        advance_tangent(solver->padded, conjugate_step_length(solver), solver->t, solver->w,
-                        solver->q, solver->u);
-    }
 }

@@ -1,7 +1,6 @@
 #include "core/contact/solver/conjugate_step.h"
 #include "core/contact/free_space.h"
 #include "core/vectors.h"
-#include <fftw3.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,7 +22,9 @@ enum { ARRAYS = 10, SPARES = 2 }; /* in all, and those that are larger in free s
 double conjugate_gradient_bytes(const struct grid *grid) {
     double waves = ((double)grid->nx / 2 + 1) * (double)grid->ny;
     double pyramid = grid_is_profile(grid) ? 0 : pyramid_bytes(grid);
-    return sizeof(double) * (ARRAYS * (double)padded(grid_points(grid)) + 4 * waves) + pyramid;
+    double results = sizeof(struct pass_result) * (double)pass_blocks(padded(grid_points(grid)));
+    return sizeof(double) * (ARRAYS * (double)padded(grid_points(grid)) + 4 * waves) + pyramid +
+           results;
 }
 
 static int arrays_create(struct conjugate_gradient *solver, struct error *err) {
@@ -32,12 +33,14 @@ static int arrays_create(struct conjugate_gradient *solver, struct error *err) {
                                      &solver->t,        &solver->w};
     for (size_t a = 0; a < ARRAYS; a++) {
         size_t count = a < SPARES ? grid_points(&solver->around) : solver->padded;
-        *arrays[a] = fftw_alloc_real(count);
+        *arrays[a] = array_create(count, sizeof(double)); /* the spare ones mostly stay untouched */
         if (*arrays[a] == NULL)
             return error_memory(err, count * sizeof(double), "a contact");
-        if (a >= SPARES) /* most solutions never touch those, which then take no memory */
-            memset(*arrays[a], 0, count * sizeof(double));
     }
+    size_t blocks = pass_blocks(solver->padded);
+    solver->results = array_create(blocks, sizeof *solver->results);
+    if (solver->results == NULL)
+        return error_memory(err, blocks * sizeof *solver->results, "a contact");
     for (size_t i = solver->n; i < solver->padded; i++)
         solver->z[i] = -FAR;
     return 0;
@@ -106,13 +109,26 @@ void conjugate_gradient_clear(struct conjugate_gradient *solver) {
                                     solver->u,        solver->q,        solver->r, solver->old,
                                     solver->t,        solver->w};
     for (size_t a = 0; a < ARRAYS; a++)
-        fftw_free(arrays[a]);
+        free(arrays[a]);
+    free(solver->results);
     free(solver->compliance);
     free(solver->inverse);
     pyramid_clear(&solver->pyramid);
     transform_destroy(&solver->transform);
     transform_destroy(&solver->wide);
     *solver = (struct conjugate_gradient){0};
+}
+
+int conjugate_gradient_set_team(struct conjugate_gradient *solver, struct team *team,
+                                struct error *err) {
+    int status = transform_set_team(solver->transform, team, err);
+    if (status == 0 && solver->wide != NULL)
+        status = transform_set_team(solver->wide, team, err);
+    if (status == 0 && !grid_is_profile(&solver->grid))
+        status = pyramid_set_team(&solver->pyramid, team, err);
+    if (status == 0)
+        solver->team = team;
+    return status;
 }
 
 /* --- sums, products and directions of a step --- */
@@ -252,33 +268,47 @@ static void precondition(struct conjugate_gradient *solver, bool continued, cons
 
 /* --- directions --- */
 
-/* These sums are over the set r != 0. */
-struct products {
-    double members, w, r, old, t, w_r, w_old;
-};
+/* Sums over the set r != 0. */
+enum { MEMBERS, W, R, W_R, OLD, T, W_OLD };
 
-WIDE_VECTORS static struct products multiply(size_t n, const double *r, const double *w,
-                                             const double *old, const double *t) {
-    double m[LANES] = {0}, sw[LANES] = {0}, sr[LANES] = {0}, so[LANES] = {0}, st[LANES] = {0};
-    double wr[LANES] = {0}, wo[LANES] = {0};
+WIDE_VECTORS static void multiply(size_t n, const double *r, const double *w,
+                                  struct pass_result *out) {
+    double m[LANES] = {0}, sw[LANES] = {0}, sr[LANES] = {0}, wr[LANES] = {0};
     for (size_t i = 0; i < n; i += LANES)
         for (size_t a = 0; a < LANES; a++) {
             double in = r[i + a] != 0 ? 1 : 0, v = in * w[i + a];
             m[a] += in;
             sw[a] += v;
             sr[a] += r[i + a];
+            wr[a] += v * r[i + a];
+        }
+    out->sum[MEMBERS] = conjugate_lanes_sum(m);
+    out->sum[W] = conjugate_lanes_sum(sw);
+    out->sum[R] = conjugate_lanes_sum(sr);
+    out->sum[W_R] = conjugate_lanes_sum(wr);
+}
+
+WIDE_VECTORS static void multiply_old(size_t n, const double *r, const double *w, const double *old,
+                                      const double *t, struct pass_result *out) {
+    double so[LANES] = {0}, st[LANES] = {0}, wo[LANES] = {0};
+    for (size_t i = 0; i < n; i += LANES)
+        for (size_t a = 0; a < LANES; a++) {
+            double in = r[i + a] != 0 ? 1 : 0, v = in * w[i + a];
             so[a] += in * old[i + a];
             st[a] += in * t[i + a];
-            wr[a] += v * r[i + a];
             wo[a] += v * old[i + a];
         }
-    return (struct products){.members = conjugate_lanes_sum(m),
-                             .w = conjugate_lanes_sum(sw),
-                             .r = conjugate_lanes_sum(sr),
-                             .old = conjugate_lanes_sum(so),
-                             .t = conjugate_lanes_sum(st),
-                             .w_r = conjugate_lanes_sum(wr),
-                             .w_old = conjugate_lanes_sum(wo)};
+    out->sum[OLD] = conjugate_lanes_sum(so);
+    out->sum[T] = conjugate_lanes_sum(st);
+    out->sum[W_OLD] = conjugate_lanes_sum(wo);
+}
+
+static void multiply_block(const struct pass *pass, size_t first, size_t n,
+                           struct pass_result *out) {
+    const struct conjugate_gradient *s = pass->solver;
+    multiply(n, s->r + first, s->w + first, out);
+    if (pass->beta > 0)
+        multiply_old(n, s->r + first, s->w + first, s->old + first, s->t + first, out);
 }
 
 /* Sets t to w - w_mean + beta (t - t_mean) in the set, to 0 outside. */
@@ -290,13 +320,36 @@ WIDE_VECTORS static void redirect(size_t n, const double *r, const double *w, do
     }
 }
 
+/* The same where beta is 0: t may hold anything. */
+WIDE_VECTORS static void direct_anew(size_t n, const double *r, const double *w, double w_mean,
+                                     double *t) {
+    for (size_t i = 0; i < n; i++) {
+        double direction = w[i] - w_mean;
+        t[i] = r[i] != 0 ? direction : 0;
+    }
+}
+
+static void redirect_block(const struct pass *pass, size_t first, size_t n,
+                           struct pass_result *out) {
+    (void)out;
+    const struct conjugate_gradient *s = pass->solver;
+    if (pass->beta > 0)
+        redirect(n, s->r + first, s->w + first, pass->w_mean, pass->beta, pass->t_mean,
+                 s->t + first);
+    else
+        direct_anew(n, s->r + first, s->w + first, pass->w_mean, s->t + first);
+}
+
 void conjugate_step_direct(struct conjugate_gradient *solver, struct step_memory *memory) {
     precondition(solver, memory->continued, solver->r, solver->w);
-    struct products s = multiply(solver->padded, solver->r, solver->w, solver->old, solver->t);
-    double mean = s.w / s.members;
-    double energy = s.w_r - mean * s.r, change = energy - (s.w_old - mean * s.old);
-    double beta = memory->energy > 0 ? fmax(0, change / memory->energy) : 0;
-    redirect(solver->padded, solver->r, solver->w, mean, beta, s.t / s.members, solver->t);
+    struct pass pass = {.solver = solver, .beta = memory->energy > 0 ? 1 : 0};
+    struct pass_result s = pass_run(&pass, multiply_block);
+    pass.w_mean = s.sum[W] / s.sum[MEMBERS];
+    pass.t_mean = s.sum[T] / s.sum[MEMBERS];
+    double energy = s.sum[W_R] - pass.w_mean * s.sum[R];
+    double change = energy - (s.sum[W_OLD] - pass.w_mean * s.sum[OLD]);
+    pass.beta = memory->energy > 0 ? fmax(0, change / memory->energy) : 0;
+    pass_run(&pass, redirect_block);
     memory->energy = energy;
     double *last = solver->old;
     solver->old = solver->r;
@@ -304,28 +357,49 @@ void conjugate_step_direct(struct conjugate_gradient *solver, struct step_memory
     conjugate_step_apply_compliance(solver, solver->t, solver->w);
 }
 
-WIDE_VECTORS static double least_along(size_t n, const double *r, const double *t,
-                                       const double *w) {
+enum { ABOVE, BELOW };
+
+WIDE_VECTORS static void least_along(size_t n, const double *r, const double *t, const double *w,
+                                     struct pass_result *out) {
     double above[LANES] = {0}, below[LANES] = {0};
     for (size_t i = 0; i < n; i += LANES)
         for (size_t a = 0; a < LANES; a++) {
             above[a] += r[i + a] * t[i + a];
             below[a] += t[i + a] * w[i + a];
         }
-    double curvature = conjugate_lanes_sum(below);
-    return curvature > 0 ? conjugate_lanes_sum(above) / curvature : 0;
+    out->sum[ABOVE] = conjugate_lanes_sum(above);
+    out->sum[BELOW] = conjugate_lanes_sum(below);
 }
 
-double conjugate_step_length(const struct conjugate_gradient *solver) {
-    return least_along(solver->padded, solver->old, solver->t, solver->w);
+static void least_block(const struct pass *pass, size_t first, size_t n, struct pass_result *out) {
+    const struct conjugate_gradient *s = pass->solver;
+    least_along(n, s->old + first, s->t + first, s->w + first, out);
+}
+
+double conjugate_step_length(struct conjugate_gradient *solver) {
+    struct pass_result s = pass_run(&(struct pass){.solver = solver}, least_block);
+    return s.sum[BELOW] > 0 ? s.sum[ABOVE] / s.sum[BELOW] : 0;
 }
 
 /* --- scales --- */
 
-void conjugate_step_scale(size_t n, double mean, double sum, double *x) {
-    double factor = mean * (double)n / sum;
-    for (size_t i = 0; i < n; i++)
-        x[i] *= factor;
+struct scaling {
+    double factor, *x;
+    size_t n;
+};
+enum { SCALED = 1 << 15 }; /* values of a part */
+
+static void scale_part(void *context, size_t part, size_t thread) {
+    (void)thread;
+    const struct scaling *scaling = context;
+    size_t end = (part + 1) * SCALED < scaling->n ? (part + 1) * SCALED : scaling->n;
+    for (size_t i = part * SCALED; i < end; i++)
+        scaling->x[i] *= scaling->factor;
+}
+
+void conjugate_step_scale(struct conjugate_gradient *solver, double mean, double sum, double *x) {
+    struct scaling scaling = {mean * (double)solver->n / sum, x, solver->n};
+    team_share(solver->team, solver->n / SCALED + 1, scale_part, &scaling);
 }
 
 double conjugate_step_highest(const struct conjugate_gradient *solver) {

@@ -7,6 +7,7 @@
 #define RUGO_CORE_CONTACT_SOLVER_CONJUGATE_STEP_H
 
 #include "core/contact/compliance.h"
+#include "core/contact/solver/pass.h"
 #include "core/contact/solver/pyramid.h"
 #include "core/surface/transform.h"
 #include <float.h>
@@ -33,14 +34,19 @@ struct conjugate_gradient {
     double *r, *old, *t, *w; /* scratch */
     double *spare[2];        /* points of `around` each: scratch of preconditioning where open, and
                                 of steps that may be shortened */
-    struct pyramid pyramid;  /* of surfaces, over `around` */
-    double transforms;       /* Fourier transforms made so far, forward and inverse */
-    int (*stop)(void *context); /* called every few iterations, non-zero stops; may be NULL */
+    struct pass_result *results; /* scratch of passes */
+    struct team *team;           /* borrowed; NULL: the caller alone */
+    struct pyramid pyramid;      /* of surfaces, over `around` */
+    double transforms;           /* Fourier transforms made so far, forward and inverse */
+    int (*stop)(void *context);  /* called every few iterations, non-zero stops; may be NULL */
     void *stop_context;
 };
 
 int conjugate_gradient_create(struct conjugate_gradient *out, const struct compliance *compliance,
                               struct error *err);
+/* Lets a team work along, with the same digits; borrowed until the next one. ERROR_MEMORY. */
+int conjugate_gradient_set_team(struct conjugate_gradient *solver, struct team *team,
+                                struct error *err);
 void conjugate_gradient_clear(struct conjugate_gradient *solver);
 double conjugate_gradient_bytes(const struct grid *grid);
 
@@ -77,12 +83,12 @@ void conjugate_step_take_set(struct conjugate_gradient *solver, const double *r)
 /* Computes the next direction t in the set r != 0 of nodes, and w = S t. r is old from then on. */
 void conjugate_step_direct(struct conjugate_gradient *solver, struct step_memory *memory);
 /* Returns old.t/t.w, the multiple of t at which the energy is least. */
-double conjugate_step_length(const struct conjugate_gradient *solver);
+double conjugate_step_length(struct conjugate_gradient *solver);
 /* out = S in. */
 void conjugate_step_apply_compliance(struct conjugate_gradient *solver, const double *in,
                                      double *out);
-/* Multiplies x[n] so that its mean, of the sum given, is `mean`. */
-void conjugate_step_scale(size_t n, double mean, double sum, double *x);
+/* Multiplies x, of all nodes, so that its mean, of the sum given, is `mean`. */
+void conjugate_step_scale(struct conjugate_gradient *solver, double mean, double sum, double *x);
 /* Returns the largest |z|. */
 double conjugate_step_highest(const struct conjugate_gradient *solver);
 double conjugate_lanes_sum(const double *lanes);

@@ -23,19 +23,25 @@ static size_t cells_above(const struct grid *grid) {
 }
 
 static size_t doubles_of(const struct grid *grid) {
-    return 2 * cells_above(grid) + grid->nx + 4;
+    return 2 * cells_above(grid);
+}
+
+static size_t line_size(size_t nx) {
+    return nx + 4;
 }
 
 double pyramid_bytes(const struct grid *grid) {
-    return sizeof(double) * (double)doubles_of(grid);
+    return sizeof(double) * (double)(doubles_of(grid) + line_size(grid->nx));
 }
 
 int pyramid_create(struct pyramid *out, const struct grid *grid, struct error *err) {
-    *out = (struct pyramid){.memory = array_create(doubles_of(grid), sizeof(double))};
-    if (out->memory == NULL)
-        return error_memory(err, doubles_of(grid) * sizeof(double), "a contact");
-    out->line = out->memory + 1;
-    double *next = out->memory + grid->nx + 4;
+    *out = (struct pyramid){.memory = array_create(doubles_of(grid), sizeof(double)),
+                            .lines = array_create(line_size(grid->nx), sizeof(double))};
+    if (out->memory == NULL || out->lines == NULL) {
+        pyramid_clear(out);
+        return error_memory(err, pyramid_bytes(grid), "a contact");
+    }
+    double *next = out->memory;
     size_t nx = grid->nx, ny = grid->ny;
     out->levels[out->count++] = (struct pyramid_level){.nx = nx, .ny = ny};
     while (nx > 1 || ny > 1) {
@@ -48,8 +54,20 @@ int pyramid_create(struct pyramid *out, const struct grid *grid, struct error *e
     return 0;
 }
 
+int pyramid_set_team(struct pyramid *pyramid, struct team *team, struct error *err) {
+    size_t count = team_threads(team) * line_size(pyramid->levels[0].nx);
+    double *lines = array_create(count, sizeof *lines);
+    if (lines == NULL)
+        return error_memory(err, count * sizeof *lines, "a contact");
+    free(pyramid->lines);
+    pyramid->lines = lines;
+    pyramid->team = team;
+    return 0;
+}
+
 void pyramid_clear(struct pyramid *pyramid) {
     free(pyramid->memory);
+    free(pyramid->lines);
     *pyramid = (struct pyramid){0};
 }
 
@@ -61,6 +79,35 @@ static inline double weight_of(double sum) {
 }
 static inline double share_of(double sum) {
     return FALL * sum < 1 ? FALL : 1 / sum;
+}
+
+/* --- work on the rows of a level, shared by the team --- */
+
+/* A level's rows and those of the level above it. The nodes of the grid itself are r and x. */
+struct stage {
+    const struct pyramid *pyramid;
+    const struct pyramid_level *fine, *coarse;
+    const double *r; /* NULL but of the grid itself */
+    const double *from;
+    double *to;
+    void (*row)(const struct stage *stage, size_t j, double *line);
+    size_t rows, of_part; /* in all, and of a part */
+};
+enum { PART = 1 << 14 }; /* cells of a part, about */
+
+static void stage_part(void *context, size_t part, size_t thread) {
+    const struct stage *stage = context;
+    double *line = stage->pyramid->lines + thread * line_size(stage->pyramid->levels[0].nx) + 1;
+    size_t end = (part + 1) * stage->of_part;
+    for (size_t j = part * stage->of_part; j < end && j < stage->rows; j++)
+        stage->row(stage, j, line);
+}
+
+/* Computes rows of nx cells by the stage's function. */
+static void share_rows(struct stage stage, size_t rows, size_t nx) {
+    stage.rows = rows;
+    stage.of_part = PART / nx + 1;
+    team_share(stage.pyramid->team, rows / stage.of_part + 1, stage_part, &stage);
 }
 
 /* --- upwards --- */
@@ -78,63 +125,68 @@ WIDE_VECTORS static void sum_rows(size_t nx, const double *a, const double *b, d
         to[pairs] = a[nx - 1] + (b != NULL ? b[nx - 1] : 0);
 }
 
-static void sum_children(const struct pyramid_level *fine, const struct pyramid_level *coarse,
-                         const double *from, double *to) {
-    for (size_t j = 0; j < coarse->ny; j++) {
-        const double *a = from + 2 * j * fine->nx;
-        sum_rows(fine->nx, a, 2 * j + 1 < fine->ny ? a + fine->nx : NULL, to + j * coarse->nx);
-    }
+/* Returns the second row of fine cells below a row of coarse ones; NULL where there is none. */
+static const double *second_row(const struct stage *s, const double *from, size_t j) {
+    return 2 * j + 1 < s->fine->ny ? from + (2 * j + 1) * s->fine->nx : NULL;
 }
 
-/* Fills the line with 1 for nodes of the set, and returns it. */
-WIDE_VECTORS static double *mark(size_t nx, const double *r, double *line) {
+/* line = 1 for nodes of the set. */
+WIDE_VECTORS static void mark(size_t nx, const double *r, double *line) {
     for (size_t i = 0; i < nx; i++)
         line[i] = r[i] != 0 ? 1 : 0;
-    return line;
 }
 
-WIDE_VECTORS static void to_weights(size_t n, const double *sum, double *weight) {
-    for (size_t i = 0; i < n; i++)
-        weight[i] = weight_of(sum[i]);
+WIDE_VECTORS static void to_weights(size_t nx, const double *sum, double *line) {
+    for (size_t i = 0; i < nx; i++)
+        line[i] = weight_of(sum[i]);
 }
 
-WIDE_VECTORS static void add(size_t n, const double *from, double *to) {
-    for (size_t i = 0; i < n; i++)
-        to[i] += from[i];
+WIDE_VECTORS static void add_pairs(size_t nx, const double *from, double *to) {
+    for (size_t i = 0; i < nx / 2; i++)
+        to[i] += from[2 * i] + from[2 * i + 1];
+    if (nx % 2 == 1)
+        to[nx / 2] += from[nx - 1];
 }
 
-WIDE_VECTORS static void scale_by_share(size_t n, const double *sum, double *value) {
-    for (size_t i = 0; i < n; i++)
+WIDE_VECTORS static void scale_by_share(size_t nx, const double *sum, double *value) {
+    for (size_t i = 0; i < nx; i++)
         value[i] *= share_of(sum[i]);
 }
 
+static void weigh_row(const struct stage *s, size_t j, double *line) {
+    const size_t nx = s->fine->nx;
+    double *to = s->to + j * s->coarse->nx;
+    void (*weigh)(size_t, const double *, double *) = s->r != NULL ? mark : to_weights;
+    weigh(nx, s->from + 2 * j * nx, line);
+    sum_rows(nx, line, NULL, to);
+    if (2 * j + 1 < s->fine->ny) {
+        weigh(nx, s->from + (2 * j + 1) * nx, line);
+        add_pairs(nx, line, to);
+    }
+}
+
 void pyramid_set(struct pyramid *pyramid, const double *r) {
-    struct pyramid_level *levels = pyramid->levels;
-    for (size_t j = 0; pyramid->count > 1 && j < levels[0].ny; j++) {
-        double *row = mark(levels[0].nx, r + j * levels[0].nx, pyramid->line);
-        double *sum = levels[1].sum + j / 2 * levels[1].nx, *half = levels[1].value;
-        sum_rows(levels[0].nx, row, NULL, j % 2 == 0 ? sum : half);
-        if (j % 2 == 1)
-            add(levels[1].nx, half, sum);
-    }
-    for (size_t l = 2; l < pyramid->count; l++) {
-        size_t cells = levels[l - 1].nx * levels[l - 1].ny;
-        to_weights(cells, levels[l - 1].sum, levels[l - 1].value);
-        sum_children(&levels[l - 1], &levels[l], levels[l - 1].value, levels[l].sum);
-    }
+    const struct pyramid_level *levels = pyramid->levels;
+    for (size_t l = 1; l < pyramid->count; l++)
+        share_rows((struct stage){.pyramid = pyramid,
+                                  .fine = &levels[l - 1],
+                                  .coarse = &levels[l],
+                                  .r = l == 1 ? r : NULL,
+                                  .from = l == 1 ? r : levels[l - 1].sum,
+                                  .to = levels[l].sum,
+                                  .row = weigh_row},
+                   levels[l].ny, levels[l - 1].nx);
+}
+
+static void push_row(const struct stage *s, size_t j, double *line) {
+    (void)line;
+    const size_t nx = s->coarse->nx;
+    double *to = s->to + j * nx;
+    sum_rows(s->fine->nx, s->from + 2 * j * s->fine->nx, second_row(s, s->from, j), to);
+    scale_by_share(nx, s->coarse->sum + j * nx, to);
 }
 
 /* --- downwards --- */
-
-/* The row of the level above that a row is nearest to, and the next nearest one. */
-struct rows_above {
-    size_t near, far;
-};
-static struct rows_above rows_above(const struct pyramid_level *coarse, size_t j) {
-    size_t near = j / 2, last = coarse->ny - 1;
-    size_t far = j % 2 == 0 ? (near > 0 ? near - 1 : last) : (near < last ? near + 1 : 0);
-    return (struct rows_above){near * coarse->nx, far * coarse->nx};
-}
 
 /* line[-1 .. n] = three quarters of a, a quarter of b, periodic. */
 WIDE_VECTORS static void blend(size_t n, const double *a, const double *b, double *line) {
@@ -172,43 +224,57 @@ WIDE_VECTORS static void complete_row(size_t nx, const double *line, const doubl
             (1 - weight_of(sum[nx - 1])) * (0.75 * line[nx / 2] + 0.25 * before[nx / 2]);
 }
 
+static void pull_row(const struct stage *s, size_t j, double *line) {
+    const size_t nx = s->coarse->nx, last = s->coarse->ny - 1, near = j / 2;
+    size_t far = j % 2 == 0 ? (near > 0 ? near - 1 : last) : (near < last ? near + 1 : 0);
+    size_t row = j * s->fine->nx;
+    blend(nx, s->from + near * nx, s->from + far * nx, line);
+    if (s->r != NULL)
+        fill_row(s->fine->nx, line, s->r + row, s->to + row);
+    else
+        complete_row(s->fine->nx, line, s->fine->sum + row, s->to + row);
+}
+
 void pyramid_continue(struct pyramid *pyramid, const double *r, double *out) {
-    struct pyramid_level *levels = pyramid->levels;
+    const struct pyramid_level *levels = pyramid->levels;
     out[0] = r[0]; /* all of a grid of one node, which has no level above */
-    for (size_t l = 1; l < pyramid->count; l++) {
-        sum_children(&levels[l - 1], &levels[l], l == 1 ? r : levels[l - 1].value, levels[l].value);
-        scale_by_share(levels[l].nx * levels[l].ny, levels[l].sum, levels[l].value);
-    }
-    for (size_t l = pyramid->count - 1; l > 0; l--) {
-        const struct pyramid_level *fine = &levels[l - 1], *coarse = &levels[l];
-        for (size_t j = 0; j < fine->ny; j++) {
-            struct rows_above above = rows_above(coarse, j);
-            size_t row = j * fine->nx;
-            blend(coarse->nx, coarse->value + above.near, coarse->value + above.far, pyramid->line);
-            if (l == 1)
-                fill_row(fine->nx, pyramid->line, r + row, out + row);
-            else
-                complete_row(fine->nx, pyramid->line, fine->sum + row, fine->value + row);
-        }
-    }
+    for (size_t l = 1; l < pyramid->count; l++)
+        share_rows((struct stage){.pyramid = pyramid,
+                                  .fine = &levels[l - 1],
+                                  .coarse = &levels[l],
+                                  .from = l == 1 ? r : levels[l - 1].value,
+                                  .to = levels[l].value,
+                                  .row = push_row},
+                   levels[l].ny, levels[l - 1].nx);
+    for (size_t l = pyramid->count - 1; l > 0; l--)
+        share_rows((struct stage){.pyramid = pyramid,
+                                  .fine = &levels[l - 1],
+                                  .coarse = &levels[l],
+                                  .r = l == 1 ? r : NULL,
+                                  .from = levels[l].value,
+                                  .to = l == 1 ? out : levels[l - 1].value,
+                                  .row = pull_row},
+                   levels[l - 1].ny, levels[l - 1].nx);
 }
 
 /* --- the transpose --- */
 
-/* line = x outside of the set. */
-WIDE_VECTORS static void take_outside(size_t nx, const double *r, const double *x, double *line) {
+/* line += factor times x outside of the set. */
+WIDE_VECTORS static void add_outside(size_t nx, double factor, const double *r, const double *x,
+                                     double *line) {
     for (size_t i = 0; i < nx; i++)
-        line[i] = r[i] != 0 ? 0 : x[i];
+        line[i] += r[i] != 0 ? 0 : factor * x[i];
 }
 
-/* line = (1 - weight) x. */
-WIDE_VECTORS static void take_unknown(size_t nx, const double *sum, const double *x, double *line) {
+/* line += factor (1 - weight) x. */
+WIDE_VECTORS static void add_unknown(size_t nx, double factor, const double *sum, const double *x,
+                                     double *line) {
     for (size_t i = 0; i < nx; i++)
-        line[i] = (1 - weight_of(sum[i])) * x[i];
+        line[i] += factor * ((1 - weight_of(sum[i])) * x[i]);
 }
 
-/* Gives a row's values to the nearest cells above: a transpose of fill_row and blend. */
-WIDE_VECTORS static void give_row(size_t nx, double *line, double *near, double *far) {
+/* Gives the values of a line to the nearest cells above. */
+WIDE_VECTORS static void give_line(size_t nx, double *line, double *to) {
     size_t cells = half_of(nx);
     double first = line[0];
     line[-1] = nx % 2 == 0 ? line[nx - 1] : 0;
@@ -216,14 +282,34 @@ WIDE_VECTORS static void give_row(size_t nx, double *line, double *near, double 
     line[2 * cells] = first;
     for (size_t i = 0; i < cells; i++) {
         const double *at = line + 2 * i;
-        double sum = 0.75 * (at[0] + at[1]) + 0.25 * (at[-1] + at[2]);
-        near[i] += 0.75 * sum;
-        far[i] += 0.25 * sum;
+        to[i] = 0.75 * (at[0] + at[1]) + 0.25 * (at[-1] + at[2]);
     }
 }
 
+static void add_line(const struct stage *s, double factor, size_t j, double *line) {
+    const size_t nx = s->fine->nx;
+    if (j >= s->fine->ny)
+        return;
+    if (s->r != NULL)
+        add_outside(nx, factor, s->r + j * nx, s->from + j * nx, line);
+    else
+        add_unknown(nx, factor, s->fine->sum + j * nx, s->from + j * nx, line);
+}
+
+/* A transpose of pull_row: row j of coarse cells is nearest to two rows of fine ones, and second
+ * nearest to the rows beside these. */
+static void return_row(const struct stage *s, size_t j, double *line) {
+    const size_t last = s->coarse->ny - 1;
+    memset(line, 0, s->fine->nx * sizeof *line);
+    add_line(s, 0.75, 2 * j, line);
+    add_line(s, 0.75, 2 * j + 1, line);
+    add_line(s, 0.25, 2 * (j > 0 ? j - 1 : last) + 1, line);
+    add_line(s, 0.25, j < last ? 2 * j + 2 : 0, line);
+    give_line(s->fine->nx, line, s->to + j * s->coarse->nx);
+}
+
 /* Adds to each child its cell's value. */
-WIDE_VECTORS static void spread_row(size_t nx, const double *cells, double *value) {
+WIDE_VECTORS static void spread(size_t nx, const double *cells, double *value) {
     for (size_t i = 0; i < nx / 2; i++) {
         value[2 * i] += cells[i];
         value[2 * i + 1] += cells[i];
@@ -232,27 +318,33 @@ WIDE_VECTORS static void spread_row(size_t nx, const double *cells, double *valu
         value[nx - 1] += cells[nx / 2];
 }
 
+/* A transpose of push_row, for a row of coarse cells. */
+static void spread_row(const struct stage *s, size_t j, double *line) {
+    const size_t nx = s->fine->nx, above = s->coarse->nx;
+    memcpy(line, s->from + j * above, above * sizeof *line);
+    scale_by_share(above, s->coarse->sum + j * above, line);
+    spread(nx, line, s->to + 2 * j * nx);
+    if (2 * j + 1 < s->fine->ny)
+        spread(nx, line, s->to + (2 * j + 1) * nx);
+}
+
 void pyramid_transpose(struct pyramid *pyramid, const double *r, double *x) {
-    struct pyramid_level *levels = pyramid->levels;
-    for (size_t l = 1; l < pyramid->count; l++) {
-        const struct pyramid_level *fine = &levels[l - 1], *coarse = &levels[l];
-        memset(coarse->value, 0, coarse->nx * coarse->ny * sizeof *coarse->value);
-        for (size_t j = 0; j < fine->ny; j++) {
-            struct rows_above above = rows_above(coarse, j);
-            size_t row = j * fine->nx;
-            if (l == 1)
-                take_outside(fine->nx, r + row, x + row, pyramid->line);
-            else
-                take_unknown(fine->nx, fine->sum + row, fine->value + row, pyramid->line);
-            give_row(fine->nx, pyramid->line, coarse->value + above.near,
-                     coarse->value + above.far);
-        }
-    }
-    for (size_t l = pyramid->count - 1; l > 0; l--) {
-        const struct pyramid_level *fine = &levels[l - 1], *coarse = &levels[l];
-        scale_by_share(coarse->nx * coarse->ny, coarse->sum, coarse->value);
-        for (size_t j = 0; j < fine->ny; j++)
-            spread_row(fine->nx, coarse->value + j / 2 * coarse->nx,
-                       (l == 1 ? x : fine->value) + j * fine->nx);
-    }
+    const struct pyramid_level *levels = pyramid->levels;
+    for (size_t l = 1; l < pyramid->count; l++)
+        share_rows((struct stage){.pyramid = pyramid,
+                                  .fine = &levels[l - 1],
+                                  .coarse = &levels[l],
+                                  .r = l == 1 ? r : NULL,
+                                  .from = l == 1 ? x : levels[l - 1].value,
+                                  .to = levels[l].value,
+                                  .row = return_row},
+                   levels[l].ny, levels[l - 1].nx);
+    for (size_t l = pyramid->count - 1; l > 0; l--)
+        share_rows((struct stage){.pyramid = pyramid,
+                                  .fine = &levels[l - 1],
+                                  .coarse = &levels[l],
+                                  .from = levels[l].value,
+                                  .to = l == 1 ? x : levels[l - 1].value,
+                                  .row = spread_row},
+                   levels[l].ny, levels[l - 1].nx);
 }

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/surface/grid.h"
+#include "core/team.h"
 
 /* A level has half of the cells of the one below in each direction, rounded up. */
 struct pyramid_level {
@@ -22,10 +23,13 @@ enum { PYRAMID_LEVELS_MOST = 65 };
 struct pyramid {
     size_t count;
     struct pyramid_level levels[PYRAMID_LEVELS_MOST];
-    double *line;   /* scratch: a row, with a cell before it and two behind */
-    double *memory; /* owned: all arrays */
+    double *memory; /* owned: all arrays of the levels */
+    double *lines;  /* owned, scratch: for each thread a row, with a cell before and two behind */
+    struct team *team; /* borrowed; NULL: the caller alone */
 };
 int pyramid_create(struct pyramid *out, const struct grid *grid, struct error *err);
+/* Lets a team work along, with the same digits; borrowed until the next one. ERROR_MEMORY. */
+int pyramid_set_team(struct pyramid *pyramid, struct team *team, struct error *err);
 void pyramid_clear(struct pyramid *pyramid);
 double pyramid_bytes(const struct grid *grid);
 

@@ -107,6 +107,9 @@ struct contact_model {
     int (*create)(struct contact_solver **out, const struct contact_case *one_case, size_t model,
                   const struct compliance *compliance, struct error *err);
     void (*destroy)(struct contact_solver **solver);
+    /* Lets a team of threads work along, with the same digits; borrowed until the next call.
+     * ERROR_MEMORY. NULL: the model works on one. */
+    int (*set_team)(struct contact_solver *solver, struct team *team, struct error *err);
     /* Takes a surface of the grid, out of contact: nothing of the last one is kept. stop may be
      * called within loads, until the next surface; non-zero ends them with ERROR_STOPPED. Fills
      * what the model has of facts[MODEL_FACTS_MOST]. */

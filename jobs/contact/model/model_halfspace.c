@@ -11,6 +11,7 @@ const struct contact_model HALFSPACE_MODEL = {
     .seconds = linear_seconds,
     .create = linear_create,
     .destroy = linear_destroy,
+    .set_team = linear_set_team,
     .begin = linear_begin,
     .press = linear_press,
     .full_pressure = linear_full_pressure,

@@ -42,6 +42,10 @@ void linear_destroy(struct contact_solver **solver) {
     *solver = NULL;
 }
 
+int linear_set_team(struct contact_solver *solver, struct team *team, struct error *err) {
+    return contact_set_team(solver->contact, team, err);
+}
+
 int linear_begin(struct contact_solver *solver, const double *z, int (*stop)(void *context),
                  void *context, double *facts, struct error *err) {
     (void)facts;

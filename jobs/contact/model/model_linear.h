@@ -10,6 +10,7 @@ double linear_seconds(const struct contact_case *one_case, size_t model, const s
 int linear_create(struct contact_solver **out, const struct contact_case *one_case, size_t model,
                   const struct compliance *compliance, struct error *err);
 void linear_destroy(struct contact_solver **solver);
+int linear_set_team(struct contact_solver *solver, struct team *team, struct error *err);
 int linear_begin(struct contact_solver *solver, const double *z, int (*stop)(void *context),
                  void *context, double *facts, struct error *err);
 int linear_press(struct contact_solver *solver, double pressure, struct contact_pressed *out,

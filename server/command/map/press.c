@@ -1,6 +1,7 @@
 /* rugo press FILE: the contact of a height map in a file with a rigid flat. */
 #include "core/file.h"
 #include "core/nodal/step_folder.h"
+#include "jobs/allotment.h"
 #include "jobs/maps/map_press_curves.h"
 #include "jobs/maps/map_press_error.h"
 #include "schema/result/csv.h"
@@ -149,6 +150,7 @@ struct press_options {
     double lengths;   /* height of the block in lengths of the map, 0: not given */
     double tolerance; /* likewise */
     int boundary, format, without_error;
+    unsigned threads; /* 0: as many processors as are allotted */
     struct press_words words;
     struct press_paths paths;
     struct map_options map;
@@ -181,6 +183,8 @@ static const struct option_row OPTIONS[] = {
     {"error", 0, OPTION_CHOICE, 0, 0, AT(without_error), "points|none", "points",
      "estimate errors by source, by every second point for a third more time at most, and of a low "
      "--height by an infinite block"},
+    {"threads", 0, OPTION_COUNT, 0, WORKERS_MOST, AT(threads), "N", "0",
+     "that share the work, with the same digits; 0: as many processors as are allotted"},
     {"format", 0, OPTION_CHOICE, 0, 0, AT(format), "text|json|curves|csv", "text",
      "what to print; curves, csv: as those of a study's case, with what the model alone tells"},
     {"output", 'o', OPTION_TEXT, 0, 0, AT(paths.pressures), "FILE", NULL,
@@ -277,7 +281,9 @@ struct pressed {
 };
 
 static void pressed_clear(struct pressed *pressed) {
+    struct team *team = pressed->press.team;
     map_press_clear(&pressed->press);
+    team_destroy(&team);
     free(pressed->pressures);
     free(pressed->rows);
 }
@@ -409,9 +415,13 @@ static int press_map(const struct press_order *order, struct height_map *map, st
     size_t loads = order->loads.count, count = order->model_count * loads;
     struct pressed pressed = {.pressures = array_create(loads, sizeof *pressed.pressures),
                               .rows = array_create(count, sizeof *pressed.rows)};
-    int status = pressed.pressures == NULL || pressed.rows == NULL
-                     ? error_memory(err, count * sizeof *pressed.rows, "the loads")
-                     : map_press_begin(&pressed.press, map, order->boundary, err);
+    unsigned threads = order->options->threads;
+    int status =
+        pressed.pressures == NULL || pressed.rows == NULL
+            ? error_memory(err, count * sizeof *pressed.rows, "the loads")
+            : team_create(&pressed.press.team, threads > 0 ? threads : allotment_threads(), err);
+    if (status == 0)
+        status = map_press_begin(&pressed.press, map, order->boundary, err);
     if (status != 0)
         error_context(err, "%s", order->path);
     if (status == 0)

@@ -1,0 +1,114 @@
+#include "core/contact/solver/conjugate_gradient.h"
+#include "core/vectors.h"
+#include <float.h>
+#include <math.h>
+
+enum { LANES = CONJUGATE_GRADIENT_LANES, STEPS_MOST = 300 };
+/* Largest residual over the approach. */
+static const double TOLERANCE = 1e-4;
+
+enum { TANGENT };                    /* sum of q */
+enum { DISPLACED, MEMBERS, ENERGY }; /* sums of u in the set, of nodes, and of q u */
+
+/* Drops q outside of the set p > 0. */
+WIDE_VECTORS static double restrict_to(size_t n, const double *p, double *q) {
+    double sum[LANES] = {0};
+    for (size_t i = 0; i < n; i += LANES)
+        for (size_t a = 0; a < LANES; a++) {
+            q[i + a] = p[i + a] > 0 ? q[i + a] : 0;
+            sum[a] += q[i + a];
+        }
+    return conjugate_lanes_sum(sum);
+}
+
+static void restrict_block(const struct pass *pass, size_t first, size_t n,
+                           struct pass_result *out) {
+    const struct conjugate_gradient *s = pass->solver;
+    out->sum[TANGENT] = restrict_to(n, s->p + first, s->q + first);
+}
+
+WIDE_VECTORS static void measure(size_t n, const double *p, const double *q, const double *u,
+                                 struct pass_result *out) {
+    double displaced[LANES] = {0}, members[LANES] = {0}, energy[LANES] = {0};
+    for (size_t i = 0; i < n; i += LANES)
+        for (size_t a = 0; a < LANES; a++) {
+            double in = p[i + a] > 0 ? 1 : 0;
+            displaced[a] += in * u[i + a];
+            members[a] += in;
+            energy[a] += q[i + a] * u[i + a];
+        }
+    out->sum[DISPLACED] = conjugate_lanes_sum(displaced);
+    out->sum[MEMBERS] = conjugate_lanes_sum(members);
+    out->sum[ENERGY] = conjugate_lanes_sum(energy);
+}
+
+static void measure_block(const struct pass *pass, size_t first, size_t n,
+                          struct pass_result *out) {
+    const struct conjugate_gradient *s = pass->solver;
+    measure(n, s->p + first, s->q + first, s->u + first, out);
+}
+
+/* r = u + approach in the set p > 0, never 0 there. Returns the largest |r|. */
+WIDE_VECTORS static double residual(size_t n, const double *p, const double *u, double approach,
+                                    double *r) {
+    double most[LANES] = {0};
+    for (size_t i = 0; i < n; i += LANES)
+        for (size_t a = 0; a < LANES; a++) {
+            double slope = u[i + a] + approach;
+            slope = p[i + a] > 0 ? (slope == 0 ? DBL_MIN : slope) : 0;
+            most[a] = fabs(slope) > most[a] ? fabs(slope) : most[a];
+            r[i + a] = slope;
+        }
+    return conjugate_lanes_most(most);
+}
+
+static void residual_block(const struct pass *pass, size_t first, size_t n,
+                           struct pass_result *out) {
+    const struct conjugate_gradient *s = pass->solver;
+    out->most[0] = residual(n, s->p + first, s->u + first, pass->approach, s->r + first);
+}
+
+WIDE_VECTORS static void advance(size_t n, double step, const double *t, const double *w, double *q,
+                                 double *u) {
+    for (size_t i = 0; i < n; i++) {
+        q[i] -= step * t[i];
+        u[i] -= step * w[i];
+    }
+}
+
+static void advance_block(const struct pass *pass, size_t first, size_t n,
+                          struct pass_result *out) {
+    (void)out;
+    const struct conjugate_gradient *s = pass->solver;
+    advance(n, pass->step, s->t + first, s->w + first, s->q + first, s->u + first);
+}
+
+static void begin(struct conjugate_gradient *solver) {
+    const struct pass pass = {.solver = solver};
+    double sum = pass_run(&pass, restrict_block).sum[TANGENT];
+    conjugate_step_take_set(solver, solver->p);
+    if (!(sum > 0)) {
+        sum = 0;
+        for (size_t i = 0; i < solver->padded; i++)
+            sum += solver->q[i] = solver->p[i];
+    }
+    conjugate_step_scale(solver, 1, sum, solver->q);
+    conjugate_step_apply_compliance(solver, solver->q, solver->u);
+}
+
+double conjugate_gradient_tangent(struct conjugate_gradient *solver, double tolerance) {
+    const double enough = fmin(TOLERANCE, sqrt(tolerance));
+    struct step_memory memory = {.continued = true};
+    struct pass pass = {.solver = solver};
+    begin(solver);
+    for (size_t iteration = 0;; iteration++) {
+        struct pass_result sums = pass_run(&pass, measure_block);
+        pass.approach = -sums.sum[DISPLACED] / sums.sum[MEMBERS];
+        double most = pass_run(&pass, residual_block).most[0];
+        if (most <= enough * fabs(pass.approach) || iteration == STEPS_MOST)
+            return sums.sum[ENERGY] / (double)solver->n;
+        conjugate_step_direct(solver, &memory);
+        pass.step = conjugate_step_length(solver);
+        pass_run(&pass, advance_block);
+    }
+}

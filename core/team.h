@@ -1,0 +1,28 @@
+/* Threads that share one task, part by part. What a part computes must not depend on who computes
+ * it, nor on the order, so that results have the same digits with any number of threads: sums are
+ * kept by part, and added in the order of parts.
+ *
+ * A team belongs to one thread, which works along. It holds no memory but its threads' stacks. */
+#ifndef RUGO_CORE_TEAM_H
+#define RUGO_CORE_TEAM_H
+
+#include "core/error.h"
+
+struct team;
+
+/* Computes one part of a task; `thread`, below team_threads, names whose scratch it may use. */
+typedef void team_work(void *context, size_t part, size_t thread);
+
+/* Starts threads - 1 threads, which take no signals; 1023 at most; where the system gives fewer,
+ * the team is smaller. *out is NULL, which is a team of one, for threads of 0 or 1. ERROR_MEMORY.
+ */
+int team_create(struct team **out, size_t threads, struct error *err);
+/* Ends the threads. */
+void team_destroy(struct team **team);
+/* Returns the number of threads, the owner among them. */
+size_t team_threads(const struct team *team);
+/* Calls work for each part below `parts` once, and returns when all have ended. A team of one works
+ * in order. */
+void team_share(struct team *team, size_t parts, team_work *work, void *context);
+
+#endif
