@@ -28,6 +28,7 @@ void area_workspace_destroy(struct area_workspace **workspace);
 /* Lets a team of threads work along, with the same digits; it is borrowed until the next call.
  * ERROR_MEMORY. */
 int area_workspace_set_team(struct area_workspace *workspace, struct team *team, struct error *err);
+/* Of states that bring scratch; else a value a point is added. */
 double area_workspace_bytes(const struct grid *grid, const struct block *block);
 /* Both live as long as the workspace. */
 const struct grid *area_workspace_grid(const struct area_workspace *workspace);

@@ -10,7 +10,7 @@ static size_t wave_count(const struct grid *grid) {
     return (grid->nx / 2 + 1) * grid->ny;
 }
 
-static bool has_weight(const struct block *block) {
+bool compliance_has_weight(const struct block *block) {
     return block->model == MODEL_LAYERED && block->weighting == GAP_STANDARD;
 }
 
@@ -70,10 +70,10 @@ static int lengths_check(const struct compliance *compliance, struct error *err)
 static int compliance_allocate(struct compliance *compliance, struct error *err) {
     size_t waves = compliance->waves;
     compliance->length = array_create(waves, sizeof *compliance->length);
-    if (has_weight(&compliance->block))
+    if (compliance_has_weight(&compliance->block))
         compliance->weight = array_create(waves, sizeof *compliance->weight);
     if (compliance->length == NULL ||
-        (has_weight(&compliance->block) && compliance->weight == NULL))
+        (compliance_has_weight(&compliance->block) && compliance->weight == NULL))
         return error_memory(err, waves * sizeof *compliance->length, "the compliance");
     return 0;
 }
@@ -166,5 +166,6 @@ void compliance_destroy(struct compliance **compliance) {
 double compliance_bytes(const struct grid *grid, const struct block *block) {
     size_t columns = grid->nx / 2 + 1; /* grid_check has not passed yet: the product may overflow */
     double waves = (double)columns * (double)grid->ny;
-    return sizeof(struct compliance) + waves * sizeof(double) * (has_weight(block) ? 2 : 1);
+    return sizeof(struct compliance) +
+           waves * sizeof(double) * (compliance_has_weight(block) ? 2 : 1);
 }

@@ -50,6 +50,8 @@ int compliance_create(struct compliance **out, const struct grid *grid, const st
 int compliance_create_open(struct compliance **out, const struct grid *grid,
                            const struct block *block, struct error *err);
 void compliance_destroy(struct compliance **compliance);
+/* Returns whether the gap of such a block is weighted. */
+bool compliance_has_weight(const struct block *block);
 double compliance_bytes(const struct grid *grid, const struct block *block);
 
 #endif

@@ -25,9 +25,9 @@ struct contact {
     const struct compliance *compliance; /* borrowed */
     struct contact_options options;
     struct conjugate_gradient solver; /* its heights are the weighted ones */
-    double *z;                        /* heights, mean 0 */
-    double *pressure, *gap;           /* results, in the user's units */
-    double *opening; /* the weighted gap; the same array as gap without weighting */
+    double *z;                        /* heights, mean 0; without weighting the solver's */
+    double *pressure, *gap;           /* results, in the user's units: scratch of the solver */
+    double *opening; /* the weighted gap; without weighting the same array as gap */
     double unit;     /* RMS height, the grid's length; for a flat surface 0, where open lx */
     double highest;  /* of the solver's heights */
     double full;     /* smallest mean pressure of full contact */
@@ -38,8 +38,9 @@ struct contact {
     double *last;    /* without tangent: the solver's p at the load before; NULL with it */
 };
 
-double contact_bytes(const struct grid *grid) {
-    return 5.0 * sizeof(double) * (double)grid_points(grid) + conjugate_gradient_bytes(grid);
+double contact_bytes(const struct grid *grid, const struct block *block) {
+    const double weighted = compliance_has_weight(block) ? 2 * (double)grid_points(grid) : 0;
+    return sizeof(double) * weighted + conjugate_gradient_bytes(grid, block);
 }
 
 int contact_create(struct contact **out, const struct compliance *compliance,
@@ -55,16 +56,14 @@ int contact_create(struct contact **out, const struct compliance *compliance,
     c->tangent = !options->without_tangent || compliance->block.model == MODEL_LAYERED;
     int status = conjugate_gradient_create(&c->solver, compliance, err);
     size_t n = c->solver.n;
-    double **const arrays[] = {&c->z, &c->pressure, &c->gap};
-    for (size_t a = 0; status == 0 && a < sizeof arrays / sizeof *arrays; a++) {
-        *arrays[a] = array_create(n, sizeof(double));
-        if (*arrays[a] == NULL)
-            status = error_memory(err, n * sizeof(double), "a contact");
-    }
-    if (status == 0) {
-        c->opening = compliance->weight != NULL ? array_create(n, sizeof(double)) : c->gap;
-        if (c->opening == NULL)
-            status = error_memory(err, n * sizeof(double), "a contact");
+    c->z = c->solver.z;
+    c->pressure = c->solver.t;
+    c->gap = c->opening = c->solver.u;
+    if (status == 0 && compliance->weight != NULL) {
+        c->z = array_create(n, sizeof(double));
+        c->opening = array_create(n, sizeof(double));
+        if (c->z == NULL || c->opening == NULL)
+            status = error_memory(err, 2 * n * sizeof(double), "a contact");
     }
     if (status == 0 && !c->tangent) {
         c->last = array_create(n, sizeof(double));
@@ -81,12 +80,11 @@ void contact_destroy(struct contact **contact) {
     struct contact *c = *contact;
     if (c == NULL)
         return;
-    conjugate_gradient_clear(&c->solver);
-    if (c->opening != c->gap)
+    if (c->compliance->weight != NULL) {
+        free(c->z);
         free(c->opening);
-    free(c->z);
-    free(c->pressure);
-    free(c->gap);
+    }
+    conjugate_gradient_clear(&c->solver);
     free(c->last);
     free(c);
     *contact = NULL;
@@ -143,7 +141,6 @@ int contact_begin(struct contact *c, const double *z, struct error *err) {
         return status;
     /* The results of a surface must not depend on the surface before. */
     memset(d->q, 0, d->padded * sizeof *d->q);
-    memcpy(d->z, c->z, d->n * sizeof *d->z);
     if (c->compliance->weight != NULL)
         transform_filter(d->transform, c->compliance->weight, 1, c->z, d->z);
     c->highest = 0;
@@ -201,16 +198,16 @@ static void fill_partial(struct contact *c, const struct conjugate_gradient_end 
                          struct contact_state *out) {
     struct conjugate_gradient *d = &c->solver;
     struct sum gap = {0};
-    for (size_t i = 0; i < d->n; i++)
-        c->opening[i] = (d->u[i] - d->z[i] + end->approach) * c->unit;
-    if (c->compliance->weight != NULL)
+    if (c->compliance->weight != NULL) {
+        for (size_t i = 0; i < d->n; i++)
+            c->opening[i] = (d->u[i] - d->z[i] + end->approach) * c->unit;
         transform_filter(d->transform, c->compliance->length, 1 / d->largest, d->p, d->u);
+    }
     for (size_t i = 0; i < d->n; i++) {
         double g = d->u[i] - c->z[i] + end->approach;
         sum_add(&gap, g);
-        c->gap[i] = g * c->unit;
-        c->pressure[i] = d->p[i] * pressure_unit(c);
-        out->nodes += c->pressure[i] > 0;
+        c->gap[i] = g * c->unit; /* in place of u */
+        out->nodes += d->p[i] * pressure_unit(c) > 0;
     }
     out->mean_gap = sum_value(&gap) / (double)d->n * c->unit;
     out->approach = (c->highest - end->approach) * c->unit;
@@ -226,6 +223,8 @@ static void fill_partial(struct contact *c, const struct conjugate_gradient_end 
         out->stiffness = 1 / (conjugate_gradient_tangent(d, c->options.tolerance) * d->largest);
         out->tangent = d->q;
     }
+    for (size_t i = 0; i < d->n; i++)
+        c->pressure[i] = d->p[i] * pressure_unit(c);
 }
 
 /* Without a tangent the next load is predicted by the secant from the last one. */
@@ -306,8 +305,11 @@ int contact_press(struct contact *c, double pressure, struct contact_state *out,
     if (!(pressure >= 0 && isfinite(pressure)))
         return error_set(err, ERROR_INPUT, "mean pressure = %g; allowed: 0 or more, finite",
                          pressure);
-    struct contact_state state = {
-        .pressure = pressure, .p = c->pressure, .gap = c->gap, .opening = c->opening};
+    struct contact_state state = {.pressure = pressure,
+                                  .p = c->pressure,
+                                  .gap = c->gap,
+                                  .opening = c->opening,
+                                  .scratch = c->solver.w};
     if (pressure == 0)
         fill_open(c, &state);
     else if (pressure >= contact_full_pressure(c))

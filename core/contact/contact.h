@@ -39,6 +39,8 @@ struct contact_state {
     const double *tangent; /* grid_points, d p/d pressure with the contact held: mean 1, 0 where
                               open; NULL where nothing or (periodic) all touches, or
                               without_tangent */
+    double *scratch;       /* grid_points: of no use to the solver until its next call; NULL from
+                              core/full */
     double mean_gap;       /* the grid's length */
     double approach;    /* of the flat, from where it touches first, the grid's length: towards the
                            mean plane of the face, in free space towards far points (free_space.h);
@@ -59,8 +61,9 @@ struct contact;
 int contact_create(struct contact **out, const struct compliance *compliance,
                    const struct contact_options *options, struct error *err);
 void contact_destroy(struct contact **contact);
-/* For a periodic grid; in free space free_space_bytes are added. */
-double contact_bytes(const struct grid *grid);
+/* Returns the bytes of a solver with its tangent, but for its compliance: of a periodic grid; in
+ * free space free_space_bytes are added. */
+double contact_bytes(const struct grid *grid, const struct block *block);
 /* Sets stop, which is called every few iterations. When it returns non-zero, contact_press fails
  * with ERROR_STOPPED, as it fails where it does not converge. NULL, the initial value, never
  * stops. */

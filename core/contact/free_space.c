@@ -12,8 +12,10 @@ static const double EULER = 0.57721566490153286061;
  * beyond NEAR/alpha. */
 static const double SPLIT = 6, NEAR = 6;
 enum { MARGIN = 8 }; /* of the grid around: a part of the side */
-/* A point more of the grid around: two arrays and a transform of it, its symbol, and a pyramid. */
-static const double AROUND_BYTES = (2 + 1 + 0.5 + 2. / 3) * sizeof(double);
+/* A point more of the grid around: a transform of it, its symbol, and a pyramid. Two arrays are
+ * wholly for free space. */
+static const double AROUND_BYTES = (1 + 0.5 + 2. / 3) * sizeof(double),
+                    SPARE_BYTES = 2 * sizeof(double);
 
 /* Returns the greater spacing: waves of the grid are at least twice as long. */
 static double spacing_of(const struct grid *grid) {
@@ -117,5 +119,6 @@ double free_space_bytes(const struct grid *grid) {
     double waves = ((double)padded.nx / 2 + 1) * (double)padded.ny;
     free_space_around(grid, &around);
     double more = (double)grid_points(&around) - (double)grid_points(grid);
-    return (sizeof(double _Complex) + 2 * sizeof(double)) * waves + AROUND_BYTES * more;
+    return (sizeof(double _Complex) + 2 * sizeof(double)) * waves + AROUND_BYTES * more +
+           SPARE_BYTES * (double)grid_points(&around);
 }

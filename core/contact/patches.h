@@ -16,6 +16,7 @@ int patch_finder_create(struct patch_finder **out, const struct grid *grid, stru
 /* Joins nothing across the sides from then on. */
 void patch_finder_open(struct patch_finder *finder);
 void patch_finder_destroy(struct patch_finder **finder);
+double patch_finder_bytes(const struct grid *grid);
 /* A node is in contact where p > 0. sizes (NULL: not wanted) gets the nodes of each patch, room for
  * grid_points. */
 void patches_find(struct patch_finder *finder, const double *p, struct patches *out, size_t *sizes);

@@ -140,15 +140,15 @@ double full_bytes(const struct grid *grid, const struct block *block,
         return NAN;
     enum {
         VECTORS = 6,
-        FACES = 8
-    }; /* arrays of newton.h and this file by unknown and by node of the face */
+        FACES = 9
+    }; /* arrays of newton.h and this file by unknown and by node of the face, and one of areas */
     struct material material = material_of(block->poisson, options->kinematics);
     bool pressures = gmres_needs_pressures(&material);
     double unknowns = (double)mesh_unknowns(mesh, pressures);
     double bytes =
         sizeof(double) * (VECTORS * unknowns + FACES * (double)mesh->face + (double)mesh->nodes) +
         tangent_bytes(mesh, pressures) + gmres_bytes(mesh, &material, iterations) +
-        contact_bytes(grid) + compliance_bytes(grid, block);
+        contact_bytes(grid, block) + compliance_bytes(grid, block);
     mesh_destroy(&mesh);
     return bytes;
 }

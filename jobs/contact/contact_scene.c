@@ -248,7 +248,7 @@ static double plain_bytes(const struct contact_case *one_case) {
     double bytes = 8.0 * (double)grid_points(&contact_case_finest(one_case)->grid);
     for (size_t l = 0; l < one_case->level_count; l++) {
         const struct grid *grid = &one_case->levels[l].grid;
-        bytes += 16.0 * (double)grid_points(grid); /* patches */
+        bytes += patch_finder_bytes(grid);
         for (size_t m = 0; m < one_case->model_count; m++) {
             bytes += contact_tally_counts(one_case, l) ? pressures_bytes(grid) : 0;
             bytes += area_workspace_bytes(grid, &one_case->blocks[m]) +

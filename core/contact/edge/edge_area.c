@@ -24,7 +24,8 @@ struct edge_scan {
     struct grid grid;
     bool open;
     size_t parts;
-    double *rise;           /* grid_points: scratch */
+    double *own;            /* grid_points: takes memory where states have no scratch */
+    double *rise;           /* that of the last state, or own */
     struct edge_area *sums; /* of each part */
     struct team *team;      /* borrowed; NULL: the caller alone */
     const struct contact_state *state;
@@ -47,11 +48,11 @@ int edge_scan_create(struct edge_scan **out, const struct edge_law *law, const s
     if (scan == NULL)
         return error_memory(err, sizeof *scan, "contact areas");
     *scan = (struct edge_scan){.law = law, .grid = *grid, .open = open, .parts = part_count(grid)};
-    scan->rise = array_create(grid_points(grid), sizeof *scan->rise);
+    scan->own = array_create(grid_points(grid), sizeof *scan->own);
     scan->sums = array_create(scan->parts, sizeof *scan->sums);
-    if (scan->rise == NULL || scan->sums == NULL) {
+    if (scan->own == NULL || scan->sums == NULL) {
         edge_scan_destroy(&scan);
-        return error_memory(err, edge_scan_bytes(grid), "contact areas");
+        return error_memory(err, grid_points(grid) * sizeof(double), "contact areas");
     }
     *out = scan;
     return 0;
@@ -60,15 +61,14 @@ int edge_scan_create(struct edge_scan **out, const struct edge_law *law, const s
 void edge_scan_destroy(struct edge_scan **scan) {
     if (*scan == NULL)
         return;
-    free((*scan)->rise);
+    free((*scan)->own);
     free((*scan)->sums);
     free(*scan);
     *scan = NULL;
 }
 
 double edge_scan_bytes(const struct grid *grid) {
-    return sizeof(double) * (double)grid_points(grid) +
-           sizeof(struct edge_area) * (double)part_count(grid);
+    return sizeof(struct edge_area) * (double)part_count(grid);
 }
 
 void edge_scan_set_team(struct edge_scan *scan, struct team *team) {
@@ -140,6 +140,7 @@ void edge_area_measure(struct edge_scan *scan, const struct contact_state *state
     const double n = (double)points;
     struct edge_area total = {0};
     scan->state = state;
+    scan->rise = state->scratch != NULL ? state->scratch : scan->own;
     scan->highest = edge_highest_pressure(points, state->p);
     team_share(scan->team, scan->parts, fill_part, scan);
     team_share(scan->team, scan->parts, scan_part, scan);

@@ -27,6 +27,7 @@ struct edge_scan;
 int edge_scan_create(struct edge_scan **out, const struct edge_law *law, const struct grid *grid,
                      bool open, struct error *err);
 void edge_scan_destroy(struct edge_scan **scan);
+/* Of states that bring scratch. */
 double edge_scan_bytes(const struct grid *grid);
 /* Lets a team work along, with the same digits; it is borrowed until the next call. */
 void edge_scan_set_team(struct edge_scan *scan, struct team *team);

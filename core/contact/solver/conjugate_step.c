@@ -19,12 +19,14 @@ static size_t padded(size_t n) {
 
 enum { ARRAYS = 10, SPARES = 2 }; /* in all, and those that are larger in free space */
 
-double conjugate_gradient_bytes(const struct grid *grid) {
+double conjugate_gradient_bytes(const struct grid *grid, const struct block *block) {
     double waves = ((double)grid->nx / 2 + 1) * (double)grid->ny;
     double pyramid = grid_is_profile(grid) ? 0 : pyramid_bytes(grid);
     double results = sizeof(struct pass_result) * (double)pass_blocks(padded(grid_points(grid)));
-    return sizeof(double) * (ARRAYS * (double)padded(grid_points(grid)) + 4 * waves) + pyramid +
-           results;
+    double symbols = compliance_has_weight(block) ? 2 : 1; /* and a spectrum */
+    return sizeof(double) *
+               ((ARRAYS - SPARES) * (double)padded(grid_points(grid)) + (2 + symbols) * waves) +
+           pyramid + results;
 }
 
 static int arrays_create(struct conjugate_gradient *solver, struct error *err) {
@@ -60,22 +62,27 @@ static void fill_periodic_inverse(struct conjugate_gradient *solver) {
 static int symbols_create(struct conjugate_gradient *solver, const struct compliance *compliance,
                           struct error *err) {
     size_t waves = (solver->around.nx / 2 + 1) * solver->around.ny;
-    solver->compliance = array_create(compliance->waves, sizeof *solver->compliance);
     solver->inverse = array_create(waves, sizeof *solver->inverse);
-    if (solver->compliance == NULL || solver->inverse == NULL)
-        return error_memory(err, compliance->waves * sizeof(double), "a contact");
+    if (compliance->weight != NULL)
+        solver->product = array_create(waves, sizeof *solver->product);
+    if (solver->inverse == NULL || (compliance->weight != NULL && solver->product == NULL))
+        return error_memory(err, 2 * waves * sizeof(double), "a contact");
     for (size_t k = 0; k < compliance->waves; k++)
         solver->largest = fmax(solver->largest, fabs(compliance->length[k]));
-    for (size_t k = 0; k < compliance->waves; k++) {
-        double weight = compliance->weight != NULL ? compliance->weight[k] : 1;
-        solver->compliance[k] = compliance->length[k] / solver->largest * weight;
+    solver->factor = 1 / solver->largest;
+    solver->compliance = compliance->length;
+    if (solver->product != NULL) {
+        for (size_t k = 0; k < waves; k++)
+            solver->product[k] = compliance->length[k] * compliance->weight[k];
+        solver->compliance = solver->product;
     }
     if (compliance->open) {
         fill_periodic_inverse(solver);
         return 0;
     }
     for (size_t k = 0; k < waves; k++)
-        solver->inverse[k] = solver->compliance[k] > 0 ? 1 / solver->compliance[k] : 0;
+        solver->inverse[k] =
+            solver->compliance[k] > 0 ? solver->largest / solver->compliance[k] : 0;
     return 0;
 }
 
@@ -111,7 +118,7 @@ void conjugate_gradient_clear(struct conjugate_gradient *solver) {
     for (size_t a = 0; a < ARRAYS; a++)
         free(arrays[a]);
     free(solver->results);
-    free(solver->compliance);
+    free(solver->product);
     free(solver->inverse);
     pyramid_clear(&solver->pyramid);
     transform_destroy(&solver->transform);
@@ -155,12 +162,12 @@ double conjugate_lanes_most(const double *lanes) {
 void conjugate_step_apply_compliance(struct conjugate_gradient *solver, const double *in,
                                      double *out) {
     if (solver->wide == NULL) {
-        transform_filter(solver->transform, solver->compliance, 1, in, out);
+        transform_filter(solver->transform, solver->compliance, solver->factor, in, out);
         solver->transforms += 2;
         return;
     }
-    transform_filter_part(solver->wide, solver->compliance, 1, solver->grid.nx, solver->grid.ny, in,
-                          out);
+    transform_filter_part(solver->wide, solver->compliance, solver->factor, solver->grid.nx,
+                          solver->grid.ny, in, out);
     solver->transforms += 2 * WIDE_TRANSFORMS;
 }
 

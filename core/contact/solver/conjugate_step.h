@@ -23,14 +23,16 @@ struct conjugate_gradient {
     struct grid around; /* what residuals are continued over: the grid itself, where open with a
                            margin, so that opposite sides do not meet */
     size_t n, padded;
-    double largest; /* largest compliance, the unit of the two below; the grid's length */
-    double *compliance,
-        *inverse;  /* by wave: weighted compliance over largest, and its inverse; 0 for the mean.
-                      Where open, compliance is that of the padded grid, and inverse that of the
-                      half-space which repeats `around`: a preconditioner alone */
-    double *z;     /* heights of mean 0, filled by the caller */
-    double *p, *u; /* pressures, and the displacements that they make */
-    double *q;     /* tangent dp/d(mean p): of mean 1, 0 outside of the contact */
+    double largest;           /* largest compliance, the unit of the two below; the grid's length */
+    const double *compliance; /* by wave: factor times this is the weighted compliance over largest;
+                                 0 for the mean; where open, that of the padded grid */
+    double factor;
+    double *product; /* owns `compliance` where that is weighted; else NULL */
+    double *inverse; /* inverse of the compliance over largest, 0 for the mean. Where open, that of
+                        the half-space which repeats `around`: a preconditioner alone */
+    double *z;       /* heights of mean 0, filled by the caller */
+    double *p, *u;   /* pressures, and the displacements that they make */
+    double *q;       /* tangent dp/d(mean p): of mean 1, 0 outside of the contact */
     double *r, *old, *t, *w; /* scratch */
     double *spare[2];        /* points of `around` each: scratch of preconditioning where open, and
                                 of steps that may be shortened */
@@ -42,13 +44,15 @@ struct conjugate_gradient {
     void *stop_context;
 };
 
+/* Borrows the compliance. */
 int conjugate_gradient_create(struct conjugate_gradient *out, const struct compliance *compliance,
                               struct error *err);
 /* Lets a team work along, with the same digits; borrowed until the next one. ERROR_MEMORY. */
 int conjugate_gradient_set_team(struct conjugate_gradient *solver, struct team *team,
                                 struct error *err);
 void conjugate_gradient_clear(struct conjugate_gradient *solver);
-double conjugate_gradient_bytes(const struct grid *grid);
+/* Of a periodic grid, but for what only careful steps touch. */
+double conjugate_gradient_bytes(const struct grid *grid, const struct block *block);
 
 struct conjugate_gradient_end {
     bool converged, stopped;

@@ -7,8 +7,8 @@ enum { LANES = CONJUGATE_GRADIENT_LANES, STEPS_MOST = 300 };
 /* Largest residual over the approach. */
 static const double TOLERANCE = 1e-4;
 
-enum { TANGENT };                    /* sum of q */
-enum { DISPLACED, MEMBERS, ENERGY }; /* sums of u in the set, of nodes, and of q u */
+enum { TANGENT };                   /* sum of q */
+enum { RESIDUAL, MEMBERS, ENERGY }; /* sums of r in the set, of nodes, and of q r */
 
 /* Drops q outside of the set p > 0. */
 WIDE_VECTORS static double restrict_to(size_t n, const double *p, double *q) {
@@ -27,17 +27,17 @@ static void restrict_block(const struct pass *pass, size_t first, size_t n,
     out->sum[TANGENT] = restrict_to(n, s->p + first, s->q + first);
 }
 
-WIDE_VECTORS static void measure(size_t n, const double *p, const double *q, const double *u,
+WIDE_VECTORS static void measure(size_t n, const double *p, const double *q, const double *r,
                                  struct pass_result *out) {
-    double displaced[LANES] = {0}, members[LANES] = {0}, energy[LANES] = {0};
+    double residual[LANES] = {0}, members[LANES] = {0}, energy[LANES] = {0};
     for (size_t i = 0; i < n; i += LANES)
         for (size_t a = 0; a < LANES; a++) {
             double in = p[i + a] > 0 ? 1 : 0;
-            displaced[a] += in * u[i + a];
+            residual[a] += in * r[i + a];
             members[a] += in;
-            energy[a] += q[i + a] * u[i + a];
+            energy[a] += q[i + a] * r[i + a];
         }
-    out->sum[DISPLACED] = conjugate_lanes_sum(displaced);
+    out->sum[RESIDUAL] = conjugate_lanes_sum(residual);
     out->sum[MEMBERS] = conjugate_lanes_sum(members);
     out->sum[ENERGY] = conjugate_lanes_sum(energy);
 }
@@ -45,16 +45,15 @@ WIDE_VECTORS static void measure(size_t n, const double *p, const double *q, con
 static void measure_block(const struct pass *pass, size_t first, size_t n,
                           struct pass_result *out) {
     const struct conjugate_gradient *s = pass->solver;
-    measure(n, s->p + first, s->q + first, s->u + first, out);
+    measure(n, s->p + first, s->q + first, s->r + first, out);
 }
 
-/* r = u + approach in the set p > 0, never 0 there. Returns the largest |r|. */
-WIDE_VECTORS static double residual(size_t n, const double *p, const double *u, double approach,
-                                    double *r) {
+/* Takes the mean off r in the set p > 0, where it is never 0. Returns the largest |r|. */
+WIDE_VECTORS static double centre(size_t n, const double *p, double mean, double *r) {
     double most[LANES] = {0};
     for (size_t i = 0; i < n; i += LANES)
         for (size_t a = 0; a < LANES; a++) {
-            double slope = u[i + a] + approach;
+            double slope = r[i + a] - mean;
             slope = p[i + a] > 0 ? (slope == 0 ? DBL_MIN : slope) : 0;
             most[a] = fabs(slope) > most[a] ? fabs(slope) : most[a];
             r[i + a] = slope;
@@ -62,17 +61,16 @@ WIDE_VECTORS static double residual(size_t n, const double *p, const double *u, 
     return conjugate_lanes_most(most);
 }
 
-static void residual_block(const struct pass *pass, size_t first, size_t n,
-                           struct pass_result *out) {
+static void centre_block(const struct pass *pass, size_t first, size_t n, struct pass_result *out) {
     const struct conjugate_gradient *s = pass->solver;
-    out->most[0] = residual(n, s->p + first, s->u + first, pass->approach, s->r + first);
+    out->most[0] = centre(n, s->p + first, pass->mean, s->r + first);
 }
 
-WIDE_VECTORS static void advance(size_t n, double step, const double *t, const double *w, double *q,
-                                 double *u) {
+WIDE_VECTORS static void advance(size_t n, double step, const double *t, const double *w,
+                                 const double *old, double *q, double *r) {
     for (size_t i = 0; i < n; i++) {
         q[i] -= step * t[i];
-        u[i] -= step * w[i];
+        r[i] = old[i] - step * w[i];
     }
 }
 
@@ -80,9 +78,10 @@ static void advance_block(const struct pass *pass, size_t first, size_t n,
                           struct pass_result *out) {
     (void)out;
     const struct conjugate_gradient *s = pass->solver;
-    advance(n, pass->step, s->t + first, s->w + first, s->q + first, s->u + first);
+    advance(n, pass->step, s->t + first, s->w + first, s->old + first, s->q + first, s->r + first);
 }
 
+/* Fills r with the displacements under q. */
 static void begin(struct conjugate_gradient *solver) {
     const struct pass pass = {.solver = solver};
     double sum = pass_run(&pass, restrict_block).sum[TANGENT];
@@ -93,20 +92,24 @@ static void begin(struct conjugate_gradient *solver) {
             sum += solver->q[i] = solver->p[i];
     }
     conjugate_step_scale(solver, 1, sum, solver->q);
-    conjugate_step_apply_compliance(solver, solver->q, solver->u);
+    conjugate_step_apply_compliance(solver, solver->q, solver->r);
 }
 
 double conjugate_gradient_tangent(struct conjugate_gradient *solver, double tolerance) {
     const double enough = fmin(TOLERANCE, sqrt(tolerance));
     struct step_memory memory = {.continued = true};
     struct pass pass = {.solver = solver};
+    double mean = 0; /* of the displacements in the set: minus the approach */
     begin(solver);
     for (size_t iteration = 0;; iteration++) {
         struct pass_result sums = pass_run(&pass, measure_block);
-        pass.approach = -sums.sum[DISPLACED] / sums.sum[MEMBERS];
-        double most = pass_run(&pass, residual_block).most[0];
-        if (most <= enough * fabs(pass.approach) || iteration == STEPS_MOST)
-            return sums.sum[ENERGY] / (double)solver->n;
+        /* Of q the mean is 1, so that the energy of the mean displacement is this mean. */
+        double energy = sums.sum[ENERGY] / (double)solver->n + mean;
+        pass.mean = sums.sum[RESIDUAL] / sums.sum[MEMBERS];
+        mean += pass.mean;
+        double most = pass_run(&pass, centre_block).most[0];
+        if (most <= enough * fabs(mean) || iteration == STEPS_MOST)
+            return energy;
         conjugate_step_direct(solver, &memory);
         pass.step = conjugate_step_length(solver);
         pass_run(&pass, advance_block);

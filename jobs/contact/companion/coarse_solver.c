@@ -111,9 +111,8 @@ int coarse_solver_press(struct coarse_solver *solver, const double *z, double *s
 
 double coarse_solver_bytes(const struct grid *grid) {
     const struct block block = {.model = MODEL_HALFSPACE, .height = INFINITY};
-    double patches = 16 * (double)grid_points(grid);
-    return patches + contact_bytes(grid) + area_workspace_bytes(grid, &block) +
-           compliance_bytes(grid, &block);
+    return patch_finder_bytes(grid) + contact_bytes(grid, &block) +
+           area_workspace_bytes(grid, &block) + compliance_bytes(grid, &block);
 }
 
 double coarse_solver_seconds(const struct contact_case *one_case, const struct grid *grid) {

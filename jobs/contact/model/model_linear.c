@@ -14,9 +14,7 @@ double linear_seconds(const struct contact_case *one_case, size_t model, const s
 }
 
 double linear_bytes(const struct contact_case *one_case, size_t model, const struct grid *grid) {
-    (void)one_case;
-    (void)model;
-    return contact_bytes(grid);
+    return contact_bytes(grid, &one_case->blocks[model]);
 }
 
 int linear_create(struct contact_solver **out, const struct contact_case *one_case, size_t model,
