@@ -12,6 +12,7 @@
 #include "core/random.h"
 #include "core/statistics/heights/roughness.h"
 #include "core/surface/surface.h"
+#include "core/team.h"
 #include "schema/result/block_result.h"
 #include "schema/result/bytes.h"
 #include "schema/result/result.h"
@@ -154,6 +155,9 @@ struct job_kind {
     int (*workspace_create)(void *workspace, const void *study, const struct surface_basis *basis,
                             const void *shared, struct error *err);
     void (*workspace_clear)(void *workspace);
+    /* Lets a team of threads work along in each realisation, with the same digits; borrowed.
+     * ERROR_MEMORY. NULL: a realisation takes one thread. */
+    int (*workspace_set_team)(void *workspace, struct team *team, struct error *err);
 
     /* --- a tally: exact sums over realisations, so that any order of merging gives the same bits.
      * Borrows its arguments. --- */

@@ -87,6 +87,13 @@ void runner_destroy(struct job_runner **runner) {
     *runner = NULL;
 }
 
+int runner_set_team(struct job_runner *runner, struct team *team, struct error *err) {
+    if (runner->kind->workspace_set_team == NULL)
+        return 0;
+    int status = runner->generator != NULL ? generator_set_team(runner->generator, team, err) : 0;
+    return status != 0 ? status : runner->kind->workspace_set_team(runner->workspace, team, err);
+}
+
 static int surface_make(struct job_runner *runner, struct error *err) {
     const struct surface_case *surface = runner->surface;
     size_t points = grid_points(&surface->grid);

@@ -28,6 +28,9 @@ struct job_runner;
 int runner_create(struct job_runner **out, const struct job_kind *kind, const cJSON *parameters,
                   const struct job_shared *shared, uint64_t seed, uint64_t sequence,
                   struct error *err);
+/* Lets a team of threads work along in each realisation, with the same digits; it is borrowed until
+ * runner_destroy. Kinds whose realisations take one thread ignore it. ERROR_MEMORY. */
+int runner_set_team(struct job_runner *runner, struct team *team, struct error *err);
 void runner_destroy(struct job_runner **runner);
 /* Runs realisations first .. first + count - 1 into out (untouched on failure), which the caller
  * clears. control may be NULL. A block that is stopped has the realisations that were done, fewer

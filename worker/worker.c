@@ -8,6 +8,7 @@
 #include "worker/publish/publish.h"
 #include "worker/quiet_thread.h"
 #include "worker/shared_parts.h"
+#include <math.h>
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdatomic.h>
@@ -52,6 +53,7 @@ struct worker_thread {
     struct job_runner *runner;
     struct shared_part *part; /* what the runner borrows; NULL: nothing */
     double bytes;             /* of the memory budget, for the runner */
+    struct team *team;        /* of the runner; NULL: this thread alone */
     /* The kind, study and case of the runner. */
     const struct job_kind *kind;
     char study[STUDY_ID_SIZE];
@@ -84,6 +86,7 @@ static void runner_drop(struct worker_thread *thread) {
         runner_destroy(&thread->runner);
         thread->runner = NULL;
     }
+    team_destroy(&thread->team);
     shared_parts_let_go(&thread->pool->parts, &thread->part);
     memory_budget_give(&thread->pool->memory, thread->bytes);
     thread->bytes = 0;
@@ -118,6 +121,23 @@ static int memory_take(struct worker_thread *thread, const struct claimed_job *j
     return status;
 }
 
+/* Where fewer realisations of the case fit into memory at once than there are threads, the others'
+ * processors share each of them. */
+static int team_make(struct worker_thread *thread, const struct claimed_job *job,
+                     struct error *err) {
+    const struct worker_pool *pool = thread->pool;
+    double at_once = fmax(1, floor(pool->memory.limit / thread->bytes));
+    unsigned threads = pool->options->threads;
+    if (!(pool->memory.limit > 0 && thread->bytes > 0 && at_once < threads))
+        return 0;
+    int status = team_create(&thread->team, (size_t)(threads / at_once), err);
+    if (status == 0 && thread->team != NULL)
+        thread_log(thread, LEVEL_INFO, job,
+                   "%zu threads share a realisation, since memory holds %.0f at once",
+                   team_threads(thread->team), at_once);
+    return status != 0 ? status : runner_set_team(thread->runner, thread->team, err);
+}
+
 /* Makes thread->runner a runner of this job's case. */
 static int runner_prepare(struct worker_thread *thread, const struct claimed_job *job,
                           const struct job_kind *kind, struct error *err) {
@@ -132,6 +152,8 @@ static int runner_prepare(struct worker_thread *thread, const struct claimed_job
     if (status == 0)
         status = runner_create(&thread->runner, kind, job->parameters,
                                shared_part_content(thread->part), job->seed, job->sequence, err);
+    if (status == 0)
+        status = team_make(thread, job, err);
     if (status != 0) {
         runner_drop(thread);
     } else {

@@ -90,6 +90,10 @@ int generator_create(struct generator **out, const struct spectrum *spectrum,
     return 0;
 }
 
+int generator_set_team(struct generator *generator, struct team *team, struct error *err) {
+    return transform_set_team(generator->transform, team, err);
+}
+
 void generator_destroy(struct generator **generator) {
     struct generator *g = *generator;
     if (g == NULL)

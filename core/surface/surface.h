@@ -12,6 +12,7 @@
 #include "core/random.h"
 #include "core/surface/spectrum.h"
 #include "core/surface/surface_options.h"
+#include "core/team.h"
 
 struct generator;
 
@@ -19,6 +20,9 @@ struct generator;
 int generator_create(struct generator **out, const struct spectrum *spectrum,
                      const struct grid *grid, const struct surface_options *options,
                      struct error *err);
+/* Lets a team of threads work along in transforms of whole surfaces, with the same digits; it is
+ * borrowed until the next call or generator_destroy. ERROR_MEMORY. */
+int generator_set_team(struct generator *generator, struct team *team, struct error *err);
 void generator_destroy(struct generator **generator);
 /* Returns the prescribed spectrum, which lives as long as the generator. It is that of every
  * surface, or with random amplitudes that of the mean. */

@@ -58,6 +58,11 @@ static void workspace_clear(void *workspace) {
     contact_scene_destroy(&work->scene);
 }
 
+static int workspace_set_team(void *workspace, struct team *team, struct error *err) {
+    struct contact_workspace *work = workspace;
+    return contact_scene_set_team(work->scene, team, err);
+}
+
 /* Measures a realisation. It may be stopped between loads and within them, as a load may take
  * minutes. */
 static int realise(void *workspace, const struct realisation *realisation, void *tally,
@@ -349,6 +354,7 @@ const struct job_kind CONTACT_KIND = {
     .workspace_size = sizeof(struct contact_workspace),
     .workspace_create = workspace_create,
     .workspace_clear = workspace_clear,
+    .workspace_set_team = workspace_set_team,
     .tally_size = sizeof(struct contact_tally),
     .tally_create = sums_create,
     .tally_clear = sums_clear,

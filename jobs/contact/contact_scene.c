@@ -85,6 +85,19 @@ int contact_scene_create(struct contact_scene **out, const struct contact_case *
     return status;
 }
 
+int contact_scene_set_team(struct contact_scene *scene, struct team *team, struct error *err) {
+    const struct contact_case *one_case = scene->one_case;
+    int status = 0;
+    for (size_t l = 0; l < one_case->level_count; l++)
+        for (size_t m = 0; m < one_case->model_count && status == 0; m++) {
+            const struct contact_model *model = one_case->models[m];
+            status = area_workspace_set_team(scene->areas[m][l], team, err);
+            if (status == 0 && model->set_team != NULL)
+                status = model->set_team(scene->solvers[m][l], team, err);
+        }
+    return status;
+}
+
 void contact_scene_destroy(struct contact_scene **scene) {
     struct contact_scene *s = *scene;
     if (s == NULL)

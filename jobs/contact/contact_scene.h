@@ -19,6 +19,8 @@ struct contact_scene;
 int contact_scene_create(struct contact_scene **out, const struct contact_case *one_case,
                          const struct moments *moments,
                          const struct contact_compliances *compliances, struct error *err);
+/* Lets a team of threads work along, with the same digits; borrowed. ERROR_MEMORY. */
+int contact_scene_set_team(struct contact_scene *scene, struct team *team, struct error *err);
 void contact_scene_destroy(struct contact_scene **scene);
 
 /* Solves every level, model and load of a realisation into the tally's values. stop is called
