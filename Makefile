@@ -312,10 +312,11 @@ UNTIMED := $(filter-out $(addprefix %/test_,same_answer slurm supervised target 
 run-unit:
 	@$(MAKE) --no-print-directory -j$$(nproc) $(call all_tests,unit)
 	@tests/run-tests $(call all_tests,unit)
+THREADED = $(TESTS_unit_worker) $(filter %/test_team,$(TESTS_unit_core)) $(UNTIMED)
 run-threads:
-	@$(MAKE) --no-print-directory -j$$(nproc) all $(TESTS_unit_worker) $(UNTIMED)
+	@$(MAKE) --no-print-directory -j$$(nproc) all $(THREADED)
 	@TSAN_OPTIONS=suppressions=$(abspath tests/thread-sanitizer.txt) \
-		RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(TESTS_unit_worker) $(UNTIMED)
+		RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(THREADED)
 .PHONY: run-unit run-threads
 
 # All that .ci/run leaves out, or tries only where its paths changed: an hour and a half on two processors.

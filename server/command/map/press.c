@@ -142,6 +142,9 @@ static bool are_asked(const struct press_paths *paths) {
 enum asked { ASKED_AUTO, ASKED_OPEN, ASKED_MIRRORED, ASKED_PERIODIC };
 #define BOUNDARIES "auto|open|mirrored|periodic" /* in this order */
 
+/* From so many points on threads share the work. */
+enum { POINTS_SHARED = 1 << 15 };
+
 /* With fewer nodes in contact, areas and pressures are rough. */
 enum { CONTACT_NODES_FEW = 50 };
 
@@ -416,14 +419,13 @@ static int press_map(const struct press_order *order, struct height_map *map, st
     struct pressed pressed = {.pressures = array_create(loads, sizeof *pressed.pressures),
                               .rows = array_create(count, sizeof *pressed.rows)};
     unsigned threads = order->options->threads;
-    int status =
-        pressed.pressures == NULL || pressed.rows == NULL
-            ? error_memory(err, count * sizeof *pressed.rows, "the loads")
-            : team_create(&pressed.press.team, threads > 0 ? threads : allotment_threads(), err);
-    if (status == 0)
-        status = map_press_begin(&pressed.press, map, order->boundary, err);
+    int status = pressed.pressures == NULL || pressed.rows == NULL
+                     ? error_memory(err, count * sizeof *pressed.rows, "the loads")
+                     : map_press_begin(&pressed.press, map, order->boundary, err);
     if (status != 0)
         error_context(err, "%s", order->path);
+    else if (grid_points(&map->grid) >= POINTS_SHARED)
+        status = team_create(&pressed.press.team, threads > 0 ? threads : allotment_threads(), err);
     if (status == 0)
         status = press_models(order, &pressed, map, err);
     pressed_clear(&pressed);

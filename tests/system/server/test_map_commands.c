@@ -259,6 +259,21 @@ static void a_measured_map_is_pressed_in_units(void **state) {
     assert_true(contains("shell.err", "--pressure needs the stiffness of the block"));
 }
 
+/* Threads that share a large map give its digits, whatever their number. */
+static void threads_give_the_same_digits(void **state) {
+    (void)state;
+    spit("drawn.json",
+         "{\"name\": \"drawn\", \"kind\": \"statistics\", \"surface\": {\"dimension\": 2, "
+         "\"hurst\": 0.8, \"wavelength_ratio\": 12, \"length_ratio\": 2, "
+         "\"points_per_wavelength\": 8, \"rms_slope\": 0.1}}");
+    assert_int_equal(
+        run_shell("$RUGO generate drawn.json -o drawn.npy >/dev/null && for threads in 0 1 3; do "
+                  "$RUGO press drawn.npy --loads 0.1,0.3 --threads $threads --format csv -o "
+                  "$threads.npy > $threads.csv || exit 1; done; cmp 0.csv 1.csv && cmp 0.npy 1.npy "
+                  "&& cmp 0.csv 3.csv && cmp 0.npy 3.npy"),
+        0);
+}
+
 /* Steps and nodes of a pressed surface, and many surfaces at once. */
 static void steps_and_ranges_are_written(void **state) {
     (void)state;
@@ -344,6 +359,7 @@ int main(void) {
         cmocka_unit_test(lengths_have_units),
         cmocka_unit_test(a_map_is_converted),
         cmocka_unit_test(a_measured_map_is_pressed_in_units),
+        cmocka_unit_test(threads_give_the_same_digits),
         cmocka_unit_test(steps_and_ranges_are_written),
         cmocka_unit_test(wrong_steps_and_ranges_are_refused),
         cmocka_unit_test(a_comma_in_the_environment_changes_nothing),
