@@ -140,7 +140,7 @@ static void close_set(struct conjugate_gradient *solver, double enough, double s
                       size_t max_iterations, struct conjugate_gradient_end *end) {
     struct step_memory memory = {.continued = true};
     struct pass pass = {.solver = solver};
-    struct pass_result gaps = pass_run(&pass, fill_block);
+    struct pass_result gaps = pass_run(&solver->board, &pass, fill_block);
     const double members = gaps.sum[MEMBERS];
     double begun = 0;
     conjugate_step_take_set(solver, solver->r);
@@ -153,10 +153,10 @@ static void close_set(struct conjugate_gradient *solver, double enough, double s
         if (end->inside <= enough || (step > 0 && end->inside <= share * begun) ||
             step == STEPS_MOST || end->iterations >= max_iterations || !isfinite(end->approach))
             return;
-        pass_run(&pass, centre_block);
+        pass_run(&solver->board, &pass, centre_block);
         conjugate_step_direct(solver, &memory);
         pass.step = conjugate_step_length(solver);
-        gaps = pass_run(&pass, advance_block);
+        gaps = pass_run(&solver->board, &pass, advance_block);
         end->iterations++;
     }
 }
@@ -172,7 +172,7 @@ void active_set_run(struct conjugate_gradient *solver, double mean, double toler
         close_set(solver, fmax(tolerance * end->deepest, rounding), part * pow(CLOSER, stalled),
                   max_iterations, end);
         const struct pass pass = {.solver = solver, .approach = end->approach};
-        struct pass_result next = pass_run(&pass, follow_block);
+        struct pass_result next = pass_run(&solver->board, &pass, follow_block);
         end->penetration = next.most[PENETRATION];
         end->deepest = next.most[DEEPEST];
         double violation = fmax(end->inside, end->penetration);

@@ -22,7 +22,7 @@ enum { ARRAYS = 10, SPARES = 2 }; /* in all, and those that are larger in free s
 double conjugate_gradient_bytes(const struct grid *grid, const struct block *block) {
     double waves = ((double)grid->nx / 2 + 1) * (double)grid->ny;
     double pyramid = grid_is_profile(grid) ? 0 : pyramid_bytes(grid);
-    double results = sizeof(struct pass_result) * (double)pass_blocks(padded(grid_points(grid)));
+    double results = pass_board_bytes(padded(grid_points(grid)));
     double symbols = compliance_has_weight(block) ? 2 : 1; /* and a spectrum */
     return sizeof(double) *
                ((ARRAYS - SPARES) * (double)padded(grid_points(grid)) + (2 + symbols) * waves) +
@@ -39,10 +39,6 @@ static int arrays_create(struct conjugate_gradient *solver, struct error *err) {
         if (*arrays[a] == NULL)
             return error_memory(err, count * sizeof(double), "a contact");
     }
-    size_t blocks = pass_blocks(solver->padded);
-    solver->results = array_create(blocks, sizeof *solver->results);
-    if (solver->results == NULL)
-        return error_memory(err, blocks * sizeof *solver->results, "a contact");
     for (size_t i = solver->n; i < solver->padded; i++)
         solver->z[i] = -FAR;
     return 0;
@@ -102,6 +98,8 @@ int conjugate_gradient_create(struct conjugate_gradient *out, const struct compl
         status = transform_create(&out->wide, waved, waved->nx / 2, waved->ny / 2, err);
     if (status == 0)
         status = arrays_create(out, err);
+    if (status == 0)
+        status = pass_board_create(&out->board, out->padded, err);
     if (status == 0 && !grid_is_profile(grid))
         status = pyramid_create(&out->pyramid, around, err);
     if (status == 0)
@@ -117,9 +115,9 @@ void conjugate_gradient_clear(struct conjugate_gradient *solver) {
                                     solver->t,        solver->w};
     for (size_t a = 0; a < ARRAYS; a++)
         free(arrays[a]);
-    free(solver->results);
     free(solver->product);
     free(solver->inverse);
+    pass_board_clear(&solver->board);
     pyramid_clear(&solver->pyramid);
     transform_destroy(&solver->transform);
     transform_destroy(&solver->wide);
@@ -134,7 +132,7 @@ int conjugate_gradient_set_team(struct conjugate_gradient *solver, struct team *
     if (status == 0 && !grid_is_profile(&solver->grid))
         status = pyramid_set_team(&solver->pyramid, team, err);
     if (status == 0)
-        solver->team = team;
+        solver->board.team = team;
     return status;
 }
 
@@ -350,13 +348,13 @@ static void redirect_block(const struct pass *pass, size_t first, size_t n,
 void conjugate_step_direct(struct conjugate_gradient *solver, struct step_memory *memory) {
     precondition(solver, memory->continued, solver->r, solver->w);
     struct pass pass = {.solver = solver, .beta = memory->energy > 0 ? 1 : 0};
-    struct pass_result s = pass_run(&pass, multiply_block);
+    struct pass_result s = pass_run(&solver->board, &pass, multiply_block);
     pass.w_mean = s.sum[W] / s.sum[MEMBERS];
     pass.t_mean = s.sum[T] / s.sum[MEMBERS];
     double energy = s.sum[W_R] - pass.w_mean * s.sum[R];
     double change = energy - (s.sum[W_OLD] - pass.w_mean * s.sum[OLD]);
     pass.beta = memory->energy > 0 ? fmax(0, change / memory->energy) : 0;
-    pass_run(&pass, redirect_block);
+    pass_run(&solver->board, &pass, redirect_block);
     memory->energy = energy;
     double *last = solver->old;
     solver->old = solver->r;
@@ -384,7 +382,7 @@ static void least_block(const struct pass *pass, size_t first, size_t n, struct 
 }
 
 double conjugate_step_length(struct conjugate_gradient *solver) {
-    struct pass_result s = pass_run(&(struct pass){.solver = solver}, least_block);
+    struct pass_result s = pass_run(&solver->board, &(struct pass){.solver = solver}, least_block);
     return s.sum[BELOW] > 0 ? s.sum[ABOVE] / s.sum[BELOW] : 0;
 }
 
@@ -406,7 +404,7 @@ static void scale_part(void *context, size_t part, size_t thread) {
 
 void conjugate_step_scale(struct conjugate_gradient *solver, double mean, double sum, double *x) {
     struct scaling scaling = {mean * (double)solver->n / sum, x, solver->n};
-    team_share(solver->team, solver->n / SCALED + 1, scale_part, &scaling);
+    team_share(solver->board.team, solver->n / SCALED + 1, scale_part, &scaling);
 }
 
 double conjugate_step_highest(const struct conjugate_gradient *solver) {

@@ -36,11 +36,10 @@ struct conjugate_gradient {
     double *r, *old, *t, *w; /* scratch */
     double *spare[2];        /* points of `around` each: scratch of preconditioning where open, and
                                 of steps that may be shortened */
-    struct pass_result *results; /* scratch of passes */
-    struct team *team;           /* borrowed; NULL: the caller alone */
-    struct pyramid pyramid;      /* of surfaces, over `around` */
-    double transforms;           /* Fourier transforms made so far, forward and inverse */
-    int (*stop)(void *context);  /* called every few iterations, non-zero stops; may be NULL */
+    struct pass_board board; /* of passes over the nodes */
+    struct pyramid pyramid;  /* of surfaces, over `around` */
+    double transforms;       /* Fourier transforms made so far, forward and inverse */
+    int (*stop)(void *context); /* called every few iterations, non-zero stops; may be NULL */
     void *stop_context;
 };
 

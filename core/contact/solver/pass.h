@@ -4,7 +4,17 @@
 #ifndef RUGO_CORE_CONTACT_SOLVER_PASS_H
 #define RUGO_CORE_CONTACT_SOLVER_PASS_H
 
-#include <stddef.h>
+#include "core/team.h"
+
+/* What passes over the nodes of a solver share. */
+struct pass_board {
+    size_t padded;               /* nodes, a multiple of the lanes */
+    struct pass_result *results; /* owned: of each block */
+    struct team *team;           /* borrowed; NULL: the caller alone */
+};
+int pass_board_create(struct pass_board *out, size_t padded, struct error *err);
+void pass_board_clear(struct pass_board *board);
+double pass_board_bytes(size_t padded);
 
 struct conjugate_gradient;
 
@@ -23,8 +33,8 @@ struct pass_result {
 typedef void pass_block(const struct pass *pass, size_t first, size_t count,
                         struct pass_result *out);
 
-/* Returns the number of results that a pass over so many nodes writes. */
-size_t pass_blocks(size_t padded);
-struct pass_result pass_run(const struct pass *pass, pass_block *block);
+/* Works on all nodes. Returns the sums over the blocks, and what is largest of them. */
+struct pass_result pass_run(const struct pass_board *board, const struct pass *pass,
+                            pass_block *block);
 
 #endif

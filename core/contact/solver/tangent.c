@@ -84,7 +84,7 @@ static void advance_block(const struct pass *pass, size_t first, size_t n,
 /* Fills r with the displacements under q. */
 static void begin(struct conjugate_gradient *solver) {
     const struct pass pass = {.solver = solver};
-    double sum = pass_run(&pass, restrict_block).sum[TANGENT];
+    double sum = pass_run(&solver->board, &pass, restrict_block).sum[TANGENT];
     conjugate_step_take_set(solver, solver->p);
     if (!(sum > 0)) {
         sum = 0;
@@ -102,16 +102,16 @@ double conjugate_gradient_tangent(struct conjugate_gradient *solver, double tole
     double mean = 0; /* of the displacements in the set: minus the approach */
     begin(solver);
     for (size_t iteration = 0;; iteration++) {
-        struct pass_result sums = pass_run(&pass, measure_block);
+        struct pass_result sums = pass_run(&solver->board, &pass, measure_block);
         /* Of q the mean is 1, so that the energy of the mean displacement is this mean. */
         double energy = sums.sum[ENERGY] / (double)solver->n + mean;
         pass.mean = sums.sum[RESIDUAL] / sums.sum[MEMBERS];
         mean += pass.mean;
-        double most = pass_run(&pass, centre_block).most[0];
+        double most = pass_run(&solver->board, &pass, centre_block).most[0];
         if (most <= enough * fabs(mean) || iteration == STEPS_MOST)
             return energy;
         conjugate_step_direct(solver, &memory);
         pass.step = conjugate_step_length(solver);
-        pass_run(&pass, advance_block);
+        pass_run(&solver->board, &pass, advance_block);
     }
 }
