@@ -59,7 +59,7 @@ static void use_huge_pages(void *memory, size_t bytes) {
     const uintptr_t HUGE_PAGE = (uintptr_t)1 << 21;
     uintptr_t first = ((uintptr_t)memory + HUGE_PAGE - 1) & ~(HUGE_PAGE - 1);
     uintptr_t end = ((uintptr_t)memory + bytes) & ~(HUGE_PAGE - 1);
-    if (first < end) /* a wish: where the system has none, nothing changes */
+    if (first < end) /* where the system has none, nothing changes */
         madvise((void *)first, end - first, MADV_HUGEPAGE);
 }
 

@@ -1,5 +1,6 @@
 /* Protects: workers whose memory a control group limits run as many jobs at once as fit, where they
- * would be killed otherwise; and a job that does not fit alone fails with the figures. Skipped,
+ * would be killed otherwise; a job that does not fit alone fails with the figures; and where one
+ * fits alone, all threads share its realisations, with the same digits. The first two are skipped,
  * with a word, where no group can be made. */
 #include "tests/support/check.h"
 #include "tests/support/process.h"
@@ -77,10 +78,30 @@ static void a_job_that_does_not_fit_fails(void **state) {
     assert_int_equal(process_wait(&server, 20), 0);
 }
 
+/* About 40 MiB a thread. */
+static const char CONTACT[] =
+    "{\"name\":\"shared\",\"kind\":\"contact\",\"realisations\":2,\"surface\":{"
+    "\"dimension\":2,\"hurst\":0.8,\"wavelength_ratio\":16,\"length_ratio\":2,"
+    "\"rms_slope\":0.1},\"contact\":{\"model\":\"halfspace\",\"pressures\":{\"values\":[0.1]}}}";
+
+static void threads_share_what_fits_once(void **state) {
+    (void)state;
+    spit("shared.json", CONTACT);
+    assert_int_equal(
+        run_shell("run() { $RUGO run shared.json --workers 3 --log-level info --db $1.db --out $1 "
+                  "&& grep -v '^#' $1/curves.csv >$1.csv; }; run many && "
+                  "! grep -q 'share a realisation' shell.err && SLURM_MEM_PER_NODE=80 && "
+                  "export SLURM_MEM_PER_NODE && run once && cmp many.csv once.csv"),
+        0);
+    assert_true(
+        contains("shell.err", "3 threads share a realisation, since memory holds 1 at once"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(jobs_run_as_memory_allows),
         cmocka_unit_test(a_job_that_does_not_fit_fails),
+        cmocka_unit_test(threads_share_what_fits_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
