@@ -231,18 +231,39 @@ static void continue_by_lines_transposed(size_t n, const double *r, double *w) {
     }
 }
 
+/* A corner of a wider grid: rows of nx values, `from_row` and `to_row` apart. */
+struct corner {
+    const double *from;
+    double *to;
+    size_t nx, ny, from_row, to_row;
+};
+enum { CORNER_ROWS = 32 }; /* of a part */
+
+static void copy_part(void *context, size_t part, size_t thread) {
+    (void)thread;
+    const struct corner *c = context;
+    for (size_t j = part * CORNER_ROWS; j < (part + 1) * CORNER_ROWS && j < c->ny; j++) {
+        double *to = c->to + j * c->to_row;
+        memcpy(to, c->from + j * c->from_row, c->nx * sizeof *to);
+        if (c->to_row > c->nx)
+            memset(to + c->nx, 0, (c->to_row - c->nx) * sizeof *to);
+    }
+}
+
+static void copy_corner(struct team *team, struct corner corner) {
+    team_share(team, corner.ny / CORNER_ROWS + 1, copy_part, &corner);
+}
+
 /* Returns r in the corner of `around`, with zeros about it; where that is the grid itself, r. */
 static const double *embed(struct conjugate_gradient *solver, const double *r) {
     const struct grid *grid = &solver->grid, *around = &solver->around;
     double *out = solver->spare[0];
     if (solver->wide == NULL)
         return r;
-    for (size_t j = 0; j < grid->ny; j++, r += grid->nx, out += around->nx) {
-        memcpy(out, r, grid->nx * sizeof *out);
-        memset(out + grid->nx, 0, (around->nx - grid->nx) * sizeof *out);
-    }
-    memset(out, 0, (around->ny - grid->ny) * around->nx * sizeof *out);
-    return solver->spare[0];
+    copy_corner(solver->board.team,
+                (struct corner){r, out, grid->nx, grid->ny, grid->nx, around->nx});
+    memset(out + grid->ny * around->nx, 0, (around->ny - grid->ny) * around->nx * sizeof *out);
+    return out;
 }
 
 void conjugate_step_take_set(struct conjugate_gradient *solver, const double *r) {
@@ -266,8 +287,9 @@ static void precondition(struct conjugate_gradient *solver, bool continued, cons
         continue_by_lines_transposed(around->nx, set, x);
     else if (continued)
         pyramid_transpose(&solver->pyramid, set, x);
-    for (size_t j = 0; x != out && j < grid->ny; j++)
-        memcpy(out + j * grid->nx, x + j * around->nx, grid->nx * sizeof *out);
+    if (x != out)
+        copy_corner(solver->board.team,
+                    (struct corner){x, out, grid->nx, grid->ny, around->nx, grid->nx});
     solver->transforms += 2 * (double)grid_points(around) / (double)solver->n;
 }
 
