@@ -349,9 +349,17 @@ run: deps
 	@for study in demo contact-demo; do \
 	    $(BUILD)/rugo run --db $(BUILD)/demo.db jobs/studies/$$study.json || exit; echo; done
 
+# Growth alone: of computations by their points, of the store by its studies and cases, of the queue by its jobs. The
+# first takes minutes, and is no part of `bench`.
+GROWTH      = $(BUILD)/tests/bench/core/bench_computation_growth
+GROWTH_ALSO = $(addprefix $(BUILD)/tests/bench/server/,bench_growth bench_queue_growth)
 bench: deps
 	@$(MAKE) --no-print-directory -j$$(nproc) all $(call all_tests,bench)
-	@RUGO=$(abspath $(BUILD))/rugo tests/bench/run $(call all_tests,bench)
+	@RUGO=$(abspath $(BUILD))/rugo tests/bench/run $(filter-out $(GROWTH),$(call all_tests,bench))
+bench-growth: deps
+	@$(MAKE) --no-print-directory -j$$(nproc) all $(GROWTH) $(GROWTH_ALSO)
+	@RUGO=$(abspath $(BUILD))/rugo tests/bench/run --alone $(GROWTH) $(GROWTH_ALSO)
+.PHONY: bench-growth
 
 # Beside codes of others from PyPI, in a virtual environment of its own; minutes, and part of no other target.
 PEERS = numpy scipy tamaas contactmechanics surfacetopography surfalize

@@ -4,6 +4,7 @@
  * studies, 10 000 by default. */
 #include "server/command/access/api.h"
 #include "server/show/table/contents.h"
+#include "tests/support/growth.h"
 #include "tests/support/needle_study.h"
 #include "tests/support/queue_load.h"
 #include "worker/publish/publish.h"
@@ -287,36 +288,26 @@ static int measure(struct growth *growth, struct error *err) {
     return status;
 }
 
-/* The slope of log time over log size, by least squares. */
-static double exponent(const struct growth *all, const double *sizes, int count, int what) {
-    double x = 0, y = 0, xx = 0, xy = 0;
-    for (int n = 0; n < count; n++) {
-        double a = log(sizes[n]), b = log(all[n].us[what]);
-        x += a, y += b, xx += a * a, xy += a * b;
-    }
-    return (count * xy - x * y) / (count * xx - x * x);
-}
-
 static void print_table(const char *title, const struct growth *all, const double *sizes,
-                        int count) {
-    printf("%-34s", title);
-    for (int n = 0; n < count; n++)
-        printf("%10.0f", sizes[n]);
-    printf("  exponent\n");
+                        size_t count) {
+    growth_print_head(title, sizes, count, "");
     for (int what = 0; what < OPERATIONS; what++) {
-        if (!(all[0].us[what] > 0))
+        double us[SIZES_MOST] = {0};
+        for (size_t n = 0; n < count; n++)
+            us[n] = all[n].us[what];
+        if (!(us[0] > 0))
             continue;
-        printf("%-31s us", NAMES[what]);
-        for (int n = 0; n < count; n++)
-            printf("%10.1f", all[n].us[what]);
-        printf("%10.2f\n", exponent(all, sizes, count, what));
+        growth_print_row(NAMES[what], sizes, us, count);
+        printf("\n");
     }
+    fflush(stdout);
 }
 
 static int bench(bool of_cases, unsigned most, struct error *err) {
     struct growth all[SIZES_MOST] = {0};
     double sizes[SIZES_MOST];
-    int count = 0, status = 0;
+    size_t count = 0;
+    int status = 0;
     for (unsigned size = 100; status == 0 && size <= most && count < SIZES_MOST; size *= 10) {
         all[count].studies = of_cases ? 1 : size;
         all[count].cases = of_cases ? size : 1;
@@ -324,8 +315,7 @@ static int bench(bool of_cases, unsigned most, struct error *err) {
         status = measure(&all[count++], err);
     }
     if (status == 0)
-        print_table(of_cases ? "a study of cases" : "studies, a tenth of which wait", all, sizes,
-                    count);
+        print_table(of_cases ? "cases of one study" : "studies", all, sizes, count);
     return status;
 }
 

@@ -1,13 +1,16 @@
-/* The queue against its length and its users: a claim among 10 000, 100 000 and a million waiting
- * jobs takes equally long. 16 processes on one file, as of `work --db`, neither see it busy nor
- * wait long. */
+/* The queue against its length and its users: us of a claim among 10 000, 100 000 and a million
+ * waiting jobs, with the exponents fitted to them, which are about 0. 16 processes on one file, as
+ * of `work --db`, neither see it busy nor wait long. */
+#include "tests/support/growth.h"
 #include "tests/support/queue_load.h"
-#include <math.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { CLAIMS = 4000, BATCH = 200, PROCESSES = 16, SECONDS = 8 };
+enum { CLAIMS = 4000, BATCH = 200, PROCESSES = 16, SECONDS = 8, LENGTHS = 3, LENGTH_LEAST = 10000 };
+enum row { SUBMIT, CLAIM, CLAIM_RUNNING, ROWS };
+static const char *const NAMES[ROWS] = {"submit, the study of them", "claim, a job",
+                                        "claim, a job, with 4000 that run"};
 
 static int claim(struct store *store, struct claimed_job *job, struct error *err) {
     struct claim claim = {.worker = "bench", .host = "bench", .count = 1};
@@ -37,22 +40,41 @@ static int time_claims(struct store *store, double *us, struct error *err) {
     return status;
 }
 
-static int bench_growth(unsigned jobs, struct error *err) {
+/* Fills column n of the rows. */
+static int measure(unsigned jobs, double us[ROWS][LENGTHS], size_t n, struct error *err) {
     struct store *store = NULL;
-    double submit = seconds(), us[3] = {0};
+    double start = seconds();
     int status = queue_create("growth.db", jobs, err);
-    submit = seconds() - submit;
+    us[SUBMIT][n] = 1e6 * (seconds() - start);
     if (!status)
         status = store_open(&store, "growth.db", NULL, err);
-    /* the running jobs of the first rounds stay: they grow too */
-    for (int round = 0; !status && round < 2; round++)
-        status = time_claims(store, &us[round], err);
-    store_close(&store);
+    /* the running jobs of the first claims stay: they grow too */
     if (!status)
-        printf("%8u jobs: submitted in %5.2f s; a claim takes %5.1f us, with %d running %5.1f us\n",
-               jobs, submit, us[0], CLAIMS, us[1]);
+        status = time_claims(store, &us[CLAIM][n], err);
+    if (!status)
+        status = time_claims(store, &us[CLAIM_RUNNING][n], err);
+    store_close(&store);
     unlink("growth.db");
     return status;
+}
+
+static int bench_growth(struct error *err) {
+    double lengths[LENGTHS], us[ROWS][LENGTHS];
+    int status = 0;
+    unsigned jobs = LENGTH_LEAST;
+    for (size_t n = 0; !status && n < LENGTHS; n++, jobs *= 10) {
+        lengths[n] = jobs;
+        status = measure(jobs, us, n, err);
+    }
+    if (status)
+        return status;
+    growth_print_head("jobs that wait", lengths, LENGTHS, "");
+    for (int row = 0; row < ROWS; row++) {
+        growth_print_row(NAMES[row], lengths, us[row], LENGTHS);
+        printf("\n");
+    }
+    printf("\n");
+    return 0;
 }
 
 /* --- many processes --- */
@@ -125,8 +147,8 @@ int main(void) {
     struct error err = {0};
     struct block_result result = {0};
     int status = queue_compute(&result, &err);
-    for (unsigned jobs = 10000; !status && jobs <= 1000000; jobs *= 10)
-        status = bench_growth(jobs, &err);
+    if (!status)
+        status = bench_growth(&err);
     if (!status)
         status = bench_processes(&result, &err);
     if (status)
