@@ -413,10 +413,12 @@ check-documents: all
 
 # The pictures of the documents, drawn by the program; CI checks that they are what it draws today.
 FIGURES = jobs/studies/figures
+# Pages with tables of growth; growth.svg beside a page is drawn from them.
+GROWING = schema/README.md jobs/studies/GROWTH.md
 figures: all
 	@$(FIGURES)/draw $(BUILD)/rugo $(FIGURES)
 	@tests/install-deps "" python3 python3
-	@python3 tests/bench/growth_picture.py schema/README.md >schema/growth.svg
+	@for page in $(GROWING); do python3 tests/bench/growth_picture.py $$page >$$(dirname $$page)/growth.svg || exit; done
 page-figures: all
 	@tests/browser/run $(abspath $(BUILD))/rugo $(FIGURES)
 # Needs sqlite3, as the documents do.
@@ -430,7 +432,8 @@ check-figures: all
 	@$(FIGURES)/draw $(BUILD)/rugo $(BUILD)/figures
 	@tests/same-figures $(FIGURES) $(BUILD)/figures
 	@tests/install-deps "" python3 python3
-	@python3 tests/bench/growth_picture.py schema/README.md | cmp - schema/growth.svg
+	@for page in $(GROWING); do \
+	    python3 tests/bench/growth_picture.py $$page | cmp - $$(dirname $$page)/growth.svg || exit; done
 	@echo "figures: as the program draws them"
 .PHONY: check-citations figures page-figures check-figures
 
