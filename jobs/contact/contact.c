@@ -7,6 +7,7 @@
 #include "jobs/contact/contact_scalars.h"
 #include "jobs/contact/contact_scene.h"
 #include "jobs/contact/contact_steps.h"
+#include "jobs/contact/contact_tolerance.h"
 #include "jobs/contact/target/contact_target.h"
 #include "schema/json/field.h"
 #include "schema/json/json.h"
@@ -331,6 +332,8 @@ static const struct result_view VIEW = {
 /* As study_kind.fill has it. */
 static int complete_case(const cJSON *document, cJSON *parameters, struct error *err) {
     int status = surface_law_complete(document, parameters, err);
+    if (status == 0)
+        status = contact_tolerance_fill(document, parameters, err);
     return status == 0 ? contact_loads_fill(document, parameters, err) : status;
 }
 

@@ -58,7 +58,7 @@ struct contact_case {
     bool nodes, edges, perimeter; /* estimators shown */
     bool stiffness;               /* is measured */
     bool asperities;              /* theories by counted summits are wanted */
-    double tolerance;
+    double tolerance;             /* of solutions (contact_tolerance.h) */
     size_t pdf_count;
     size_t *pdf_loads;    /* owned: loads whose pressures are counted, rising */
     bool pdf_pairs;       /* on all levels, with their differences (contact_densities.h) */

@@ -58,13 +58,13 @@ static double stretched(const struct measure_context *context, double edges, dou
         "stiffness", "", "K sqrt(m0)/(E* h'_rms)", NONE,                                           \
         2, COUNTED, GAP, FALLS, SAME, REPORTED, STIFFNESS)                                         \
     ROW(PATCHES, true, false, (double)patches.count,                                               \
-        "patch_count", "cell", "patches", NONE, 1, COUNTED, PRESSURE, STAYS, GROWS, SOME, ONE)     \
+        "patch_count", "cell", "patches", NONE, 1, PATCHES, PRESSURE, STAYS, GROWS, SOME, ONE)     \
     ROW(PATCH_MEAN, true, false, now * patches.mean / context->points,                             \
         "patch_mean_area", "", "mean patch", NONE,                                                 \
-        1, COUNTED, PRESSURE, FALLS, SHRINKS, SOME, AREA)                                          \
+        1, PATCHES, PRESSURE, FALLS, SHRINKS, SOME, AREA)                                          \
     ROW(PATCH_LARGEST, true, false, now * (double)patches.largest / context->points,               \
         "patch_largest_area", "", "largest patch/cell", NONE,                                      \
-        1, COUNTED, PRESSURE, FALLS, UNLIMITED, SOME, AREA)                                        \
+        1, PATCHES, PRESSURE, FALLS, UNLIMITED, SOME, AREA)                                        \
     ROW(KAPPA, false, false, NAN,                                                                  \
         NULL, "", NULL, NONE, 2, SMOOTH, PRESSURE, STAYS, SAME, SOME, ONE)                         \
     ROW(POWER_LAW_A, false, false, NAN,                                                            \

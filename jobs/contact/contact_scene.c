@@ -294,6 +294,7 @@ void contact_case_estimate(const struct contact_case *one_case, struct study_cos
     const struct surface_case *surface = &one_case->surface;
     const struct grid *finest = &contact_case_finest(one_case)->grid;
     surface_case_estimate(surface, out);
+    out->tolerance = one_case->tolerance;
     out->fine_height = 0;
     for (size_t m = 0; m < one_case->model_count; m++)
         if (one_case->fine_height > 0 && one_case->models[m]->mesh_floor != NULL)

@@ -36,9 +36,10 @@ enum contact_measure {
 
 /* The theories of its curve (contact_curves.c). */
 enum measure_theories { THEORIES_NONE, THEORIES_AREA, THEORIES_GAP, THEORIES_KINDS };
-/* How the solver's tolerance changes it: smoothly with the forces, or by counted points, one of
- * which may fall on either side. */
-enum measure_solver { SOLVER_SMOOTH, SOLVER_COUNTED };
+/* How the solver's tolerance changes it: smoothly with the forces; by counted points, one of which
+ * may fall on either side; by patches, which such a point may join or divide; or by points in bins
+ * of pressure. */
+enum measure_solver { SOLVER_SMOOTH, SOLVER_COUNTED, SOLVER_PATCHES, SOLVER_BINNED };
 /* The field of a solution that it is measured on. */
 enum measure_field { FIELD_NONE, FIELD_PRESSURE, FIELD_GAP };
 /* Whether it falls with the load where that is light. */

@@ -183,8 +183,11 @@ static void solver_errors(const struct errors *errors, size_t m) {
     for (size_t l = 0; l < errors->loads; l++)
         for (size_t v = 0; v < PRESS_VALUES; v++)
             if (applies(errors, m, v, ERROR_SOLVER)) {
-                double share = contact_errors_solver(press_measure(v)->solver, series->tolerance);
-                put(&series->rows[l], ERROR_SOLVER, v, 0, share * fabs(series->rows[l].value[v]));
+                const double *value = series->rows[l].value;
+                double share =
+                    contact_errors_solver(press_measure(v)->solver, series->tolerance,
+                                          value[PRESS_CONTACT_NODES], value[MEASURE_PATCHES]);
+                put(&series->rows[l], ERROR_SOLVER, v, 0, share * fabs(value[v]));
             }
 }
 

@@ -8,7 +8,7 @@
  *     (block_error.h).
  * model: the difference to the most complete of the models asked for; of this one, where it is
  *     linear, the area's first order of sideways strain (FORMULAS.md, F14.5).
- * solver: a multiple of the tolerance (contact_errors.h).
+ * solver: the tolerance and the number of nodes in contact (contact_errors.h).
  *
  * One map has no error of sampling, and nothing is known of its cell and its generation. */
 #ifndef RUGO_JOBS_MAPS_MAP_PRESS_ERROR_H

@@ -142,7 +142,7 @@ static bool put_remarks(cJSON *schema, const struct parameter *parameter) {
     snprintf(text, sizeof text, "%s%s%s%s", parameter->help, parameter->unit != NULL ? " [" : "",
              parameter->unit != NULL ? parameter->unit : "", parameter->unit != NULL ? "]" : "");
     bool complete = field_put_text(schema, "description", text);
-    if (complete && parameter->default_json != NULL)
+    if (complete && parameter->default_json != NULL && parameter->default_text == NULL)
         complete = field_put(schema, "default", value_default(parameter));
     cJSON *examples = complete && parameter->example_json != NULL
                           ? cJSON_AddArrayToObject(schema, "examples")

@@ -33,6 +33,9 @@ struct parameter {
     const char *title;            /* in words, "Hurst exponent"; NULL: its name */
     const char *unit;             /* NULL: a pure number, or none at all */
     const char *default_json;     /* NULL: absent unless given */
+    const char *default_text;     /* in words what the kind writes out in place of default_json in
+                                     studies that do not give it (study_kind.fill); NULL: it does
+                                     not */
     const char *example_json;     /* a value, or a list of values that makes cases */
     const struct choice *choices; /* NULL for types without them */
     const struct choice *units;   /* PARAMETER_MEASURE */

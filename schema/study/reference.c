@@ -60,7 +60,8 @@ static const char *or_dash(const char *text) {
 /* Writes the default of a row; that of /realisations is the kinds' own. */
 static void describe_default(const struct reference *reference, const struct parameter *row,
                              char *text, size_t size) {
-    snprintf(text, size, "%s", or_dash(row->default_json));
+    snprintf(text, size, "%s",
+             row->default_text != NULL ? row->default_text : or_dash(row->default_json));
     if (row->required)
         snprintf(text, size, "required");
     if (strcmp(row->path, "/realisations") != 0)

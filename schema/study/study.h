@@ -38,6 +38,7 @@ struct study_cost {
      * in the band at other waves than asked for (FORMULAS.md, F5.11). 0 without the law. */
     double law_outside, law_misfit;
     double fine_height; /* of blocks of finite elements, in lambda_s, where it is given; else 0 */
+    double tolerance;   /* of solutions of contact; else 0 */
     /* Of surfaces: what was solved for nayak_alpha, and what heights that are not Gaussian have;
      * else 0. */
     double wavelength_ratio, hurst, skewness, kurtosis;

@@ -16,9 +16,8 @@ void conjugate_gradient_run(struct conjugate_gradient *solver, double mean, doub
                             size_t stall_iterations, size_t max_iterations,
                             struct conjugate_gradient_end *end);
 /* Solves for q in the set p > 0, starting from the q given, and returns -d(approach)/d(mean p) > 0,
- * which is minus the derivative of the mean gap. The value is an energy, whose error is the square
- * of that of q. So residuals end at the root of the tolerance of pressures, or at 1e-4 if that is
- * less: edges at light loads see q node by node. Keeps u. */
-double conjugate_gradient_tangent(struct conjugate_gradient *solver, double tolerance);
+ * which is minus the derivative of the mean gap. The largest residual is `enough` of that at most.
+ * The value is an energy, whose error is the square of that of q. Keeps u. */
+double conjugate_gradient_tangent(struct conjugate_gradient *solver, double enough);
 
 #endif

@@ -4,8 +4,6 @@
 #include <math.h>
 
 enum { LANES = CONJUGATE_GRADIENT_LANES, STEPS_MOST = 300 };
-/* Largest residual over the approach. */
-static const double TOLERANCE = 1e-4;
 
 enum { TANGENT };                   /* sum of q */
 enum { RESIDUAL, MEMBERS, ENERGY }; /* sums of r in the set, of nodes, and of q r */
@@ -95,8 +93,7 @@ static void begin(struct conjugate_gradient *solver) {
     conjugate_step_apply_compliance(solver, solver->q, solver->r);
 }
 
-double conjugate_gradient_tangent(struct conjugate_gradient *solver, double tolerance) {
-    const double enough = fmin(TOLERANCE, sqrt(tolerance));
+double conjugate_gradient_tangent(struct conjugate_gradient *solver, double enough) {
     struct step_memory memory = {.continued = true};
     struct pass pass = {.solver = solver};
     double mean = 0; /* of the displacements in the set: minus the approach */

@@ -250,12 +250,11 @@ static void bound_named_mesh(struct summing *summing) {
 
 /* --- together --- */
 
-/* Bounds what the tolerance of the solver changes: nodes that fall into a bin near, as counted
- * points do. */
+/* Bounds what the tolerance of the solver changes: nodes that fall into a bin near. */
 static void bound_solver(struct summing *summing) {
     struct contact_sum *sum = &summing->out->sum;
     const struct contact_case *base = component_case(summing->answer->of[ROLE_BASE]);
-    const double share = contact_errors_solver(MEASURES[MEASURE_NODES].solver, base->tolerance);
+    const double share = contact_errors_solver(SOLVER_BINNED, base->tolerance, 0, 0);
     for (size_t b = 0; b < summing->bins; b++)
         sum->solver[b] = share * fabs(sum->value[b]);
     contact_errors_near_bins(summing->bins, sum->solver);

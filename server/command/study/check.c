@@ -57,6 +57,8 @@ static const struct own_column {
     {"fine zone", offsetof(struct study_cost, fine_height),
      "fine zone: depth in lambda_s in which columns of elements are as wide as those of the "
      "surface"},
+    {"solver", offsetof(struct study_cost, tolerance),
+     "solver: tolerance of contact, the largest violation over the largest displacement"},
     {"wavelength_ratio", offsetof(struct study_cost, wavelength_ratio), NULL},
     {"hurst", offsetof(struct study_cost, hurst), NULL},
     {"skewness", offsetof(struct study_cost, skewness), NULL},
@@ -65,15 +67,44 @@ static const struct own_column {
 enum { OWN_COUNT = sizeof OWN_COLUMNS / sizeof *OWN_COLUMNS };
 
 static double own_number(const struct study_case *one, const struct own_column *column) {
+    if (column->at == offsetof(struct study_cost, tolerance))
+        return plan_case_tolerance(one);
     return *(const double *)((const char *)&one->cost + column->at);
+}
+
+static const char TOLERANCE[] = "/contact/tolerance";
+
+static bool is_swept(const struct study *study, const char *pointer) {
+    size_t p = 0;
+    while (study->swept[p] != NULL && strcmp(study->swept[p], pointer) != 0)
+        p++;
+    return study->swept[p] != NULL;
+}
+
+/* Returns whether a value of the first case differs in others. */
+static bool differs(const struct study *study, const char *pointer) {
+    const cJSON *first = json_at(study->cases[0].parameters, pointer);
+    bool same = true;
+    for (size_t c = 1; same && c < study->case_count; c++)
+        same = cJSON_Compare(first, json_at(study->cases[c].parameters, pointer), true);
+    return !same;
+}
+
+/* Returns whether the tolerance stands in the list of values that all cases share, or among what is
+ * swept. */
+static bool shows_tolerance(const struct study *study) {
+    return is_swept(study, TOLERANCE) ||
+           (json_at(study->cases[0].parameters, TOLERANCE) != NULL && !differs(study, TOLERANCE));
 }
 
 /* Finds the columns that some case has; returns their number. */
 static size_t own_columns(const struct study *study, bool shown[OWN_COUNT]) {
     size_t count = 0;
     for (size_t a = 0; a < OWN_COUNT; a++) {
+        bool listed =
+            OWN_COLUMNS[a].at == offsetof(struct study_cost, tolerance) && shows_tolerance(study);
         shown[a] = false;
-        for (size_t c = 0; c < study->case_count; c++)
+        for (size_t c = 0; c < study->case_count && !listed; c++)
             shown[a] = shown[a] || own_number(&study->cases[c], &OWN_COLUMNS[a]) != 0;
         count += shown[a];
     }
@@ -146,17 +177,14 @@ static void print_whole(const char *pointer, const cJSON *value) {
     free(text);
 }
 
-/* Prints the effective values of all cases; what is swept stands in the table. */
+/* Prints the effective values that all cases share; what is swept stands in the table. */
 static void print_values(const struct study *study, const cJSON *object, const char *prefix) {
     for (const cJSON *member = object->child; member != NULL; member = member->next) {
         char pointer[256];
         snprintf(pointer, sizeof pointer, "%s/%s", prefix, member->string);
-        bool swept = false;
-        for (size_t p = 0; study->swept[p] != NULL; p++)
-            swept = swept || strcmp(study->swept[p], pointer) == 0;
         if (cJSON_IsObject(member))
             print_values(study, member, pointer);
-        else if (!swept)
+        else if (!is_swept(study, pointer) && !differs(study, pointer))
             print_whole(pointer, member);
     }
 }

@@ -155,7 +155,7 @@ static const char *const SOURCE_WORDS[ERROR_SOURCES] = {
     [ERROR_DISCRETISATION] = "errors by the points: what every second point alone changes",
     [ERROR_BLOCK] = "errors by the height of the block: this less an infinite one",
     [ERROR_MODEL] = "errors by the model: this less the most complete one",
-    [ERROR_SOLVER] = "errors by the solver: a multiple of its tolerance"};
+    [ERROR_SOLVER] = "errors by the solver: by its tolerance and the nodes in contact"};
 
 static void put_error(struct text_table *table, const struct curve_error *error, size_t load) {
     double value = number_at(error->value, load), bound = number_at(error->bound, load);

@@ -20,6 +20,10 @@ double plan_case_error(const struct study_case *one) {
                : one->cost.relative_error / sqrt((double)one->realisations);
 }
 
+double plan_case_tolerance(const struct study_case *one) {
+    return one->component_count > 0 ? one->components->cost.tolerance : one->cost.tolerance;
+}
+
 /* Realisations a job, as estimated. */
 static uint64_t block_of(const struct study_case *one) {
     return study_block(one->realisations, one->cost.seconds, one->block);
@@ -98,11 +102,13 @@ static bool put_law(cJSON *document, const struct study_cost *cost) {
 }
 
 /* Adds what only some studies have: the depth of the fine zone, and what is known of surfaces. */
-static bool put_own(cJSON *document, const struct study_cost *cost) {
+static bool put_own(cJSON *document, const struct study_case *one) {
+    const struct study_cost *cost = &one->cost;
     const struct {
         const char *key;
         double number;
     } list[] = {{"fine_height", cost->fine_height},
+                {"tolerance", plan_case_tolerance(one)},
                 {"wavelength_ratio", cost->wavelength_ratio},
                 {"hurst", cost->hurst},
                 {"skewness", cost->skewness},
@@ -132,7 +138,7 @@ static cJSON *case_document(const struct study *study, size_t c) {
         field_put(document, "block", cJSON_CreateNumber((double)block_of(one))) &&
         field_put(document, "seconds", json_number(plan_case_seconds(&study->cases[c]))) &&
         field_put(document, "relative_error", json_number(plan_case_error(&study->cases[c]))) &&
-        put_law(document, &one->cost) && put_own(document, &one->cost) &&
+        put_law(document, &one->cost) && put_own(document, one) &&
         put_kept(document, &one->cost.kept) && put_components(document, &study->cases[c]);
     return fields_finish(document, complete);
 }

@@ -9,6 +9,8 @@ double plan_case_seconds(const struct study_case *one);
 uint64_t plan_case_jobs(const struct study_case *one);
 /* The relative error that is expected, or asked for. */
 double plan_case_error(const struct study_case *one);
+/* The tolerance of the solver, that of the components where there are any; 0: none. */
+double plan_case_tolerance(const struct study_case *one);
 /* Bytes of a worker, by the largest of what runs. */
 double plan_case_bytes(const struct study_case *one);
 /* Those of the whole study. */

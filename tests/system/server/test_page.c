@@ -14,7 +14,7 @@
 static const char STUDY[] =
     "{\"name\":\"looked at\",\"kind\":\"contact\",\"seed\":7,\"realisations\":3,\"surface\":{"
     "\"dimension\":1,\"hurst\":[0.3,0.7],\"wavelength_ratio\":4,\"length_ratio\":4},\"contact\":{"
-    "\"cell_error\":\"none\","
+    "\"cell_error\":\"none\",\"tolerance\":1e-8,"
     "\"model\":[\"halfspace\",\"layered\"],\"pressures\":{\"to\":0.1,\"steps\":2}}}";
 static const char MAP[] = "/v1/studies/looked%20at/cases/1/realisations/2/map";
 

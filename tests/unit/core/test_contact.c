@@ -146,6 +146,40 @@ static void tangents_can_be_left_out(void **state) {
     scene_close(&scene);
 }
 
+/* A loose tolerance loosens the tangent too: stiffness, an energy, stays about within the
+ * tolerance where the nodes in contact are the same, and the work falls by a third. */
+static void tangents_follow_the_tolerance(void **state) {
+    (void)state;
+    enum { LOADS = 8, SIDE = 64, POINTS = SIDE * SIDE };
+    static bool touches[LOADS][POINTS];
+    double stiffness[LOADS], work[2] = {0};
+    size_t same = 0;
+    static const double TOLERANCES[] = {1e-8, 1e-4};
+    for (size_t t = 0; t < 2; t++) {
+        struct scene scene;
+        noisy_scene(&scene, square(SIDE), DEEP, TOLERANCES[t]);
+        scene_begin(&scene);
+        double full = contact_full_pressure(scene.contact);
+        for (size_t k = 0; k < LOADS; k++) {
+            scene_press(&scene, 0.02 * (double)(k + 1) * full);
+            work[t] += scene.state.work;
+            bool all = t == 1;
+            for (size_t i = 0; i < POINTS; i++) {
+                all = all && touches[k][i] == (scene.state.p[i] > 0);
+                touches[k][i] = scene.state.p[i] > 0;
+            }
+            if (all)
+                check_relative(scene.state.stiffness, stiffness[k], 2e-4);
+            same += all;
+            stiffness[k] = scene.state.stiffness;
+        }
+        scene_close(&scene);
+    }
+    print_message("work at 1e-4: %.2f of that at 1e-8\n", work[1] / work[0]);
+    assert_true(same >= LOADS / 2);
+    assert_true(work[1] < 0.72 * work[0]);
+}
+
 static void too_few_iterations(void **state) {
     (void)state;
     struct scene scene, sound;
@@ -291,7 +325,8 @@ static void any_path_of_loads(void **state) {
         for (size_t b = 0; b < LOADS; b++)
             if (up[b] == load) {
                 /* Gaps are right to the tolerance of 1e-12, pressures to that times the stiffness
-                 * of the shortest waves; the tangent's stiffness to 1e-5 (conjugate_gradient.c). */
+                 * of the shortest waves; the tangent's stiffness to the square of 1e-5 (contact.c).
+                 */
                 double most = largest(POINTS, p[b]);
                 assert_true(apart(POINTS, p[b], scene.state.p) <= 1e-9 * fmax(most, full));
                 check_close(scene.state.mean_gap, gap[b], 1e-10);
@@ -686,6 +721,7 @@ int main(void) {
         cmocka_unit_test(heights_refused),
         cmocka_unit_test(tolerances_refused),
         cmocka_unit_test(tangents_can_be_left_out),
+        cmocka_unit_test(tangents_follow_the_tolerance),
         cmocka_unit_test(too_few_iterations),
         cmocka_unit_test(no_load),
         cmocka_unit_test(flat_surface),

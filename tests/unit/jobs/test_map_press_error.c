@@ -1,5 +1,6 @@
 /* Protects: errors of the contact of one map by source, as a study has them. Each is compared with
  * the change that it is an estimate of: another height, another model, another tolerance. */
+#include "jobs/contact/contact_errors.h"
 #include "jobs/maps/map_press_curves.h"
 #include "jobs/maps/map_press_error.h"
 #include "tests/support/check.h"
@@ -217,7 +218,9 @@ static void curves_say_what_is_known(void **state) {
     assert_false(gap->errors[ERROR_BLOCK].applies || gap->errors[ERROR_CELL].applies ||
                  gap->errors[ERROR_MISSING].applies || gap->law_difference != NULL);
     assert_true(solver->value[1] == 0);
-    check_relative(solver->bound[1], 100 * 1e-8 * gap->y[1], 1e-12);
+    double share = contact_errors_solver(SOLVER_SMOOTH, 1e-8,
+                                         pressed.rows[0][1].value[PRESS_CONTACT_NODES], NAN);
+    check_relative(solver->bound[1], share * gap->y[1], 1e-12);
     assert_true(isnan(solver->standard_error[1]) && isnan(gap->standard_error[1]));
     for (size_t s = 0; s < ERROR_SOURCES; s++)
         assert_false(load->errors[s].applies);
