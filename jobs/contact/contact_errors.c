@@ -10,8 +10,8 @@ static const double TOLERANCES_MOST = 1000;
  * SPREAD deviations. A share of so many nodes has an effect of so many times as much on counts, of
  * a part of it on areas by edges and gaps, and that of so many patches on patches. Measured by
  * tests/validation/jobs/test_contact_errors.c. */
-static const double WRONG = 2, SPREAD = 5;
-static const double COUNTED_PART = 3, SMOOTH_PART = 0.3, SMOOTH_TOLERANCES = 10, PATCHES_PART = 2;
+static const double WRONG = 2, SPREAD = 3;
+static const double COUNTED_PART = 3, SMOOTH_PART = 0.1, SMOOTH_TOLERANCES = 5, PATCHES_PART = 1;
 
 static const struct contact_error UNKNOWN = {NAN, NAN, NAN, NAN, NAN};
 

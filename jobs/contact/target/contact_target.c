@@ -160,7 +160,7 @@ static int put_density_loads(cJSON *parameters) {
 
 /* Means of areas by edges and gaps are within about this of the exact ones: a thousandth of the
  * error asked for. Components subtract solutions of one surface, and their differences must be a
- * hundredth below that error too. The bound of it (contact_errors.c) is about ten times as much. */
+ * hundredth below that error too. The bound of it (contact_errors.c) is several times as much. */
 static double tolerance_of(const struct choices *choices) {
     return fmax(1e-8, fmin(1e-4, 1e-3 * choices->target.error));
 }

@@ -120,8 +120,16 @@ void print_unknown_of(size_t count, const struct unknown_of *list, const char *c
     fputs(any ? ".\n" : "", file);
 }
 
+double error_shown(size_t source) {
+    return source == ERROR_SOLVER ? SOLVER_SHOWN : ERROR_SHOWN;
+}
+
 void print_small(const bool small[ERROR_SOURCES], const char *const *words, FILE *file) {
-    print_sources("Errors below 0.01 %: ", small, words, file);
+    bool others[ERROR_SOURCES], solver[ERROR_SOURCES] = {[ERROR_SOLVER] = small[ERROR_SOLVER]};
+    for (size_t s = 0; s < ERROR_SOURCES; s++)
+        others[s] = small[s] && s != ERROR_SOLVER;
+    print_sources("Errors below 0.01 %: ", others, words, file);
+    print_sources("Errors below 0.5 %: ", solver, words, file);
 }
 
 void print_law_legend(FILE *file) {

@@ -28,7 +28,11 @@ void print_total_legend(FILE *file);
 const char *source_word(const char *const *words, enum error_source source);
 /* Errors below this share of a value have no column of their own. */
 #define ERROR_SHOWN 1e-4
-/* "Errors not known: cell." and "Errors below 0.01 %: solver." in lines of their own; nothing where
+/* The same of the solver, which studies let follow their other errors. */
+#define SOLVER_SHOWN 5e-3
+/* Returns the one of a source. */
+double error_shown(size_t source);
+/* "Errors not known: cell." and "Errors below 0.01 %: block." in lines of their own; nothing where
  * there are none. */
 void print_unknown(const bool unknown[ERROR_SOURCES], const char *const *words, FILE *file);
 /* What is printed beside each other, by name, and the sources that are not known of each. */

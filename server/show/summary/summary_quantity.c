@@ -163,12 +163,12 @@ static double largest_of_all(const struct finest_curves *finest, enum error_sour
 }
 
 static bool has_column(const struct finest_curves *finest, enum error_source source) {
-    return largest_of_all(finest, source) >= ERROR_SHOWN;
+    return largest_of_all(finest, source) >= error_shown(source);
 }
 
 static void find_small(const struct finest_curves *finest, bool small[ERROR_SOURCES]) {
     for (enum error_source s = 0; s < ERROR_SOURCES; s++)
-        small[s] = largest_of_all(finest, s) < ERROR_SHOWN;
+        small[s] = largest_of_all(finest, s) < error_shown(s);
 }
 
 /* Finds the sources that bear on a curve and are not known, at some point at least. */
@@ -372,8 +372,8 @@ static void find_known(const struct study_report *report, const struct shown_cas
             if (cost != NULL && cost->main != NULL)
                 largest = fmax(largest, cost->main->errors[s]);
         }
-        known[s] = largest >= ERROR_SHOWN;
-        small[s] = largest < ERROR_SHOWN;
+        known[s] = largest >= error_shown(s);
+        small[s] = largest < error_shown(s);
     }
 }
 

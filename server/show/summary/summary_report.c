@@ -18,8 +18,8 @@ struct error_columns {
 
 static void find_columns(const struct curve_report *curve, struct error_columns *columns) {
     for (size_t s = 0; s < ERROR_SOURCES; s++) {
-        columns->shown[1 + s] = columns->shown[1 + s] || curve->errors[s] >= ERROR_SHOWN;
-        columns->small[s] = columns->small[s] || curve->errors[s] < ERROR_SHOWN;
+        columns->shown[1 + s] = columns->shown[1 + s] || curve->errors[s] >= error_shown(s);
+        columns->small[s] = columns->small[s] || curve->errors[s] < error_shown(s);
         columns->unknown[s] = columns->unknown[s] || (curve->applies[s] && isnan(curve->errors[s]));
     }
     columns->shown[LAW_COLUMN] = columns->shown[LAW_COLUMN] || curve->law >= ERROR_SHOWN;

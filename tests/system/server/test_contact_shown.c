@@ -58,7 +58,7 @@ static void a_run_shows_area_against_load(void **state) {
     check_shown((const char *[]){
         "pressed (done)", "case 0: 4 realisations", "contact area by edges at 8 points", "load  ",
         "halfspace  ", "mesh %", "model %", "layered  ", "persson", "\n0.01  ", "\n 0.3  ", " +- ",
-        "kappa ", "erf_kappa ", ", theory 1.5958)", NULL});
+        "\nErrors below 0.5 %: solver.", "kappa ", "erf_kappa ", ", theory 1.5958)", NULL});
     shell("one.db",
           "test $($RUGO run --db $DB pressed.json | grep -c '^ *0.* +- .* +- ') = 10"); /* of 30
                                                                                            loads */
