@@ -1,5 +1,6 @@
 #include "core/surface/height_error.h"
 #include "core/surface/transform.h"
+#include "core/vectors.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -96,15 +97,27 @@ double height_error_bytes(const struct grid *grid) {
            2.0 * sizeof(uint32_t) * (double)bins_for(grid_points(grid));
 }
 
+enum { TOGETHER = 64 };
+
+/* Bins of n heights, of which the first has number 0. */
+WIDE_VECTORS static void bins_fill(size_t n, const double *restrict z, double origin, double scale,
+                                   double last, int32_t *restrict bins) {
+    for (size_t a = 0; a < n; a++) {
+        double bin = (z[a] - origin) * scale;
+        bin = bin > 0 ? bin : 0;
+        bins[a] = (int32_t)(bin < last ? bin : last);
+    }
+}
+
 static void histogram_add(const struct height_error *e, size_t n, const double *z,
                           uint32_t *count) {
-    double last = (double)(e->bins - 1);
     double origin = e->first_edge - e->width;
-    double scale = 1 / e->width;
-    for (size_t i = 0; i < n; i++) {
-        double bin = (z[i] - origin) * scale;
-        bin = bin > 0 ? bin : 0;
-        count[(uint32_t)(int32_t)(bin < last ? bin : last)]++;
+    for (size_t i = 0; i < n; i += TOGETHER) {
+        size_t some = n - i < TOGETHER ? n - i : TOGETHER;
+        int32_t bins[TOGETHER];
+        bins_fill(some, z + i, origin, 1 / e->width, (double)(e->bins - 1), bins);
+        for (size_t a = 0; a < some; a++)
+            count[bins[a]]++;
     }
 }
 

@@ -5,6 +5,7 @@
 #include "core/surface/spectrum.h"
 #include "core/surface/target_heights.h"
 #include "core/surface/transform.h"
+#include "core/vectors.h"
 #include <complex.h>
 #include <fftw3.h>
 #include <math.h>
@@ -75,7 +76,9 @@ struct fast_move {
     bool first; /* the first step of its kind: x is s, and h of the step before is h */
 };
 
-enum { ROWS = 8 }; /* handled together: they fit into the second-level cache up to 16384 points */
+/* Rows handled together fit into the second-level cache up to 16384 points, points into the
+ * first. */
+enum { ROWS = TRANSFORM_ROWS, POINTS = 1024 };
 /* The range of keys of a step is that of the step before, widened by this part on both sides. */
 static const double WIDER = 1.0 / 16;
 
@@ -126,12 +129,13 @@ static void fast_step_start(struct fast_step *step, const double *z) {
     }
 }
 
-/* y from s, in place; at the first step x is s. */
-static void reflect(size_t n, double *z, double *x, bool first) {
+/* y from s; at the first step x is s. */
+WIDE_VECTORS static void reflect(size_t n, const double *restrict s, double *restrict x, bool first,
+                                 double *restrict y) {
     for (size_t i = 0; i < n && first; i++)
-        x[i] = z[i];
+        x[i] = s[i];
     for (size_t i = 0; i < n; i++)
-        z[i] = 2 * z[i] - x[i];
+        y[i] = 2 * s[i] - x[i];
 }
 
 /* Computes and counts all keys y; where errors are given, the surfaces s, too. */
@@ -142,17 +146,24 @@ static void keys_count(struct fast_step *step, struct transform *transform, stru
     rank_table_start(step->table, step->low - wider, step->high + wider);
     for (size_t j = 0; j < ny; j += ROWS) {
         size_t rows = ny - j < ROWS ? ny - j : ROWS;
-        transform_inverse_rows(transform, j, rows, z + j * nx);
-        if (errors != NULL)
-            height_error_heights_add(errors, rows * nx, z + j * nx);
-        if (move.kind == FAST_REFLECTION)
-            reflect(rows * nx, z + j * nx, x + j * nx, move.first);
-        rank_table_count(step->table, rows * nx, z + j * nx);
+        const double *s = transform_inverse_strip(transform, j, rows);
+        for (size_t i = 0; i < rows * nx; i += POINTS) {
+            size_t n = rows * nx - i < POINTS ? rows * nx - i : POINTS;
+            double *y = z + j * nx + i;
+            if (errors != NULL)
+                height_error_heights_add(errors, n, s + i);
+            if (move.kind == FAST_REFLECTION)
+                reflect(n, s + i, x + j * nx + i, move.first, y);
+            else
+                memcpy(y, s + i, n * sizeof *y);
+            rank_table_count(step->table, n, y);
+        }
     }
 }
 
 /* Replaces n heights h by the next iterate, and updates x. s is the mean of x and y. */
-static void move_rows(struct fast_move move, size_t n, const double *y, double *h, double *x) {
+WIDE_VECTORS static void move_points(struct fast_move move, size_t n, const double *restrict y,
+                                     double *restrict h, double *restrict x) {
     double b = move.factor;
     if (move.kind == FAST_REFLECTION)
         for (size_t i = 0; i < n; i++)
@@ -180,8 +191,12 @@ static double fast_step_run(struct fast_step *step, struct transform *transform,
     rank_table_finish(step->table, sorted, &step->low, &step->high);
     for (size_t j = 0; j < ny; j += ROWS) {
         size_t rows = ny - j < ROWS ? ny - j : ROWS;
-        rank_table_order(step->table, rows * nx, z + j * nx, step->block);
-        move_rows(move, rows * nx, z + j * nx, step->block, x + j * nx);
+        for (size_t i = 0; i < rows * nx; i += POINTS) {
+            size_t n = rows * nx - i < POINTS ? rows * nx - i : POINTS;
+            const double *y = z + j * nx + i;
+            rank_table_order(step->table, n, y, step->block + i);
+            move_points(move, n, y, step->block + i, x + j * nx + i);
+        }
         transform_forward_rows(transform, j, rows, step->block);
     }
     transform_forward_columns(transform);

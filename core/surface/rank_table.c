@@ -1,4 +1,5 @@
 #include "core/surface/rank_table.h"
+#include "core/vectors.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -15,9 +16,10 @@ struct rank_line {
 struct rank_table {
     size_t n, bins;
     double origin, scale, end; /* position = (key - origin) * scale, limited to [0, end] */
-    double lowest, highest;    /* of the keys counted so far */
-    uint32_t *count;           /* bins */
-    struct rank_line *lines;   /* bins */
+    /* of the keys counted so far, those of each lane apart */
+    double lowest[TOGETHER], highest[TOGETHER];
+    uint32_t *count;         /* bins */
+    struct rank_line *lines; /* bins */
 };
 
 static size_t bins_for(size_t n) {
@@ -60,32 +62,38 @@ double rank_table_bytes(size_t n) {
 void rank_table_start(struct rank_table *table, double low, double high) {
     table->origin = low;
     table->scale = table->end / (high - low);
-    table->lowest = INFINITY;
-    table->highest = -INFINITY;
+    for (size_t a = 0; a < TOGETHER; a++) {
+        table->lowest[a] = INFINITY;
+        table->highest[a] = -INFINITY;
+    }
     memset(table->count, 0, table->bins * sizeof *table->count);
 }
 
-static double position_of(const struct rank_table *table, double key) {
-    double position = (key - table->origin) * table->scale;
+static inline double position_of(double key, double origin, double scale, double end) {
+    double position = (key - origin) * scale;
     position = position > 0 ? position : 0; /* NaN, too, becomes 0 */
-    return position < table->end ? position : table->end;
+    return position < end ? position : end;
+}
+
+/* Bins of up to TOGETHER keys, which also widen the range of each lane. */
+WIDE_VECTORS static void bins_fill(struct rank_table *restrict table, size_t n,
+                                   const double *restrict key, int32_t *restrict bin) {
+    double origin = table->origin, scale = table->scale, end = table->end;
+    for (size_t a = 0; a < n; a++) {
+        table->lowest[a] = key[a] < table->lowest[a] ? key[a] : table->lowest[a];
+        table->highest[a] = key[a] > table->highest[a] ? key[a] : table->highest[a];
+        bin[a] = (int32_t)position_of(key[a], origin, scale, end);
+    }
 }
 
 void rank_table_count(struct rank_table *table, size_t n, const double *key) {
-    double lowest = table->lowest, highest = table->highest;
-    for (size_t i = 0; i < n; i++) {
-        lowest = key[i] < lowest ? key[i] : lowest;
-        highest = key[i] > highest ? key[i] : highest;
-    }
-    table->lowest = lowest;
-    table->highest = highest;
+    uint32_t *count = table->count;
     for (size_t i = 0; i < n; i += TOGETHER) {
         size_t some = n - i < TOGETHER ? n - i : TOGETHER;
         int32_t bin[TOGETHER];
+        bins_fill(table, some, key + i, bin);
         for (size_t a = 0; a < some; a++)
-            bin[a] = (int32_t)position_of(table, key[i + a]);
-        for (size_t a = 0; a < some; a++)
-            table->count[bin[a]]++;
+            count[bin[a]]++;
     }
 }
 
@@ -108,8 +116,23 @@ void rank_table_finish(struct rank_table *table, const double *sorted, double *l
         table->lines[b] = (struct rank_line){below - (double)b * slope, slope};
         below = above;
     }
-    *low = table->lowest;
-    *high = table->highest;
+    *low = table->lowest[0];
+    *high = table->highest[0];
+    for (size_t a = 1; a < TOGETHER; a++) {
+        *low = table->lowest[a] < *low ? table->lowest[a] : *low;
+        *high = table->highest[a] > *high ? table->highest[a] : *high;
+    }
+}
+
+/* Positions of up to TOGETHER keys. */
+WIDE_VECTORS static void positions_fill(const struct rank_table *restrict table, size_t n,
+                                        const double *restrict key, double *restrict position,
+                                        int32_t *restrict bin) {
+    double origin = table->origin, scale = table->scale, end = table->end;
+    for (size_t a = 0; a < n; a++) {
+        position[a] = position_of(key[a], origin, scale, end);
+        bin[a] = (int32_t)position[a];
+    }
 }
 
 void rank_table_order(const struct rank_table *table, size_t n, const double *key,
@@ -117,10 +140,10 @@ void rank_table_order(const struct rank_table *table, size_t n, const double *ke
     for (size_t i = 0; i < n; i += TOGETHER) {
         size_t some = n - i < TOGETHER ? n - i : TOGETHER;
         double position[TOGETHER];
-        for (size_t a = 0; a < some; a++)
-            position[a] = position_of(table, key[i + a]);
+        int32_t bin[TOGETHER];
+        positions_fill(table, some, key + i, position, bin);
         for (size_t a = 0; a < some; a++) {
-            const struct rank_line *line = &table->lines[(int32_t)position[a]];
+            const struct rank_line *line = &table->lines[bin[a]];
             ordered[i + a] = line->value + line->slope * position[a];
         }
     }
