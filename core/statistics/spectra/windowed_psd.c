@@ -59,14 +59,15 @@ static double window_at(size_t i, size_t n) {
     return n == 1 ? 1 : sine * sine;
 }
 
-/* Multiplies heights about their mean under the window by it; returns its mean square. */
-static double window_apply(const struct grid *grid, double *z) {
+/* Multiplies heights about their mean under the window by it; returns its mean square. along: the
+ * window over x, nx. */
+static double window_apply(const struct grid *grid, const double *along, double *z) {
     struct sum total = {0}, heights = {0}, squares = {0};
     for (int pass = 0; pass < 2; pass++)
         for (size_t j = 0; j < grid->ny; j++) {
             double across = window_at(j, grid->ny);
             for (size_t i = 0; i < grid->nx; i++) {
-                double weight = across * window_at(i, grid->nx), *at = &z[j * grid->nx + i];
+                double weight = across * along[i], *at = &z[j * grid->nx + i];
                 if (pass == 1) {
                     *at = weight * (*at - sum_value(&heights) / sum_value(&total));
                     continue;
@@ -81,9 +82,16 @@ static double window_apply(const struct grid *grid, double *z) {
 
 int windowed_heights(const struct measured_map *map, double *z, double *power, struct error *err) {
     memcpy(z, map->z, grid_points(map->grid) * sizeof *z);
+    size_t nx = map->grid->nx;
+    double *along = array_create(nx, sizeof *along);
+    if (along == NULL)
+        return error_memory(err, nx * sizeof *along, "a window");
+    for (size_t i = 0; i < nx; i++)
+        along[i] = window_at(i, nx);
     int status = holes_fill(map->grid, z, err);
     if (status == 0)
-        *power = window_apply(map->grid, z);
+        *power = window_apply(map->grid, along, z);
+    free(along);
     return status;
 }
 

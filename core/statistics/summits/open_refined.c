@@ -8,6 +8,7 @@
 
 /* The shortest wave that points can show has two of them. */
 enum { FINE = 8, FINE_PROFILE = 32, FIRST = LOCAL_HALF - 1 };
+enum { TOGETHER = 64 }; /* cells whose fine points are computed at once */
 
 /* Fine points lie off the points, so that no symmetric map has a tie among them. In fine cells. */
 static const double SHIFT_X = 0.2371, SHIFT_Y = 0.3119;
@@ -19,7 +20,7 @@ struct search {
     size_t cells_x, cells_y;   /* that can be interpolated, from point FIRST on */
     struct local_basis *bases; /* owned, of the fine points of a cell along x, then along y */
     double *across;            /* owned, nx: one row of points moved to a fine row */
-    double *phase;             /* owned, cells_x: one fine point of each cell of a row */
+    double *phases;            /* owned, fine x TOGETHER: one fine point of each cell, the next */
     double *memory;            /* owned: three fine rows, ... */
     double *rows[3];           /* ... those before, at and behind the present one */
     size_t *columns;           /* owned, a fine row */
@@ -32,7 +33,7 @@ static size_t fine_columns(const struct search *s) {
 static void search_clear(struct search *s) {
     free(s->bases);
     free(s->across);
-    free(s->phase);
+    free(s->phases);
     free(s->memory);
     free(s->columns);
 }
@@ -49,10 +50,10 @@ static int search_create(struct search *s, const struct measured_map *map,
     size_t row = fine_columns(s);
     s->bases = array_create(2 * s->fine, sizeof *s->bases);
     s->across = array_create(grid->nx, sizeof *s->across);
-    s->phase = array_create(s->cells_x, sizeof *s->phase);
+    s->phases = array_create(s->fine, TOGETHER * sizeof *s->phases);
     s->memory = array_create(row, 3 * sizeof *s->memory);
     s->columns = array_create(row, sizeof *s->columns);
-    if (s->bases == NULL || s->across == NULL || s->phase == NULL || s->memory == NULL ||
+    if (s->bases == NULL || s->across == NULL || s->phases == NULL || s->memory == NULL ||
         s->columns == NULL) {
         search_clear(s);
         return error_memory(err, row * 4 * sizeof *s->memory, "a summit search");
@@ -66,20 +67,40 @@ static int search_create(struct search *s, const struct measured_map *map,
     return 0;
 }
 
-/* Fills every `step`-th value of out with the fine points at one position in each cell. Plain loops
- * over cells, so that the compiler makes vectors of them. */
-WIDE_VECTORS static void phase_fill(const double *weight, const double *points, size_t cells,
-                                    double *sums, double *out, size_t step) {
+/* Adds four rows of points with their weights to a row. Plain loops over points, here and below, so
+ * that the compiler makes vectors of them. */
+WIDE_VECTORS static void rows_weigh(const double *weight, const double *restrict z, size_t nx,
+                                    double *restrict across) {
+    const double *second = z + nx, *third = second + nx, *fourth = third + nx;
+    for (size_t i = 0; i < nx; i++)
+        across[i] = across[i] + weight[0] * z[i] + weight[1] * second[i] + weight[2] * third[i] +
+                    weight[3] * fourth[i];
+}
+
+/* Fills out with the fine points at one position in each cell. */
+WIDE_VECTORS static void phase_fill(const double *restrict weight, const double *restrict points,
+                                    size_t cells, double *restrict out) {
     for (size_t cell = 0; cell < cells; cell++)
-        sums[cell] = 0;
-    for (size_t a = 0; a < LOCAL_POINTS; a += 4) {
+        out[cell] = 0;
+    for (size_t a = 0; a < LOCAL_POINTS; a += 8) {
         const double *w = weight + a, *from = points + a;
         for (size_t cell = 0; cell < cells; cell++)
-            sums[cell] += (w[0] * from[cell] + w[1] * from[cell + 1]) +
-                          (w[2] * from[cell + 2] + w[3] * from[cell + 3]);
+            out[cell] = out[cell] +
+                        ((w[0] * from[cell] + w[1] * from[cell + 1]) +
+                         (w[2] * from[cell + 2] + w[3] * from[cell + 3])) +
+                        ((w[4] * from[cell + 4] + w[5] * from[cell + 5]) +
+                         (w[6] * from[cell + 6] + w[7] * from[cell + 7]));
     }
+}
+
+/* Fills the fine points of some cells of a row, `fine` a cell; first one after the other position
+ * in all these cells, which stay in the first cache. */
+static void cells_fill(const struct search *s, size_t first, size_t cells, double *out) {
+    for (size_t phase = 0; phase < s->fine; phase++)
+        phase_fill(s->bases[phase].value, s->across + first, cells, s->phases + phase * TOGETHER);
     for (size_t cell = 0; cell < cells; cell++)
-        out[cell * step] = sums[cell];
+        for (size_t phase = 0; phase < s->fine; phase++)
+            out[cell * s->fine + phase] = s->phases[phase * TOGETHER + cell];
 }
 
 /* Fills a fine row. */
@@ -91,12 +112,12 @@ static void row_fill(const struct search *s, size_t fine_row, double *out) {
     else {
         const double *weight = s->bases[s->fine + fine_row % s->fine].value;
         memset(s->across, 0, nx * sizeof *z);
-        for (size_t a = 0; a < LOCAL_POINTS; a++)
-            for (size_t i = 0; i < nx; i++)
-                s->across[i] += weight[a] * z[(first + a) * nx + i];
+        for (size_t a = 0; a < LOCAL_POINTS; a += 4)
+            rows_weigh(weight + a, z + (first + a) * nx, nx, s->across);
     }
-    for (size_t phase = 0; phase < s->fine; phase++)
-        phase_fill(s->bases[phase].value, s->across, s->cells_x, s->phase, out + phase, s->fine);
+    for (size_t cell = 0; cell < s->cells_x; cell += TOGETHER)
+        cells_fill(s, cell, s->cells_x - cell < TOGETHER ? s->cells_x - cell : TOGETHER,
+                   out + cell * s->fine);
 }
 
 /* Interpolates at a position in fine cells; NaN outside of the cells that can be interpolated. */
