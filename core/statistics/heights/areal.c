@@ -1,17 +1,26 @@
 #include "core/statistics/heights/areal.h"
 #include "core/statistics/heights/roughness.h"
+#include "core/vectors.h"
 #include <stdint.h>
 #include <stdlib.h>
 
 /* Points are numbered by 32 bits, as the largest maps that are read have 2^31 of them. */
 static const uint32_t NONE = UINT32_MAX;
 
+enum { WHOLE = 1, SADDLE = 2 }; /* marks of points */
+
+/* A point that has neighbours of other hills above it. */
+struct saddle {
+    double z;
+    uint32_t at;
+};
+
 struct search {
     const struct measured_map *map;
     uint32_t *parent;          /* owned: the highest neighbour; a peak is its own parent */
-    uint32_t *saddles;         /* owned: points that have neighbours of other hills above them */
+    struct saddle *saddles;    /* owned, highest first */
     size_t count;              /* of them */
-    unsigned char *whole;      /* owned: points with all neighbours */
+    unsigned char *whole;      /* owned: WHOLE of points with all neighbours, SADDLE */
     struct summit_list *peaks; /* borrowed; NULL: not wanted */
     struct average bends;      /* of the peaks that count */
 };
@@ -21,11 +30,11 @@ static inline bool is_above(const double *z, uint32_t s, uint32_t t) {
     return z[s] > z[t] || (z[s] == z[t] && s < t);
 }
 
-/* Highest first. */
-static int by_height(const void *a, const void *b, void *search) {
-    const double *z = ((const struct search *)search)->map->z;
-    uint32_t s = *(const uint32_t *)a, t = *(const uint32_t *)b;
-    return is_above(z, s, t) ? -1 : is_above(z, t, s) ? 1 : 0;
+static int by_height(const void *a, const void *b) {
+    const struct saddle *s = a, *t = b;
+    if (s->z != t->z)
+        return s->z > t->z ? -1 : 1;
+    return (s->at > t->at) - (s->at < t->at);
 }
 
 static void search_clear(struct search *s) {
@@ -40,12 +49,11 @@ static int search_create(struct search *s, const struct measured_map *map, struc
         return error_set(err, ERROR_INPUT, "hills of %zu points; allowed: fewer than 2^32 - 1",
                          points);
     *s = (struct search){.map = map,
-                         .saddles = array_create(points, sizeof *s->saddles),
                          .parent = array_create(points, sizeof *s->parent),
                          .whole = array_create(points, 1)};
-    if (s->saddles == NULL || s->parent == NULL || s->whole == NULL) {
+    if (s->parent == NULL || s->whole == NULL) {
         search_clear(s);
-        return error_memory(err, points * (sizeof *s->saddles + sizeof *s->parent + 1), "hills");
+        return error_memory(err, points * (sizeof *s->parent + 1), "hills");
     }
     return 0;
 }
@@ -63,7 +71,7 @@ static int peak_count(struct search *s, uint32_t peak, struct error *err) {
     const struct grid *grid = s->map->grid;
     long i = (long)(peak % grid->nx), j = (long)(peak / grid->nx);
     double dx = grid_dx(grid), dy = grid_dy(grid), z = s->map->z[peak];
-    if (s->whole[peak] == 0)
+    if ((s->whole[peak] & WHOLE) == 0)
         return 0;
     double xx = map_height(s->map, i - 1, j) - 2 * z + map_height(s->map, i + 1, j);
     double yy = map_height(s->map, i, j - 1) - 2 * z + map_height(s->map, i, j + 1);
@@ -95,31 +103,112 @@ static void neighbours_of(const struct measured_map *map, uint32_t at, uint32_t 
     }
 }
 
-/* Every point climbs to its highest neighbour, and so to a peak; where neighbours above it climb to
- * other peaks, it is a saddle. */
-static void climb(struct search *s) {
-    const double *z = s->map->z;
-    const uint32_t points = (uint32_t)grid_points(s->map->grid);
+/* Of n points inside of a row, numbered from `first` on, fills how far the highest neighbour is, in
+ * numbers; 0 of peaks. Of equal neighbours it is the first one. Plain loops, so that the compiler
+ * makes vectors of them. */
+WIDE_VECTORS static void steps_fill(const double *restrict row, size_t nx, size_t n,
+                                    double *restrict step) {
+    const double *up = row - nx, *down = row + nx;
+    const double width = (double)nx;
+    for (size_t i = 0; i < n; i++) {
+        double z = -INFINITY, to = 0;
+        to = (up - 1)[i] > z ? -width - 1 : to;
+        z = (up - 1)[i] > z ? (up - 1)[i] : z;
+        to = up[i] > z ? -width : to;
+        z = up[i] > z ? up[i] : z;
+        to = up[i + 1] > z ? 1 - width : to;
+        z = up[i + 1] > z ? up[i + 1] : z;
+        to = (row - 1)[i] > z ? -1 : to;
+        z = (row - 1)[i] > z ? (row - 1)[i] : z;
+        bool above = z >= row[i];
+        to = above ? to : 0;
+        z = above ? z : row[i];
+        to = row[i + 1] > z ? 1 : to;
+        z = row[i + 1] > z ? row[i + 1] : z;
+        to = (down - 1)[i] > z ? width - 1 : to;
+        z = (down - 1)[i] > z ? (down - 1)[i] : z;
+        to = down[i] > z ? width : to;
+        z = down[i] > z ? down[i] : z;
+        to = down[i + 1] > z ? width + 1 : to;
+        step[i] = to;
+    }
+}
+
+static uint32_t highest_neighbour(const struct measured_map *map, uint32_t at) {
+    uint32_t beside[8], highest = at;
+    neighbours_of(map, at, beside);
+    for (int n = 0; n < 8; n++)
+        if (beside[n] != NONE && is_above(map->z, beside[n], highest))
+            highest = beside[n];
+    return highest;
+}
+
+/* Every point climbs to its highest neighbour, ... */
+static void row_climb(struct search *s, size_t j) {
+    enum { TOGETHER = 64 };
+    const size_t nx = s->map->grid->nx, ny = s->map->grid->ny, at = j * nx;
+    bool inside = j > 0 && j + 1 < ny;
+    for (size_t i = 0; i < nx; i++)
+        if (!inside || i == 0 || i + 1 == nx)
+            s->parent[at + i] = highest_neighbour(s->map, (uint32_t)(at + i));
+    for (size_t i = 1; inside && i + 1 < nx; i += TOGETHER) {
+        double step[TOGETHER];
+        size_t n = nx - 1 - i < TOGETHER ? nx - 1 - i : TOGETHER;
+        steps_fill(s->map->z + at + i, nx, n, step);
+        for (size_t k = 0; k < n; k++)
+            s->parent[at + i + k] = (uint32_t)((int64_t)(at + i + k) + (int64_t)step[k]);
+    }
+}
+
+/* Returns non-zero where any of the 8 points around one belongs to another hill; parents are
+ * peaks. */
+static inline uint32_t is_beside_others(const uint32_t *at, size_t nx) {
+    const uint32_t *up = at - nx, *down = at + nx;
+    return (up[-1] ^ *at) | (*up ^ *at) | (up[1] ^ *at) | (at[-1] ^ *at) | (at[1] ^ *at) |
+           (down[-1] ^ *at) | (*down ^ *at) | (down[1] ^ *at);
+}
+
+/* ... and so to a peak; where neighbours above it climb to other peaks, it is a saddle. */
+static bool is_saddle(const struct search *s, uint32_t at) {
+    const uint32_t nx = (uint32_t)s->map->grid->nx, ny = (uint32_t)s->map->grid->ny;
+    const uint32_t i = at % nx, j = at / nx;
+    bool inside = i > 0 && i + 1 < nx && j > 0 && j + 1 < ny, saddle = false;
+    if (inside && is_beside_others(s->parent + at, nx) == 0)
+        return false;
     uint32_t beside[8];
+    neighbours_of(s->map, at, beside);
+    for (int n = 0; n < 8 && !saddle; n++)
+        saddle = beside[n] != NONE && is_above(s->map->z, beside[n], at) &&
+                 s->parent[beside[n]] != s->parent[at];
+    return saddle;
+}
+
+static int saddles_list(struct search *s, struct error *err) {
+    const uint32_t points = (uint32_t)grid_points(s->map->grid);
+    size_t count = 0;
     for (uint32_t at = 0; at < points; at++) {
-        uint32_t highest = at;
-        neighbours_of(s->map, at, beside);
-        for (int n = 0; n < 8; n++)
-            if (beside[n] != NONE && is_above(z, beside[n], highest))
-                highest = beside[n];
-        s->parent[at] = highest;
+        bool saddle = is_saddle(s, at);
+        s->whole[at] |= (unsigned char)(saddle ? SADDLE : 0);
+        count += saddle ? 1 : 0;
     }
-    for (uint32_t at = 0; at < points; at++) {
-        bool saddle = false;
-        uint32_t peak = peak_of(s->parent, at);
-        neighbours_of(s->map, at, beside);
-        for (int n = 0; n < 8 && !saddle; n++)
-            saddle = beside[n] != NONE && is_above(z, beside[n], at) &&
-                     peak_of(s->parent, beside[n]) != peak;
-        if (saddle)
-            s->saddles[s->count++] = at;
-    }
-    qsort_r(s->saddles, s->count, sizeof *s->saddles, by_height, s);
+    s->saddles = array_create(count > 0 ? count : 1, sizeof *s->saddles);
+    if (s->saddles == NULL)
+        return error_memory(err, count * sizeof *s->saddles, "saddles between hills");
+    for (uint32_t at = 0; at < points; at++)
+        if ((s->whole[at] & SADDLE) != 0)
+            s->saddles[s->count++] = (struct saddle){s->map->z[at], at};
+    if (s->count > 1)
+        qsort(s->saddles, s->count, sizeof *s->saddles, by_height);
+    return 0;
+}
+
+static int climb(struct search *s, struct error *err) {
+    const uint32_t points = (uint32_t)grid_points(s->map->grid);
+    for (size_t j = 0; j < s->map->grid->ny; j++)
+        row_climb(s, j);
+    for (uint32_t at = 0; at < points; at++)
+        s->parent[at] = peak_of(s->parent, at);
+    return saddles_list(s, err);
 }
 
 /* Joins the hills that meet in a saddle, of which the highest goes on. */
@@ -151,9 +240,9 @@ int hills_find(const struct measured_map *map, double least, struct summit_list 
         return status;
     size_t searched = map_mark_whole(map, 1, 1, s.whole);
     s.peaks = peaks;
-    climb(&s);
+    status = climb(&s, err);
     for (size_t n = 0; n < s.count && status == 0; n++)
-        status = saddle_flood(&s, s.saddles[n], least, err);
+        status = saddle_flood(&s, s.saddles[n].at, least, err);
     for (uint32_t at = 0; at < grid_points(map->grid) && status == 0; at++)
         if (s.parent[at] == at && !isnan(map->z[at]))
             status =

@@ -1,6 +1,8 @@
 #include "core/statistics/uncertainty/seam.h"
+#include "core/vectors.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { ORDERS = 3, ORDER_MOST = 4 };
 
@@ -9,28 +11,68 @@ enum { ORDERS = 3, ORDER_MOST = 4 };
 static const size_t ORDER[ORDERS] = {1, 2, 4};
 static const double WEIGHT[ORDERS][ORDER_MOST + 1] = {{-1, 1}, {1, -2, 1}, {1, -4, 6, -4, 1}};
 
-/* Lines of heights across a seam: n points a line at this distance, `lines` of them. */
-struct lines {
-    const double *z;
-    size_t n, step, lines, line_step;
+enum { LANES = 64 };
+
+struct room {
+    double *square, *count; /* a value a point of the longer side */
+    double *row;            /* nx + ORDER_MOST: a row, and its first points again */
 };
 
-/* Fills square[p] with the mean square, over the lines, of the difference that begins at point p;
- * those with p + order >= n cross the seam. NaN where no line has one. */
-static void squares_fill(const struct lines *lines, size_t d, double *square) {
-    for (size_t p = 0; p < lines->n; p++) {
-        double total = 0, count = 0;
-        for (size_t line = 0; line < lines->lines; line++) {
-            double difference = 0;
+/* Adds the squares of n differences of points at[k][i], k = 0 .. ORDER[d], and counts those that are
+ * there. */
+WIDE_VECTORS static void squares_add(size_t n, size_t d, const double *const *at,
+                                     double *restrict square, double *restrict count) {
+    double difference[LANES];
+    for (size_t i = 0; i < n; i++)
+        difference[i] = 0;
+    for (size_t k = 0; k <= ORDER[d]; k++)
+        for (size_t i = 0; i < n; i++)
+            difference[i] += WEIGHT[d][k] * at[k][i];
+    for (size_t i = 0; i < n; i++) {
+        bool there = difference[i] == difference[i];
+        square[i] += there ? difference[i] * difference[i] : 0;
+        count[i] += there ? 1 : 0;
+    }
+}
+
+/* Fill square[p] with the mean square, over the lines that cross the seam, of the difference that
+ * begins at point p; those with p + order >= n cross the seam. NaN where no line has one. */
+static void squares_along_x(const struct grid *grid, const double *z, size_t d,
+                            const struct room *room) {
+    size_t nx = grid->nx;
+    for (size_t p = 0; p < nx; p++)
+        room->square[p] = room->count[p] = 0;
+    for (size_t j = 0; j < grid->ny; j++) {
+        memcpy(room->row, z + j * nx, nx * sizeof *z);
+        for (size_t k = 0; k < ORDER_MOST; k++)
+            room->row[nx + k] = room->row[k];
+        for (size_t p = 0; p < nx; p += LANES) {
+            const double *at[ORDER_MOST + 1];
             for (size_t k = 0; k <= ORDER[d]; k++)
-                difference += WEIGHT[d][k] *
-                              lines->z[line * lines->line_step + (p + k) % lines->n * lines->step];
-            if (isnan(difference))
-                continue;
-            total += difference * difference;
-            count++;
+                at[k] = room->row + p + k;
+            squares_add(nx - p < LANES ? nx - p : LANES, d, at, room->square + p, room->count + p);
         }
-        square[p] = total / count;
+    }
+    for (size_t p = 0; p < nx; p++)
+        room->square[p] /= room->count[p];
+}
+
+static void squares_along_y(const struct grid *grid, const double *z, size_t d,
+                            const struct room *room) {
+    size_t nx = grid->nx, ny = grid->ny;
+    for (size_t p = 0; p < ny; p++) {
+        double square[LANES] = {0}, count[LANES] = {0};
+        for (size_t i = 0; i < nx; i += LANES) {
+            const double *at[ORDER_MOST + 1];
+            for (size_t k = 0; k <= ORDER[d]; k++)
+                at[k] = z + (p + k) % ny * nx + i;
+            squares_add(nx - i < LANES ? nx - i : LANES, d, at, square, count);
+        }
+        for (size_t l = 1; l < LANES; l++) {
+            square[0] += square[l];
+            count[0] += count[l];
+        }
+        room->square[p] = square[0] / count[0];
     }
 }
 
@@ -51,25 +93,31 @@ static double seam_over_inside(const double *square, size_t n, size_t order) {
     return isnan(seam) || most == 0 ? (double)INFINITY : sqrt(seam / most);
 }
 
-static double lines_seam(const struct lines *lines, double *square) {
+static double lines_seam(const struct grid *grid, const double *z, int axis,
+                         const struct room *room) {
+    size_t n = axis == 0 ? grid->nx : grid->ny;
     double largest = 0;
-    if (lines->n < SEAM_POINTS)
+    if (n < SEAM_POINTS)
         return (double)INFINITY;
     for (size_t d = 0; d < ORDERS; d++) {
-        squares_fill(lines, d, square);
-        largest = fmax(largest, seam_over_inside(square, lines->n, ORDER[d]));
+        if (axis == 0)
+            squares_along_x(grid, z, d, room);
+        else
+            squares_along_y(grid, z, d, room);
+        largest = fmax(largest, seam_over_inside(room->square, n, ORDER[d]));
     }
     return largest;
 }
 
 int seam_measure(const struct grid *grid, const double *z, struct seam *out, struct error *err) {
     size_t nx = grid->nx, ny = grid->ny, most = nx > ny ? nx : ny;
-    const struct lines x = {z, nx, 1, ny, nx}, y = {z, ny, nx, nx, 1};
-    double *square = array_create(most, sizeof *square);
-    if (square == NULL)
-        return error_memory(err, most * sizeof *square, "differences of heights");
-    out->x = lines_seam(&x, square);
-    out->y = grid_is_profile(grid) ? 0 : lines_seam(&y, square);
-    free(square);
+    size_t count = 2 * most + nx + ORDER_MOST;
+    double *values = array_create(count, sizeof *values);
+    if (values == NULL)
+        return error_memory(err, count * sizeof *values, "differences of heights");
+    const struct room room = {values, values + most, values + 2 * most};
+    out->x = lines_seam(grid, z, 0, &room);
+    out->y = grid_is_profile(grid) ? 0 : lines_seam(grid, z, 1, &room);
+    free(values);
     return 0;
 }
