@@ -33,8 +33,8 @@ static void count_heights(struct map_histogram *out, const struct measured_map *
     size_t points = grid_points(map->grid), count = 0;
     double low = INFINITY, high = -INFINITY;
     for (size_t n = 0; n < points; n++) {
-        low = fmin(low, map->z[n]);
-        high = fmax(high, map->z[n]);
+        low = map->z[n] < low ? map->z[n] : low;
+        high = map->z[n] > high ? map->z[n] : high;
         count += isnan(map->z[n]) ? 0 : 1;
     }
     double wanted = fmin(HISTOGRAM_BINS_MOST, fmax(12, 2 * cbrt((double)count)));
@@ -43,9 +43,12 @@ static void count_heights(struct map_histogram *out, const struct measured_map *
     if (out->count == 0)
         return;
     out->width = (high - low) / (double)out->count;
-    for (size_t n = 0; n < points; n++)
-        if (!isnan(map->z[n]))
-            out->counts[(size_t)fmin((double)out->count - 1, (map->z[n] - low) / out->width)] += 1;
+    const double last = (double)out->count - 1;
+    for (size_t n = 0; n < points; n++) {
+        double bin = (map->z[n] - low) / out->width;
+        if (!isnan(bin))
+            out->counts[(size_t)(bin < last ? bin : last)] += 1;
+    }
 }
 
 bool map_height_law_find(struct map_height_law *out,
@@ -108,24 +111,30 @@ static void fill_certainty(struct map_certainty *out, const struct map_chance *c
                                       chance->told ? low_modes_factor(chance->modes.count) : none};
 }
 
-static int measure_chance(struct map_characterisation *out, const struct measured_map *map,
-                          const struct map_chance *chance, struct error *err) {
-    struct cell_differences differences;
-    cell_differences_measure(map, &chance->modes, 1, &differences);
+/* What several parts are measured from. */
+struct common {
+    const struct measured_map *map;
+    const struct map_chance *chance;
+    struct map_spectrum *spectrum;   /* owned; NULL for a profile under a window */
+    struct cell_differences nearest; /* at a lag of one point */
+};
+
+static void measure_chance(struct map_characterisation *out, const struct common *common) {
+    const struct measured_map *map = common->map;
+    const struct map_chance *chance = common->chance;
     fill_certainty(&out->certainty, chance);
     if (chance->told) {
         scalar_errors_heights(chance->heights, &chance->modes, &out->errors);
-        scalar_errors_differences(&differences, chance->heights, &chance->modes, &out->errors);
+        scalar_errors_differences(&common->nearest, chance->heights, &chance->modes, &out->errors);
     }
     height_fit_measure(chance->heights, map_chance_modes(chance), &out->height_fits);
-    int status =
-        grid_is_profile(map->grid) ? 0 : map_directions_measure(&out->directions, map, chance, err);
+    if (!grid_is_profile(map->grid))
+        map_directions_measure(&out->directions, map, chance, common->spectrum, &common->nearest);
     out->stationarity = (struct stationarity){.p_value = {(double)NAN, (double)NAN}};
-    if (status == 0 && chance->told)
-        stationarity_measure(map, chance->heights, &differences, &chance->modes,
+    if (chance->told)
+        stationarity_measure(map, chance->heights, &common->nearest, &chance->modes,
                              chance->correlation, &out->stationarity);
     out->stationarity_p_value = least_p_value(out->stationarity.p_value, STATIONARY_DIVISIONS);
-    return status;
 }
 
 /* --- all --- */
@@ -138,20 +147,33 @@ static int measure_correlation(struct map_curve *out, const struct correlation *
     return status;
 }
 
+static int measure_common(struct map_characterisation *out, struct common *common,
+                          bool under_window, const struct spectrum_fit_request *trusted,
+                          struct error *err) {
+    const struct measured_map *map = common->map;
+    if (!(grid_is_profile(map->grid) && under_window)) {
+        int status = map_spectrum_create(&common->spectrum, map, err);
+        if (status != 0)
+            return status;
+    }
+    cell_differences_measure(map, &common->chance->modes, 1, &common->nearest);
+    measure_chance(out, common);
+    count_heights(&out->histogram, map);
+    map_scales_measure(&out->scales, map, common->chance, &common->nearest);
+    return map_spectra_measure(&out->spectra, map, common->spectrum, under_window, trusted, err);
+}
+
 static int measure(struct map_characterisation *out, const struct measured_map *map,
                    const struct map_chance *chance, bool under_window,
                    const struct spectrum_fit_request *trusted, struct error *err) {
+    struct common common = {.map = map, .chance = chance};
     int status = map_parameters_measure(&out->parameters, map, map->grid->nx / 2, map->grid->ny / 2,
                                         chance, err);
     if (status == 0 && !grid_is_profile(map->grid))
         status = measure_areal(out, map, chance, err);
     if (status == 0)
-        status = measure_chance(out, map, chance, err);
-    if (status != 0)
-        return status;
-    count_heights(&out->histogram, map);
-    map_scales_measure(&out->scales, map, chance);
-    status = map_spectra_measure(&out->spectra, map, under_window, trusted, err);
+        status = measure_common(out, &common, under_window, trusted, err);
+    map_spectrum_destroy(&common.spectrum);
     return status == 0 ? measure_correlation(&out->correlation, chance->correlation, err) : status;
 }
 

@@ -1,16 +1,14 @@
 #include "jobs/maps/map_directions.h"
 #include <math.h>
 
-/* Measures at a lag in points along x. */
+/* Measures at a lag in points along x, whose differences are these. */
 static void isotropy_at(const struct measured_map *map, const struct map_chance *chance, size_t lag,
-                        struct isotropy *out) {
-    struct cell_differences differences;
+                        const struct cell_differences *differences, struct isotropy *out) {
     double length = (double)lag * grid_dx(map->grid);
     double excess = chance->told ? low_modes_excess_slopes(&chance->modes, chance->correlation,
                                                            map->grid, length)
                                  : (double)NAN;
-    cell_differences_measure(map, &chance->modes, lag, &differences);
-    isotropy_measure(&differences, length, &chance->modes, excess, out);
+    isotropy_measure(differences, length, &chance->modes, excess, out);
 }
 
 /* Returns the longest lag of 1, 2, 4, ... points that is no longer than half of that at which the
@@ -23,18 +21,17 @@ static size_t coarse_lag(const struct measured_map *map, const struct map_chance
     return lag;
 }
 
-int map_directions_measure(struct map_directions *out, const struct measured_map *map,
-                           const struct map_chance *chance, struct error *err) {
-    struct map_spectrum *spectrum = NULL;
-    int status = map_spectrum_create(&spectrum, map, err);
-    if (status != 0)
-        return status;
+void map_directions_measure(struct map_directions *out, const struct measured_map *map,
+                            const struct map_chance *chance, const struct map_spectrum *spectrum,
+                            const struct cell_differences *nearest) {
+    size_t lag = coarse_lag(map, chance);
+    struct cell_differences farther;
+    if (lag > 1)
+        cell_differences_measure(map, &chance->modes, lag, &farther);
     angular_spectrum_measure(spectrum, &out->angular);
-    map_spectrum_destroy(&spectrum);
-    isotropy_at(map, chance, 1, &out->fine);
-    isotropy_at(map, chance, coarse_lag(map, chance), &out->coarse);
+    isotropy_at(map, chance, 1, nearest, &out->fine);
+    isotropy_at(map, chance, lag, lag > 1 ? &farther : nearest, &out->coarse);
     const double p_values[] = {out->fine.p_value, out->coarse.p_value};
     out->p_value = least_p_value(p_values, out->coarse.length > out->fine.length ? 2 : 1);
     out->texture = angular_spectrum_peak(&out->angular);
-    return 0;
 }

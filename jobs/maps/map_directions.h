@@ -12,8 +12,9 @@ struct map_directions {
     double texture;         /* direction of the waves that have most height, radians (Std) */
     struct angular_spectrum angular;
 };
-/* Surfaces alone. ERROR_MEMORY, or ERROR_INPUT for a map of holes alone. */
-int map_directions_measure(struct map_directions *out, const struct measured_map *map,
-                           const struct map_chance *chance, struct error *err);
+/* Surfaces alone. spectrum: of the map; nearest: its differences at a lag of one point. */
+void map_directions_measure(struct map_directions *out, const struct measured_map *map,
+                            const struct map_chance *chance, const struct map_spectrum *spectrum,
+                            const struct cell_differences *nearest);
 
 #endif

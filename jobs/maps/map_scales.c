@@ -22,19 +22,21 @@ static void measure_directions(struct map_scale *scale, const struct map_chance 
 }
 
 void map_scales_measure(struct map_scales *out, const struct measured_map *map,
-                        const struct map_chance *chance) {
+                        const struct map_chance *chance, const struct cell_differences *nearest) {
     struct scale scales[SCALES_MOST];
     out->count = scales_measure(map, scales);
     for (size_t n = 0; n < out->count; n++) {
-        struct cell_differences differences;
+        struct cell_differences farther;
+        const struct cell_differences *differences = n == 0 ? nearest : &farther;
         struct map_scale *scale = &out->scale[n];
         *scale = (struct map_scale){.found = scales[n]};
         double excess = chance->told ? low_modes_excess_slopes(&chance->modes, chance->correlation,
                                                                map->grid, scales[n].length)
                                      : 1;
-        cell_differences_measure(map, &chance->modes, (size_t)1 << n, &differences);
-        fill_errors(scale, chance, &differences, excess);
+        if (n > 0)
+            cell_differences_measure(map, &chance->modes, (size_t)1 << n, &farther);
+        fill_errors(scale, chance, differences, excess);
         if (!grid_is_profile(map->grid))
-            measure_directions(scale, chance, &differences, excess);
+            measure_directions(scale, chance, differences, excess);
     }
 }

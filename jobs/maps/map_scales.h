@@ -15,7 +15,8 @@ struct map_scales {
         struct isotropy isotropy;                          /* of surfaces alone */
     } scale[SCALES_MOST];                                  /* the shortest first */
 };
+/* nearest: differences at a lag of one point. */
 void map_scales_measure(struct map_scales *out, const struct measured_map *map,
-                        const struct map_chance *chance);
+                        const struct map_chance *chance, const struct cell_differences *nearest);
 
 #endif

@@ -86,19 +86,16 @@ static int law_fit(const struct measured_map *map, const struct map_spectrum *sp
     return status;
 }
 
-int map_spectra_measure(struct map_spectra *out, const struct measured_map *map, bool under_window,
+int map_spectra_measure(struct map_spectra *out, const struct measured_map *map,
+                        const struct map_spectrum *spectrum, bool under_window,
                         const struct spectrum_fit_request *request, struct error *err) {
-    struct map_spectrum *spectrum = NULL;
     if (under_window)
         return measure_plain(&out->rings, map, err);
-    int status = map_spectrum_create(&spectrum, map, err);
-    if (status == 0)
-        status = law_fit(map, spectrum, request, &out->fit, err);
+    int status = law_fit(map, spectrum, request, &out->fit, err);
     if (status == 0)
         status = measure_rings(out, spectrum, err);
     for (int axis = 0; axis < 2 && status == 0; axis++)
         status = measure_line(&out->line[axis], spectrum, axis, err);
     out->has_fit = status == 0;
-    map_spectrum_destroy(&spectrum);
     return status;
 }

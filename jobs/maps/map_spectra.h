@@ -20,7 +20,8 @@ struct map_spectra {
 /* Measures a map; *out is {0} at first, and the caller's to clear in any case. A map under a window
  * of its own has neither bands nor a law, since its waves scatter otherwise. ERROR_INPUT where the
  * request leaves no wave; ERROR_MEMORY. */
-int map_spectra_measure(struct map_spectra *out, const struct measured_map *map, bool under_window,
+int map_spectra_measure(struct map_spectra *out, const struct measured_map *map,
+                        const struct map_spectrum *spectrum, bool under_window,
                         const struct spectrum_fit_request *request, struct error *err);
 void map_spectra_clear(struct map_spectra *spectra);
 

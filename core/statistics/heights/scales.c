@@ -1,36 +1,143 @@
 #include "core/statistics/heights/scales.h"
+#include "core/vectors.h"
 
-static struct scale scale_measure(const struct measured_map *map, long lag) {
-    const struct grid *grid = map->grid;
-    bool profile = grid_is_profile(grid);
-    double lx = (double)lag * grid_dx(grid), ly = profile ? lx : (double)lag * grid_dy(grid);
-    struct average slope_x = {0}, slope_y = {0}, height = {0}, curvature = {0};
-    for (long j = 0; j < (long)grid->ny; j++)
-        for (long i = 0; i < (long)grid->nx; i++) {
-            double z = map_height(map, i, j);
-            double right = map_height(map, i + lag, j) - z, left = map_height(map, i - lag, j) - z;
-            double bend = (left + right) / (lx * lx);
-            average_add(&slope_x, right * right / (lx * lx));
-            average_add(&height, right * right / 2);
-            if (!profile) {
-                double down = map_height(map, i, j + lag) - z, up = map_height(map, i, j - lag) - z;
-                average_add(&slope_y, down * down / (ly * ly));
-                average_add(&height, down * down / 2);
-                bend = (bend + (up + down) / (ly * ly)) / 2;
-            }
-            average_add(&curvature, bend * bend);
+/* Squares are added up in interleaved parts, row by row. */
+enum { LANES = 64 };
+
+struct lanes {
+    double sum[LANES], count[LANES];
+};
+
+/* The mean of what is there: sums of rows, compensated. */
+struct mean {
+    struct sum sum;
+    double count;
+};
+
+static void mean_add(struct mean *mean, struct lanes *lanes) {
+    for (size_t n = LANES / 2; n > 0; n /= 2)
+        for (size_t l = 0; l < n; l++) {
+            lanes->sum[l] += lanes->sum[l + n];
+            lanes->count[l] += lanes->count[l + n];
         }
-    return (struct scale){
-        .length = lx,
-        .height = sqrt(average_value(&height)),
-        .slope = sqrt(average_value(&slope_x) + (profile ? 0 : average_value(&slope_y))),
-        .curvature = sqrt(average_value(&curvature))};
+    sum_add(&mean->sum, lanes->sum[0]);
+    mean->count += lanes->count[0];
+}
+
+static double mean_value(const struct mean *mean) {
+    return mean->count > 0 ? sum_value(&mean->sum) / mean->count : (double)NAN;
+}
+
+/* Adds the squares of n differences a - b, at most LANES, where both are there. */
+WIDE_VECTORS static void differences_add(size_t n, const double *a, const double *b,
+                                         struct lanes *restrict lanes) {
+    for (size_t l = 0; l < n; l++) {
+        double square = (a[l] - b[l]) * (a[l] - b[l]);
+        bool there = square == square;
+        lanes->sum[l] += there ? square : 0;
+        lanes->count[l] += there ? 1 : 0;
+    }
+}
+
+/* Where the five points of second differences are: z itself, and those a lag from it. */
+struct cross {
+    const double *z, *left, *right, *up, *down; /* a profile: up and down are z */
+};
+
+/* Adds the squares of n second differences; along_x and along_y are weights. */
+WIDE_VECTORS static void bends_add(size_t n, struct cross at, double along_x, double along_y,
+                                   struct lanes *restrict lanes) {
+    for (size_t l = 0; l < n; l++) {
+        double z = at.z[l];
+        double bend = along_x * ((at.left[l] - z) + (at.right[l] - z)) +
+                      along_y * ((at.up[l] - z) + (at.down[l] - z));
+        double square = bend * bend;
+        bool there = square == square;
+        lanes->sum[l] += there ? square : 0;
+        lanes->count[l] += there ? 1 : 0;
+    }
+}
+
+struct scale_sums {
+    size_t lag;
+    double along_x, along_y; /* weights of second differences */
+    struct mean slope_x, slope_y, curvature;
+};
+
+static void row_differences(size_t n, const double *a, const double *b, struct lanes *lanes) {
+    for (size_t i = 0; i < n; i += LANES)
+        differences_add(n - i < LANES ? n - i : LANES, a + i, b + i, lanes);
+}
+
+/* Adds the second differences of n columns from `first` on; those beside them are `left` and
+ * `right` columns ahead. */
+static void row_bends(const struct scale_sums *sums, struct cross row, size_t first, size_t n,
+                      long left, long right, struct lanes *lanes) {
+    for (size_t i = first; i < first + n; i += LANES) {
+        const struct cross at = {row.z + i, row.z + i + left, row.z + i + right, row.up + i,
+                                 row.down + i};
+        bends_add(first + n - i < LANES ? first + n - i : LANES, at, sums->along_x, sums->along_y,
+                  lanes);
+    }
+}
+
+/* Returns row j of a map, at most one side outside of it; NULL outside of an open one. */
+static const double *row_at(const struct measured_map *map, long j) {
+    long ny = (long)map->grid->ny;
+    if (map->boundary == BOUNDARY_OPEN && (j < 0 || j >= ny))
+        return NULL;
+    return map->z + (size_t)((j + ny) % ny) * map->grid->nx;
+}
+
+static void row_add(const struct measured_map *map, size_t j, struct scale_sums *sums) {
+    const size_t nx = map->grid->nx, lag = sums->lag;
+    const bool open = map->boundary == BOUNDARY_OPEN, profile = grid_is_profile(map->grid);
+    const double *z = map->z + j * nx;
+    const double *down = profile ? z : row_at(map, (long)(j + lag));
+    const double *up = profile ? z : row_at(map, (long)j - (long)lag);
+    struct lanes x = {0}, y = {0}, bends = {0};
+    row_differences(nx - lag, z + lag, z, &x);
+    if (!open)
+        row_differences(lag, z, z + nx - lag, &x);
+    mean_add(&sums->slope_x, &x);
+    if (!profile && down != NULL)
+        row_differences(nx, down, z, &y);
+    mean_add(&sums->slope_y, &y);
+    if (up == NULL || down == NULL)
+        return;
+    const struct cross row = {.z = z, .up = up, .down = down};
+    const long back = (long)lag, round = (long)nx - back;
+    if (2 * lag < nx)
+        row_bends(sums, row, lag, nx - 2 * lag, -back, back, &bends);
+    if (!open) {
+        row_bends(sums, row, 0, lag, round, back, &bends);
+        row_bends(sums, row, nx - lag, lag, -back, -round, &bends);
+    }
+    mean_add(&sums->curvature, &bends);
+}
+
+static struct scale scale_measure(const struct measured_map *map, size_t lag) {
+    const struct grid *grid = map->grid;
+    const bool profile = grid_is_profile(grid);
+    double lx = (double)lag * grid_dx(grid), ly = profile ? lx : (double)lag * grid_dy(grid);
+    struct scale_sums sums = {.lag = lag,
+                              .along_x = (profile ? 1 : 0.5) / (lx * lx),
+                              .along_y = profile ? 0 : 0.5 / (ly * ly)};
+    for (size_t j = 0; j < grid->ny; j++)
+        row_add(map, j, &sums);
+    double x = mean_value(&sums.slope_x), y = profile ? 0 : mean_value(&sums.slope_y);
+    double squares = sum_value(&sums.slope_x.sum) + sum_value(&sums.slope_y.sum);
+    double count = sums.slope_x.count + sums.slope_y.count;
+    return (struct scale){.length = lx,
+                          .height = count > 0 ? sqrt(squares / count / 2) : (double)NAN,
+                          .slope = sqrt(x / (lx * lx) + y / (ly * ly)),
+                          .curvature = sqrt(mean_value(&sums.curvature))};
 }
 
 size_t scales_measure(const struct measured_map *map, struct scale *out) {
     const struct grid *grid = map->grid;
     size_t side = grid_is_profile(grid) || grid->nx < grid->ny ? grid->nx : grid->ny, count = 0;
     for (size_t lag = 1; count < SCALES_MOST && (lag == 1 || 4 * lag <= side); lag *= 2)
-        out[count++] = scale_measure(map, (long)lag);
+        out[count++] = scale_measure(map, lag);
     return count;
 }
