@@ -1,5 +1,6 @@
 #include "core/statistics/heights/areal.h"
 #include "core/statistics/heights/roughness.h"
+#include "core/statistics/lanes.h"
 #include "core/vectors.h"
 #include <stdint.h>
 #include <stdlib.h>
@@ -8,6 +9,7 @@
 static const uint32_t NONE = UINT32_MAX;
 
 enum { WHOLE = 1, SADDLE = 2 }; /* marks of points */
+enum { TOGETHER = 64 };         /* points of a row that are looked at at once */
 
 /* A point that has neighbours of other hills above it. */
 struct saddle {
@@ -145,7 +147,6 @@ static uint32_t highest_neighbour(const struct measured_map *map, uint32_t at) {
 
 /* Every point climbs to its highest neighbour, ... */
 static void row_climb(struct search *s, size_t j) {
-    enum { TOGETHER = 64 };
     const size_t nx = s->map->grid->nx, ny = s->map->grid->ny, at = j * nx;
     bool inside = j > 0 && j + 1 < ny;
     for (size_t i = 0; i < nx; i++)
@@ -160,22 +161,21 @@ static void row_climb(struct search *s, size_t j) {
     }
 }
 
-/* Returns non-zero where any of the 8 points around one belongs to another hill; parents are
- * peaks. */
-static inline uint32_t is_beside_others(const uint32_t *at, size_t nx) {
-    const uint32_t *up = at - nx, *down = at + nx;
-    return (up[-1] ^ *at) | (*up ^ *at) | (up[1] ^ *at) | (at[-1] ^ *at) | (at[1] ^ *at) |
-           (down[-1] ^ *at) | (*down ^ *at) | (down[1] ^ *at);
+/* Fills, of n points inside of a row, non-zero where any of the 8 around one belongs to another
+ * hill; parents are peaks. */
+WIDE_VECTORS static void others_fill(const uint32_t *restrict row, size_t nx, size_t n,
+                                     uint32_t *restrict others) {
+    const uint32_t *up = row - nx, *down = row + nx;
+    for (size_t i = 0; i < n; i++)
+        others[i] = ((up - 1)[i] ^ row[i]) | (up[i] ^ row[i]) | (up[i + 1] ^ row[i]) |
+                    ((row - 1)[i] ^ row[i]) | (row[i + 1] ^ row[i]) | ((down - 1)[i] ^ row[i]) |
+                    (down[i] ^ row[i]) | (down[i + 1] ^ row[i]);
 }
 
 /* ... and so to a peak; where neighbours above it climb to other peaks, it is a saddle. */
 static bool is_saddle(const struct search *s, uint32_t at) {
-    const uint32_t nx = (uint32_t)s->map->grid->nx, ny = (uint32_t)s->map->grid->ny;
-    const uint32_t i = at % nx, j = at / nx;
-    bool inside = i > 0 && i + 1 < nx && j > 0 && j + 1 < ny, saddle = false;
-    if (inside && is_beside_others(s->parent + at, nx) == 0)
-        return false;
     uint32_t beside[8];
+    bool saddle = false;
     neighbours_of(s->map, at, beside);
     for (int n = 0; n < 8 && !saddle; n++)
         saddle = beside[n] != NONE && is_above(s->map->z, beside[n], at) &&
@@ -183,14 +183,33 @@ static bool is_saddle(const struct search *s, uint32_t at) {
     return saddle;
 }
 
+/* Marks the saddles of a row; returns how many. */
+static size_t saddles_mark(struct search *s, size_t j) {
+    const size_t nx = s->map->grid->nx, ny = s->map->grid->ny;
+    bool inside = j > 0 && j + 1 < ny;
+    size_t count = 0;
+    for (size_t i = 0; i < nx;) {
+        uint32_t others[TOGETHER];
+        bool some = inside && i > 0 && i + 1 < nx;
+        size_t n = some ? nx - 1 - i < TOGETHER ? nx - 1 - i : TOGETHER : 1;
+        others[0] = 1;
+        if (some)
+            others_fill(s->parent + j * nx + i, nx, n, others);
+        for (size_t k = 0; k < n; k++)
+            if (others[k] != 0 && is_saddle(s, (uint32_t)(j * nx + i + k))) {
+                s->whole[j * nx + i + k] |= SADDLE;
+                count++;
+            }
+        i += n;
+    }
+    return count;
+}
+
 static int saddles_list(struct search *s, struct error *err) {
     const uint32_t points = (uint32_t)grid_points(s->map->grid);
     size_t count = 0;
-    for (uint32_t at = 0; at < points; at++) {
-        bool saddle = is_saddle(s, at);
-        s->whole[at] |= (unsigned char)(saddle ? SADDLE : 0);
-        count += saddle ? 1 : 0;
-    }
+    for (size_t j = 0; j < s->map->grid->ny; j++)
+        count += saddles_mark(s, j);
     s->saddles = array_create(count > 0 ? count : 1, sizeof *s->saddles);
     if (s->saddles == NULL)
         return error_memory(err, count * sizeof *s->saddles, "saddles between hills");
@@ -265,25 +284,40 @@ static double mean_size(const struct measured_map *map, double mean) {
 }
 
 /* Returns sqrt(1 + x^2 + y^2) - 1. */
-static double stretch(double x, double y) {
+static inline double stretch(double x, double y) {
     double square = x * x + y * y;
     return square / (sqrt(1 + square) + 1);
 }
 
-/* Of each cell of four points the mean over its corners, whose triangles have these slopes. */
+/* Adds n cells of four points, a and b = a + 1 above c and d, whose triangles have these slopes: of
+ * each the mean over its corners. */
+WIDE_VECTORS static void areas_add(size_t n, const double *a, const double *b, const double *c,
+                                   const double *d, double dx, double dy,
+                                   struct lanes *restrict lanes) {
+    for (size_t l = 0; l < n; l++) {
+        double x0 = (b[l] - a[l]) / dx, x1 = (d[l] - c[l]) / dx;
+        double y0 = (c[l] - a[l]) / dy, y1 = (d[l] - b[l]) / dy;
+        lane_add(lanes, l,
+                 (stretch(x0, y0) + stretch(x0, y1) + stretch(x1, y0) + stretch(x1, y1)) / 4);
+    }
+}
+
 static double developed_area(const struct measured_map *map) {
-    const struct grid *grid = map->grid;
-    double dx = grid_dx(grid), dy = grid_dy(grid);
-    struct average area = {0};
-    for (long j = 0; j < (long)grid->ny; j++)
-        for (long i = 0; i < (long)grid->nx; i++) {
-            double a = map_height(map, i, j), b = map_height(map, i + 1, j);
-            double c = map_height(map, i, j + 1), d = map_height(map, i + 1, j + 1);
-            double x0 = (b - a) / dx, x1 = (d - c) / dx, y0 = (c - a) / dy, y1 = (d - b) / dy;
-            average_add(
-                &area, (stretch(x0, y0) + stretch(x0, y1) + stretch(x1, y0) + stretch(x1, y1)) / 4);
-        }
-    return average_value(&area);
+    const size_t nx = map->grid->nx, ny = map->grid->ny;
+    const bool open = map->boundary == BOUNDARY_OPEN;
+    double dx = grid_dx(map->grid), dy = grid_dy(map->grid);
+    struct lanes lanes = {0};
+    struct lane_mean area = {0};
+    for (size_t j = 0; j < (open ? ny - 1 : ny); j++) {
+        const double *row = map->z + j * nx, *down = map->z + (j + 1 < ny ? j + 1 : 0) * nx;
+        for (size_t i = 0; i + 1 < nx; i += LANES)
+            areas_add(nx - 1 - i < LANES ? nx - 1 - i : LANES, row + i, row + i + 1, down + i,
+                      down + i + 1, dx, dy, &lanes);
+        if (!open)
+            areas_add(1, row + nx - 1, row, down + nx - 1, down, dx, dy, &lanes);
+        lane_mean_add(&area, &lanes);
+    }
+    return lane_mean_value(&area);
 }
 
 int areal_measure(const struct measured_map *map, const struct correlation *correlation,

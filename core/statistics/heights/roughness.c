@@ -1,15 +1,10 @@
 #include "core/statistics/heights/roughness.h"
+#include "core/statistics/lanes.h"
 #include "core/sum.h"
 #include "core/surface/transform.h"
 #include "core/vectors.h"
 #include <math.h>
 #include <stdlib.h>
-
-struct powers {
-    struct average second, third, fourth;  /* of heights about the mean */
-    struct average slope_x, slope_y;       /* squares of forward differences */
-    struct average bend_x, bend_y, either; /* squares of second ones, and of their sum */
-};
 
 static void heights_measure(const struct measured_map *map, struct roughness *out) {
     struct average mean = {0};
@@ -24,57 +19,110 @@ static void heights_measure(const struct measured_map *map, struct roughness *ou
     out->mean = average_value(&mean);
 }
 
-/* Adds point i, j; dx and dy are the spacings. */
-static void inner_point_add(const struct measured_map *map, long i, long j, double mean, double dx,
-                            double dy, struct powers *powers) {
-    double z = map_height(map, i, j), h = z - mean;
-    double right = map_height(map, i + 1, j), left = map_height(map, i - 1, j);
-    average_add(&powers->second, h * h);
-    average_add(&powers->third, h * h * h);
-    average_add(&powers->fourth, h * h * h * h);
-    double slope_x = (right - z) / dx, bend_x = (left - 2 * z + right) / (dx * dx);
-    average_add(&powers->slope_x, slope_x * slope_x);
-    average_add(&powers->bend_x, bend_x * bend_x);
-    if (grid_is_profile(map->grid))
-        return;
-    double up = map_height(map, i, j - 1), down = map_height(map, i, j + 1);
-    double slope_y = (down - z) / dy, bend_y = (up - 2 * z + down) / (dy * dy);
-    average_add(&powers->slope_y, slope_y * slope_y);
-    average_add(&powers->bend_y, bend_y * bend_y);
-    average_add(&powers->either, (bend_x + bend_y) * (bend_x + bend_y));
+enum { SECOND, THIRD, FOURTH, SLOPE_X, SLOPE_Y, BEND_X, BEND_Y, EITHER, POWERS };
+/* Powers of heights about the mean; squares of forward differences; squares of second ones, and of
+ * their sum. */
+struct powers {
+    struct lanes lanes[POWERS];
+    struct lane_mean means[POWERS];
+    double mean, dx, dy;
+};
+
+/* Points with their neighbours. A profile has no up and down. */
+struct around {
+    const double *z, *left, *right, *up, *down;
+};
+
+WIDE_VECTORS static void points_add(size_t n, struct around at, struct powers *restrict powers) {
+    double mean = powers->mean, dx = powers->dx, square = powers->dx * powers->dx;
+    for (size_t l = 0; l < n; l++) {
+        double z = at.z[l], h = z - mean;
+        double slope = (at.right[l] - z) / dx, bend = (at.left[l] - 2 * z + at.right[l]) / square;
+        lane_add(&powers->lanes[SECOND], l, h * h);
+        lane_add(&powers->lanes[THIRD], l, h * h * h);
+        lane_add(&powers->lanes[FOURTH], l, h * h * h * h);
+        lane_add(&powers->lanes[SLOPE_X], l, slope * slope);
+        lane_add(&powers->lanes[BEND_X], l, bend * bend);
+    }
+}
+
+WIDE_VECTORS static void across_add(size_t n, struct around at, struct powers *restrict powers) {
+    double dy = powers->dy, square_x = powers->dx * powers->dx, square_y = dy * dy;
+    for (size_t l = 0; l < n; l++) {
+        double z = at.z[l], bend_x = (at.left[l] - 2 * z + at.right[l]) / square_x;
+        double slope = (at.down[l] - z) / dy, bend = (at.up[l] - 2 * z + at.down[l]) / square_y;
+        lane_add(&powers->lanes[SLOPE_Y], l, slope * slope);
+        lane_add(&powers->lanes[BEND_Y], l, bend * bend);
+        lane_add(&powers->lanes[EITHER], l, (bend_x + bend) * (bend_x + bend));
+    }
+}
+
+static void part_add(size_t n, struct around at, struct powers *powers) {
+    points_add(n, at, powers);
+    if (at.up != NULL)
+        across_add(n, at, powers);
+}
+
+/* Adds row j. none: LANES heights that are not there. */
+static void open_row_add(const struct measured_map *map, size_t j, const double *none,
+                         struct powers *powers) {
+    const size_t nx = map->grid->nx, ny = map->grid->ny;
+    const bool open = map->boundary == BOUNDARY_OPEN, profile = grid_is_profile(map->grid);
+    const double *row = map->z + j * nx;
+    const double *up = open && j == 0 ? NULL : map->z + (j > 0 ? j - 1 : ny - 1) * nx;
+    const double *down = open && j + 1 == ny ? NULL : map->z + (j + 1 < ny ? j + 1 : 0) * nx;
+    for (size_t i = 0; i < nx;) {
+        bool first = i == 0, last = i + 1 == nx;
+        size_t n = first || last ? 1 : nx - 1 - i < LANES ? nx - 1 - i : LANES;
+        struct around at = {.z = row + i, .left = row + i - 1, .right = row + i + 1};
+        if (first)
+            at.left = open ? none : row + nx - 1;
+        if (last)
+            at.right = open ? none : row;
+        if (!profile) {
+            at.up = up != NULL ? up + i : none;
+            at.down = down != NULL ? down + i : none;
+        }
+        part_add(n, at, powers);
+        i += n;
+    }
+    for (size_t p = 0; p < POWERS; p++)
+        lane_mean_add(&powers->means[p], &powers->lanes[p]);
 }
 
 void open_roughness_measure(const struct measured_map *map, struct roughness *out) {
     const struct grid *grid = map->grid;
     bool profile = grid_is_profile(grid);
-    double dx = grid_dx(grid), dy = profile ? dx : grid_dy(grid);
-    struct powers powers = {0};
+    double dx = grid_dx(grid), means[POWERS], none[LANES];
     heights_measure(map, out);
+    struct powers powers = {.mean = out->mean, .dx = dx, .dy = profile ? dx : grid_dy(grid)};
+    for (size_t l = 0; l < LANES; l++)
+        none[l] = (double)NAN;
     for (size_t j = 0; j < grid->ny; j++)
-        for (size_t i = 0; i < grid->nx; i++)
-            inner_point_add(map, (long)i, (long)j, out->mean, dx, dy, &powers);
-    double variance = average_value(&powers.second), slope_x = average_value(&powers.slope_x);
-    double bend_x = average_value(&powers.bend_x);
+        open_row_add(map, j, none, &powers);
+    for (size_t p = 0; p < POWERS; p++)
+        means[p] = lane_mean_value(&powers.means[p]);
+    double variance = means[SECOND];
     out->rms_height = sqrt(variance);
-    out->skewness = average_value(&powers.third) / (variance * out->rms_height);
-    out->kurtosis = average_value(&powers.fourth) / (variance * variance);
-    out->m2 = profile ? slope_x : (slope_x + average_value(&powers.slope_y)) / 2;
-    out->m4 = profile ? bend_x : (bend_x + average_value(&powers.bend_y)) / 2;
-    out->rms_slope = profile ? sqrt(slope_x) : sqrt(2 * out->m2);
-    out->rms_curvature = profile ? sqrt(bend_x) : sqrt(average_value(&powers.either)) / 2;
+    out->skewness = means[THIRD] / (variance * out->rms_height);
+    out->kurtosis = means[FOURTH] / (variance * variance);
+    out->m2 = profile ? means[SLOPE_X] : (means[SLOPE_X] + means[SLOPE_Y]) / 2;
+    out->m4 = profile ? means[BEND_X] : (means[BEND_X] + means[BEND_Y]) / 2;
+    out->rms_slope = profile ? sqrt(means[SLOPE_X]) : sqrt(2 * out->m2);
+    out->rms_curvature = profile ? sqrt(means[BEND_X]) : sqrt(means[EITHER]) / 2;
     out->nayak_alpha = variance / out->m2 * (out->m4 / out->m2);
 }
 
-/* Sums over points in LANES interleaved parts: short chains of rounding, and vectors for the
+/* Sums over points in PARTS interleaved parts: short chains of rounding, and vectors for the
  * compiler. */
-enum { LANES = 8 };
+enum { PARTS = 8 };
 struct row_sums {
-    double second[LANES], third[LANES], fourth[LANES]; /* powers of the height about the mean */
-    double slope_x[LANES], slope_y[LANES];             /* squares of forward differences */
-    double bend_x[LANES], bend_y[LANES], bend[LANES];  /* squares of second ones, of their sum */
+    double second[PARTS], third[PARTS], fourth[PARTS]; /* powers of the height about the mean */
+    double slope_x[PARTS], slope_y[PARTS];             /* squares of forward differences */
+    double bend_x[PARTS], bend_y[PARTS], bend[PARTS];  /* squares of second ones, of their sum */
 };
 
-static double lanes_total(const double *lanes) {
+static double parts_total(const double *lanes) {
     return ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) +
            ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]));
 }
@@ -99,8 +147,8 @@ WIDE_VECTORS static void row_add(const double *up, const double *row, const doub
                                  double mean, struct row_sums *sums) {
     point_add(sums, 0, row[nx - 1], row[0], row[1], up[0], down[0], mean);
     size_t i = 1;
-    for (; i + LANES < nx; i += LANES)
-        for (size_t l = 0; l < LANES; l++)
+    for (; i + PARTS < nx; i += PARTS)
+        for (size_t l = 0; l < PARTS; l++)
             point_add(sums, l, row[i + l - 1], row[i + l], row[i + l + 1], up[i + l], down[i + l],
                       mean);
     for (; i < nx; i++)
@@ -123,7 +171,7 @@ static double map_mean(const struct grid *grid, const double *z, double *lowest,
     return sum_value(&total) / (double)grid_points(grid);
 }
 
-enum { SUMS = sizeof(struct row_sums) / sizeof(double[LANES]) };
+enum { SUMS = sizeof(struct row_sums) / sizeof(double[PARTS]) };
 
 /* Computes means over the map, in the order of struct row_sums. */
 static void map_means(const struct grid *grid, const double *z, double mean, double *means) {
@@ -134,11 +182,11 @@ static void map_means(const struct grid *grid, const double *z, double mean, dou
                      *down = z + (j + 1 < ny ? j + 1 : 0) * nx;
         union {
             struct row_sums named;
-            double lanes[SUMS][LANES];
+            double lanes[SUMS][PARTS];
         } sums = {.lanes = {{0}}};
         row_add(up, z + j * nx, down, nx, mean, &sums.named);
         for (size_t s = 0; s < SUMS; s++)
-            sum_add(&totals[s], lanes_total(sums.lanes[s]));
+            sum_add(&totals[s], parts_total(sums.lanes[s]));
     }
     for (size_t s = 0; s < SUMS; s++)
         means[s] = sum_value(&totals[s]) / (double)grid_points(grid);

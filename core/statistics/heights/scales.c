@@ -1,41 +1,12 @@
 #include "core/statistics/heights/scales.h"
+#include "core/statistics/lanes.h"
 #include "core/vectors.h"
-
-/* Squares are added up in interleaved parts, row by row. */
-enum { LANES = 64 };
-
-struct lanes {
-    double sum[LANES], count[LANES];
-};
-
-/* The mean of what is there: sums of rows, compensated. */
-struct mean {
-    struct sum sum;
-    double count;
-};
-
-static void mean_add(struct mean *mean, struct lanes *lanes) {
-    for (size_t n = LANES / 2; n > 0; n /= 2)
-        for (size_t l = 0; l < n; l++) {
-            lanes->sum[l] += lanes->sum[l + n];
-            lanes->count[l] += lanes->count[l + n];
-        }
-    sum_add(&mean->sum, lanes->sum[0]);
-    mean->count += lanes->count[0];
-}
-
-static double mean_value(const struct mean *mean) {
-    return mean->count > 0 ? sum_value(&mean->sum) / mean->count : (double)NAN;
-}
 
 /* Adds the squares of n differences a - b, at most LANES, where both are there. */
 WIDE_VECTORS static void differences_add(size_t n, const double *a, const double *b,
                                          struct lanes *restrict lanes) {
     for (size_t l = 0; l < n; l++) {
-        double square = (a[l] - b[l]) * (a[l] - b[l]);
-        bool there = square == square;
-        lanes->sum[l] += there ? square : 0;
-        lanes->count[l] += there ? 1 : 0;
+        lane_add(lanes, l, (a[l] - b[l]) * (a[l] - b[l]));
     }
 }
 
@@ -51,17 +22,14 @@ WIDE_VECTORS static void bends_add(size_t n, struct cross at, double along_x, do
         double z = at.z[l];
         double bend = along_x * ((at.left[l] - z) + (at.right[l] - z)) +
                       along_y * ((at.up[l] - z) + (at.down[l] - z));
-        double square = bend * bend;
-        bool there = square == square;
-        lanes->sum[l] += there ? square : 0;
-        lanes->count[l] += there ? 1 : 0;
+        lane_add(lanes, l, bend * bend);
     }
 }
 
 struct scale_sums {
     size_t lag;
     double along_x, along_y; /* weights of second differences */
-    struct mean slope_x, slope_y, curvature;
+    struct lane_mean slope_x, slope_y, curvature;
 };
 
 static void row_differences(size_t n, const double *a, const double *b, struct lanes *lanes) {
@@ -99,10 +67,10 @@ static void row_add(const struct measured_map *map, size_t j, struct scale_sums 
     row_differences(nx - lag, z + lag, z, &x);
     if (!open)
         row_differences(lag, z, z + nx - lag, &x);
-    mean_add(&sums->slope_x, &x);
+    lane_mean_add(&sums->slope_x, &x);
     if (!profile && down != NULL)
         row_differences(nx, down, z, &y);
-    mean_add(&sums->slope_y, &y);
+    lane_mean_add(&sums->slope_y, &y);
     if (up == NULL || down == NULL)
         return;
     const struct cross row = {.z = z, .up = up, .down = down};
@@ -113,7 +81,7 @@ static void row_add(const struct measured_map *map, size_t j, struct scale_sums 
         row_bends(sums, row, 0, lag, round, back, &bends);
         row_bends(sums, row, nx - lag, lag, -back, -round, &bends);
     }
-    mean_add(&sums->curvature, &bends);
+    lane_mean_add(&sums->curvature, &bends);
 }
 
 static struct scale scale_measure(const struct measured_map *map, size_t lag) {
@@ -125,13 +93,13 @@ static struct scale scale_measure(const struct measured_map *map, size_t lag) {
                               .along_y = profile ? 0 : 0.5 / (ly * ly)};
     for (size_t j = 0; j < grid->ny; j++)
         row_add(map, j, &sums);
-    double x = mean_value(&sums.slope_x), y = profile ? 0 : mean_value(&sums.slope_y);
+    double x = lane_mean_value(&sums.slope_x), y = profile ? 0 : lane_mean_value(&sums.slope_y);
     double squares = sum_value(&sums.slope_x.sum) + sum_value(&sums.slope_y.sum);
     double count = sums.slope_x.count + sums.slope_y.count;
     return (struct scale){.length = lx,
                           .height = count > 0 ? sqrt(squares / count / 2) : (double)NAN,
                           .slope = sqrt(x / (lx * lx) + y / (ly * ly)),
-                          .curvature = sqrt(mean_value(&sums.curvature))};
+                          .curvature = sqrt(lane_mean_value(&sums.curvature))};
 }
 
 size_t scales_measure(const struct measured_map *map, struct scale *out) {
