@@ -1,4 +1,5 @@
 #include "core/statistics/uncertainty/cell_heights.h"
+#include "core/vectors.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -64,20 +65,93 @@ static void difference_add(const struct rows *rows, size_t i, size_t left, size_
     out->across[cell] += 2 * x * y;
 }
 
+enum { TOGETHER = 64 };
+
+/* What some points add to the sums of their cell; 0 where a height is missing. */
+struct parts {
+    double count[TOGETHER], slope[TOGETHER], bend[TOGETHER], curvature[TOGETHER], area[TOGETHER];
+    double gradient[TOGETHER], along[TOGETHER], across[TOGETHER];
+};
+
+/* What difference_add adds, of n points of a surface from column i on, at most TOGETHER. */
+WIDE_VECTORS static void parts_fill(struct rows rows, size_t i, size_t n, struct lag lag,
+                                    struct parts *restrict parts) {
+    const double *middle = rows.middle + i, *left = middle - lag.x, *right = middle + lag.x;
+    const double *above = rows.up + i, *below = rows.down + i, *beside = below + lag.x;
+    double lx = lag.length_x, ly = lag.length_y;
+    for (size_t l = 0; l < n; l++) {
+        double z = middle[l], ahead = right[l], down = below[l], corner = beside[l];
+        double slope_x = (ahead - z) / lx, bend_x = (ahead - 2 * z + left[l]) / (lx * lx);
+        double slope_y = (down - z) / ly, bend_y = (down - 2 * z + above[l]) / (ly * ly);
+        double x = (ahead - z + corner - down) / (2 * lx);
+        double y = (down - z + corner - ahead) / (2 * ly);
+        double all = bend_x + bend_y + x + y;
+        bool there = all == all;
+        double slope = slope_x * slope_x + slope_y * slope_y, curvature = (bend_x + bend_y) / 2;
+        parts->count[l] = there ? 1 : 0;
+        parts->slope[l] = there ? slope : 0;
+        parts->bend[l] = there ? bend_x * bend_x + bend_y * bend_y : 0;
+        parts->curvature[l] = there ? curvature * curvature : 0;
+        parts->area[l] = there ? sqrt(1 + slope) : 0;
+        parts->gradient[l] = there ? x * x + y * y : 0;
+        parts->along[l] = there ? x * x - y * y : 0;
+        parts->across[l] = there ? 2 * x * y : 0;
+    }
+}
+
+/* Adds, in their order, columns first .. end - 1 of a surface, every one of which is taken and has
+ * its neighbours inside of the row. */
+static void columns_add(const struct rows *rows, size_t first, size_t end, const struct lag *lag,
+                        size_t cell, struct cell_differences *out) {
+    double count = 0, area = out->area[cell], slope = out->slope[cell], bend = out->bend[cell];
+    double curvature = out->curvature[cell], gradient = out->gradient[cell];
+    double along = out->along[cell], across = out->across[cell];
+    for (size_t i = first; i < end; i += TOGETHER) {
+        struct parts parts;
+        size_t n = end - i < TOGETHER ? end - i : TOGETHER;
+        parts_fill(*rows, i, n, *lag, &parts);
+        for (size_t l = 0; l < n; l++) {
+            count += parts.count[l];
+            slope += parts.slope[l];
+            bend += parts.bend[l];
+            curvature += parts.curvature[l];
+            area += parts.area[l];
+            gradient += parts.gradient[l];
+            along += parts.along[l];
+            across += parts.across[l];
+        }
+    }
+    out->count[cell] += count;
+    out->slope[cell] = slope;
+    out->bend[cell] = bend;
+    out->curvature[cell] = curvature;
+    out->area[cell] = area;
+    out->gradient[cell] = gradient;
+    out->along[cell] = along;
+    out->across[cell] = across;
+}
+
 static void row_add(const struct measured_map *map, const struct low_modes *modes,
                     const struct rows *rows, size_t first_cell, const struct lag *lag,
                     struct cell_differences *out) {
-    bool open = map->boundary == BOUNDARY_OPEN;
+    bool open = map->boundary == BOUNDARY_OPEN, together = lag->every_x == 1 && lag->y > 0;
     long nx = (long)map->grid->nx;
     long begin = open ? lag->x : 0, end = open ? nx - lag->x : nx;
     begin = (begin + lag->every_x - 1) / lag->every_x * lag->every_x;
     size_t cell = 0, next = cell_begin(1, modes->cells_x, (size_t)nx);
-    for (long i = begin; i < end; i += lag->every_x) {
+    for (long i = begin; i < end;) {
         while ((size_t)i >= next)
             next = cell_begin(++cell + 1, modes->cells_x, (size_t)nx);
         long left = i - lag->x, right = i + lag->x;
+        if (together && left >= 0 && right < nx) {
+            long last = nx - lag->x < (long)next ? nx - lag->x : (long)next;
+            columns_add(rows, (size_t)i, (size_t)last, lag, first_cell + cell, out);
+            i = last;
+            continue;
+        }
         difference_add(rows, (size_t)i, (size_t)(left < 0 ? left + nx : left),
                        (size_t)(right >= nx ? right - nx : right), lag, first_cell + cell, out);
+        i += lag->every_x;
     }
 }
 
