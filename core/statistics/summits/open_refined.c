@@ -1,8 +1,8 @@
 #include "core/statistics/summits/open_refined.h"
-#include "core/statistics/summits/grid_summits.h"
 #include "core/statistics/summits/local_wave.h"
 #include "core/statistics/summits/summit_climb.h"
 #include "core/vectors.h"
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,8 +20,7 @@ struct search {
     size_t cells_x, cells_y;   /* that can be interpolated, from point FIRST on */
     struct local_basis *bases; /* owned, of the fine points of a cell along x, then along y */
     double *across;            /* owned, nx: one row of points moved to a fine row */
-    double *phases;            /* owned, fine x TOGETHER: one fine point of each cell, the next */
-    double *memory;            /* owned: three fine rows, ... */
+    double *memory;            /* owned: three fine rows, fine x cells_x each, ... */
     double *rows[3];           /* ... those before, at and behind the present one */
     size_t *columns;           /* owned, a fine row */
 };
@@ -33,7 +32,6 @@ static size_t fine_columns(const struct search *s) {
 static void search_clear(struct search *s) {
     free(s->bases);
     free(s->across);
-    free(s->phases);
     free(s->memory);
     free(s->columns);
 }
@@ -50,11 +48,9 @@ static int search_create(struct search *s, const struct measured_map *map,
     size_t row = fine_columns(s);
     s->bases = array_create(2 * s->fine, sizeof *s->bases);
     s->across = array_create(grid->nx, sizeof *s->across);
-    s->phases = array_create(s->fine, TOGETHER * sizeof *s->phases);
     s->memory = array_create(row, 3 * sizeof *s->memory);
     s->columns = array_create(row, sizeof *s->columns);
-    if (s->bases == NULL || s->across == NULL || s->phases == NULL || s->memory == NULL ||
-        s->columns == NULL) {
+    if (s->bases == NULL || s->across == NULL || s->memory == NULL || s->columns == NULL) {
         search_clear(s);
         return error_memory(err, row * 4 * sizeof *s->memory, "a summit search");
     }
@@ -93,14 +89,11 @@ WIDE_VECTORS static void phase_fill(const double *restrict weight, const double 
     }
 }
 
-/* Fills the fine points of some cells of a row, `fine` a cell; first one after the other position
- * in all these cells, which stay in the first cache. */
+/* Fills the fine points of some cells of a row, which stay in the first cache. */
 static void cells_fill(const struct search *s, size_t first, size_t cells, double *out) {
     for (size_t phase = 0; phase < s->fine; phase++)
-        phase_fill(s->bases[phase].value, s->across + first, cells, s->phases + phase * TOGETHER);
-    for (size_t cell = 0; cell < cells; cell++)
-        for (size_t phase = 0; phase < s->fine; phase++)
-            out[cell * s->fine + phase] = s->phases[phase * TOGETHER + cell];
+        phase_fill(s->bases[phase].value, s->across + first, cells,
+                   out + phase * s->cells_x + first);
 }
 
 /* Fills a fine row. */
@@ -116,8 +109,7 @@ static void row_fill(const struct search *s, size_t fine_row, double *out) {
             rows_weigh(weight + a, z + (first + a) * nx, nx, s->across);
     }
     for (size_t cell = 0; cell < s->cells_x; cell += TOGETHER)
-        cells_fill(s, cell, s->cells_x - cell < TOGETHER ? s->cells_x - cell : TOGETHER,
-                   out + cell * s->fine);
+        cells_fill(s, cell, s->cells_x - cell < TOGETHER ? s->cells_x - cell : TOGETHER, out);
 }
 
 /* Interpolates at a position in fine cells; NaN outside of the cells that can be interpolated. */
@@ -173,13 +165,59 @@ static int summit_add(const struct search *s, double x, double y, const struct j
     return summit_list_add(list, &summit, err);
 }
 
+/* Fine points and those beside them; up and down of a profile are the points themselves. */
+struct beside {
+    const double *z, *left, *right, *up, *down;
+};
+
+/* hit[i] = all ones where a point is above those beside it; returns non-zero when any is. */
+WIDE_VECTORS static int64_t above_mark(size_t n, struct beside at, bool profile,
+                                       int64_t *restrict hit) {
+    int64_t any = 0;
+    for (size_t i = 0; i < n; i++)
+        hit[i] = -(int64_t)(at.z[i] > at.left[i]) & -(int64_t)(at.z[i] > at.right[i]);
+    for (size_t i = 0; i < n && !profile; i++)
+        hit[i] &= -(int64_t)(at.z[i] > at.up[i]) & -(int64_t)(at.z[i] > at.down[i]);
+    for (size_t i = 0; i < n; i++)
+        any |= hit[i];
+    return any;
+}
+
+/* Appends the columns of the maxima among the fine points at one position in each cell. Those of
+ * the next cell begin where those of the last one end; the row counts as periodic. */
+static size_t phase_search(const struct search *s, size_t phase, size_t found) {
+    const size_t cells = s->cells_x, last = s->fine - 1;
+    const bool profile = grid_is_profile(s->map->grid);
+    const double *row = s->rows[1] + phase * cells;
+    for (size_t cell = 0; cell < cells;) {
+        bool first = phase == 0 && cell == 0, end = phase == last && cell + 1 == cells;
+        size_t stop = phase == last && !end ? cells - 1 : cells;
+        size_t n = first || end ? 1 : stop - cell < TOGETHER ? stop - cell : TOGETHER;
+        const double *z = row + cell;
+        struct beside at = {
+            .z = z,
+            .left = phase > 0 ? z - cells : s->rows[1] + last * cells + (first ? cells : cell) - 1,
+            .right = phase < last ? z + cells : s->rows[1] + (end ? 0 : cell + 1),
+            .up = profile ? z : s->rows[0] + phase * cells + cell,
+            .down = profile ? z : s->rows[2] + phase * cells + cell};
+        int64_t hit[TOGETHER];
+        if (above_mark(n, at, profile, hit) != 0)
+            for (size_t i = 0; i < n; i++)
+                if (hit[i] != 0)
+                    s->columns[found++] = (cell + i) * s->fine + phase;
+        cell += n;
+    }
+    return found;
+}
+
 /* Searches from the maxima of the middle one of the three rows. */
 static int row_search(struct search *s, size_t fine_row, struct summit_list *list,
                       struct error *err) {
     bool profile = grid_is_profile(s->map->grid);
     const struct climb climb = {s, jet_at, profile};
-    size_t found = row_summits(profile ? NULL : s->rows[0], s->rows[1], profile ? NULL : s->rows[2],
-                               fine_columns(s), false, s->columns);
+    size_t found = 0;
+    for (size_t phase = 0; phase < s->fine; phase++)
+        found = phase_search(s, phase, found);
     for (size_t a = 0; a < found; a++) {
         double x, y;
         struct jet jet;
