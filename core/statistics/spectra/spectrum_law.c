@@ -8,6 +8,10 @@ enum { STEPS_MOST = 60 };
  * ring numbers by the number of modes, in logarithms. */
 static const double INFORMED = 0.6;
 
+static double logarithm_of(double wave_number) {
+    return log(fmax(wave_number, LAW_FEWEST_WAVES));
+}
+
 int law_problem_create(struct law_problem **out, const struct map_spectrum *spectrum, size_t first,
                        size_t last, double floor, struct error *err) {
     size_t count = last - first + 1;
@@ -17,6 +21,7 @@ int law_problem_create(struct law_problem **out, const struct map_spectrum *spec
     problem->spectrum = spectrum;
     problem->dimension = grid_is_profile(&spectrum->modes.grid) ? 1 : 2;
     problem->reference = INFORMED * (double)last;
+    problem->reference_logarithm = log(problem->reference);
     problem->floor = floor;
     int status = spectrum_leakage_create(&problem->leakage, spectrum, first, last, err);
     if (status == 0) {
@@ -25,8 +30,9 @@ int law_problem_create(struct law_problem **out, const struct map_spectrum *spec
         problem->trial = array_create(count, sizeof *problem->trial);
         problem->slope = array_create(LAW_PARAMETERS * count, sizeof *problem->slope);
         problem->density = array_create(problem->leakage->nodes, sizeof *problem->density);
+        problem->logarithm = array_create(problem->leakage->nodes, sizeof *problem->logarithm);
         if (problem->found == NULL || problem->expected == NULL || problem->trial == NULL ||
-            problem->slope == NULL || problem->density == NULL)
+            problem->slope == NULL || problem->density == NULL || problem->logarithm == NULL)
             status = error_memory(err, count * sizeof *problem->slope, "the fit of a spectrum");
     }
     if (status != 0) {
@@ -35,6 +41,8 @@ int law_problem_create(struct law_problem **out, const struct map_spectrum *spec
     }
     for (size_t r = 0; r < count; r++)
         problem->found[r] = spectrum->density[first + r] + floor;
+    for (size_t a = 0; a < problem->leakage->nodes; a++)
+        problem->logarithm[a] = logarithm_of(problem->leakage->node[a]);
     *out = problem;
     return 0;
 }
@@ -49,14 +57,17 @@ void law_problem_destroy(struct law_problem **problem) {
     free(p->trial);
     free(p->slope);
     free(p->density);
+    free(p->logarithm);
     free(p);
     *problem = NULL;
 }
 
-double law_density(const struct law_problem *problem, const double *p, double wave_number) {
-    double k = log(fmax(wave_number, LAW_FEWEST_WAVES));
-    k = fmax(k, p[LAW_ROLLOFF]) - log(problem->reference);
-    return exp(p[LAW_AMPLITUDE] - (problem->dimension + 2 * p[LAW_HURST]) * k);
+/* Returns the density of a law by the logarithm of a wave number, without regard to its ends and to
+ * the blur. */
+static double density_at(const struct law_problem *problem, const double *p, double logarithm) {
+    double k = logarithm > p[LAW_ROLLOFF] ? logarithm : p[LAW_ROLLOFF];
+    return exp(p[LAW_AMPLITUDE] -
+               (problem->dimension + 2 * p[LAW_HURST]) * (k - problem->reference_logarithm));
 }
 
 /* The share of a node's width that lies below a wave number. */
@@ -74,7 +85,7 @@ static void expect(struct law_problem *problem, const double *p, double *expecte
                        share_below(node, leakage->width, fmin(lowest, highest));
         if (share > 0 && blur > 0)
             share *= exp(-blur * node * node);
-        problem->density[a] = share > 0 ? share * law_density(problem, p, node) : 0;
+        problem->density[a] = share > 0 ? share * density_at(problem, p, problem->logarithm[a]) : 0;
     }
     spectrum_leakage_apply(leakage, problem->density, expected);
     for (size_t r = 0; r < leakage->count; r++)

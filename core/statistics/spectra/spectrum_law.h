@@ -34,22 +34,22 @@ struct law_problem {
     struct spectrum_leakage *leakage;    /* owned, as all arrays */
     double dimension;                    /* the density falls by k^-(dimension + 2 H) */
     double reference;                    /* of the amplitude */
+    double reference_logarithm;
     /* Density that is added to what is found and to what is expected: so rings beyond a sharp end,
      * which hold leakage alone, do not count. */
     double floor;
     double low[LAW_PARAMETERS], high[LAW_PARAMETERS];
-    double *found;    /* per ring */
-    double *expected; /* per ring */
-    double *density;  /* per node */
-    double *trial;    /* per ring: of a step that is tried */
-    double *slope;    /* LAW_PARAMETERS per ring: of the logarithm of what is expected */
+    double *found;     /* per ring */
+    double *expected;  /* per ring */
+    double *density;   /* per node */
+    double *logarithm; /* per node: of its wave number */
+    double *trial;     /* per ring: of a step that is tried */
+    double *slope;     /* LAW_PARAMETERS per ring: of the logarithm of what is expected */
 };
 int law_problem_create(struct law_problem **out, const struct map_spectrum *spectrum, size_t first,
                        size_t last, double floor, struct error *err);
 void law_problem_destroy(struct law_problem **problem);
 
-/* Returns the density of a law at a wave number, without regard to its ends and to the blur. */
-double law_density(const struct law_problem *problem, const double *p, double wave_number);
 /* Below so many waves a side a map has no density; a law is taken as constant there. */
 #define LAW_FEWEST_WAVES 0.5
 /* Fills the deviance of a law: twice by how much the likelihood is less than that of rings that are
