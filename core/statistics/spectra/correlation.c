@@ -8,7 +8,9 @@ struct correlation {
     struct grid grid;   /* of the map */
     struct grid padded; /* of the values, which are periodic on it */
     long reach_x, reach_y;
-    double *values; /* owned; lag (x, y) at its index modulo the padded grid */
+    size_t rows; /* of lags y >= 0 that are needed; a lag and its negative have the same value */
+    /* Owned, rows x padded.nx; lag (x, y) at its index modulo the padded grid. */
+    double *values;
 };
 
 /* Lags up to the reach do not meet their own other end in the padded grid. */
@@ -16,30 +18,70 @@ static void shape_fill(struct correlation *c, const struct measured_map *map) {
     c->grid = c->padded = *map->grid;
     c->reach_x = (long)(c->grid.nx / 2);
     c->reach_y = grid_is_profile(&c->grid) ? 0 : (long)(c->grid.ny / 2);
-    if (map->boundary == BOUNDARY_PERIODIC)
-        return;
-    c->padded.nx = transform_fast_count(c->grid.nx + (size_t)c->reach_x + 2);
-    if (c->reach_y > 0)
-        c->padded.ny = transform_fast_count(c->grid.ny + (size_t)c->reach_y + 2);
+    if (map->boundary == BOUNDARY_OPEN) {
+        c->padded.nx = transform_fast_count(c->grid.nx + (size_t)c->reach_x + 2);
+        if (c->reach_y > 0)
+            c->padded.ny = transform_fast_count(c->grid.ny + (size_t)c->reach_y + 2);
+    }
+    size_t half = c->padded.ny / 2, most = (size_t)c->reach_y + 2;
+    c->rows = (half < most ? half : most) + 1;
 }
 
-/* Fills out, on the padded grid, with the sum over pairs at each lag of field times field, which is
- * 0 beside the map. out may be field. */
-static int sums_of_pairs(const struct grid *padded, const double *field, double *out,
+/* What is multiplied: heights about the mean, or 1 where there is one; 0 in holes and beside. */
+struct field {
+    const struct measured_map *map;
+    double mean;
+    bool ones;
+};
+
+/* Fills rows j .. j + count - 1 of the padded grid. */
+static void rows_fill(const struct correlation *c, const struct field *field, size_t j,
+                      size_t count, double *rows) {
+    for (size_t point = 0; point < count * c->padded.nx; point++)
+        rows[point] = 0;
+    for (size_t row = 0; row < count && j + row < c->grid.ny; row++)
+        for (size_t i = 0; i < c->grid.nx; i++) {
+            double z = field->map->z[(j + row) * c->grid.nx + i];
+            if (!isnan(z))
+                rows[row * c->padded.nx + i] = field->ones ? 1 : z - field->mean;
+        }
+}
+
+static int field_transform(const struct correlation *c, const struct field *field,
+                           struct transform *transform, struct error *err) {
+    size_t count = TRANSFORM_ROWS * c->padded.nx;
+    double *rows = array_create(count, sizeof *rows);
+    if (rows == NULL)
+        return error_memory(err, count * sizeof *rows, "rows of an autocorrelation");
+    for (size_t j = 0; j < c->padded.ny; j += TRANSFORM_ROWS) {
+        size_t some = c->padded.ny - j < TRANSFORM_ROWS ? c->padded.ny - j : TRANSFORM_ROWS;
+        rows_fill(c, field, j, some, rows);
+        transform_forward_rows(transform, j, some, rows);
+    }
+    transform_forward_columns(transform);
+    free(rows);
+    return 0;
+}
+
+/* Fills out, rows x padded.nx, with the sum over pairs at each lag of field times field. */
+static int sums_of_pairs(const struct correlation *c, const struct field *field, double *out,
                          struct error *err) {
+    const struct grid *padded = &c->padded;
     struct transform *transform = NULL;
     size_t modes = (padded->nx / 2 + 1) * padded->ny;
     int status = transform_create(&transform, padded, padded->nx / 2, padded->ny / 2, err);
-    if (status != 0)
-        return status;
-    transform_forward(transform, field);
-    double complex *mode = transform_spectrum(transform);
-    double points = (double)grid_points(padded);
-    for (size_t k = 0; k < modes; k++)
-        mode[k] = points * (creal(mode[k]) * creal(mode[k]) + cimag(mode[k]) * cimag(mode[k]));
-    transform_inverse(transform, out);
+    if (status == 0)
+        status = field_transform(c, field, transform, err);
+    if (status == 0) {
+        double complex *mode = transform_spectrum(transform);
+        double points = (double)grid_points(padded);
+        for (size_t k = 0; k < modes; k++)
+            mode[k] = points * (creal(mode[k]) * creal(mode[k]) + cimag(mode[k]) * cimag(mode[k]));
+        transform_inverse_columns(transform);
+        transform_inverse_rows(transform, 0, c->rows, out);
+    }
     transform_destroy(&transform);
-    return 0;
+    return status;
 }
 
 static double mean_of(const struct measured_map *map, size_t *holes) {
@@ -48,19 +90,6 @@ static double mean_of(const struct measured_map *map, size_t *holes) {
         average_add(&mean, map->z[point]);
     *holes = grid_points(map->grid) - mean.count;
     return average_value(&mean);
-}
-
-/* Fills field with heights about the mean, or with 1 where there is one; 0 in holes and beside. */
-static void field_fill(const struct correlation *c, const struct measured_map *map, double mean,
-                       bool ones, double *field) {
-    for (size_t point = 0; point < grid_points(&c->padded); point++)
-        field[point] = 0;
-    for (size_t j = 0; j < c->grid.ny; j++)
-        for (size_t i = 0; i < c->grid.nx; i++) {
-            double z = map->z[j * c->grid.nx + i];
-            if (!isnan(z))
-                field[j * c->padded.nx + i] = ones ? 1 : z - mean;
-        }
 }
 
 /* Returns how many pairs of points of a side are a lag apart. */
@@ -73,7 +102,7 @@ static double pairs_of(size_t n, size_t lag, size_t padded) {
  */
 static void sums_divide(struct correlation *c, const double *counts) {
     double origin = 0;
-    for (size_t j = 0; j < c->padded.ny; j++)
+    for (size_t j = 0; j < c->rows; j++)
         for (size_t i = 0; i < c->padded.nx; i++) {
             size_t at = j * c->padded.nx + i;
             double pairs = counts != NULL ? rint(counts[at])
@@ -86,7 +115,7 @@ static void sums_divide(struct correlation *c, const double *counts) {
 }
 
 static int values_fill(struct correlation *c, const struct measured_map *map, struct error *err) {
-    size_t points = grid_points(&c->padded), holes;
+    size_t points = c->rows * c->padded.nx, holes;
     double mean = mean_of(map, &holes), *counts = NULL;
     c->values = array_create(points, sizeof *c->values);
     if (holes > 0)
@@ -95,12 +124,9 @@ static int values_fill(struct correlation *c, const struct measured_map *map, st
         free(counts);
         return error_memory(err, points * sizeof *counts, "an autocorrelation");
     }
-    field_fill(c, map, mean, false, c->values);
-    int status = sums_of_pairs(&c->padded, c->values, c->values, err);
-    if (status == 0 && holes > 0) {
-        field_fill(c, map, mean, true, counts);
-        status = sums_of_pairs(&c->padded, counts, counts, err);
-    }
+    int status = sums_of_pairs(c, &(struct field){map, mean, false}, c->values, err);
+    if (status == 0 && holes > 0)
+        status = sums_of_pairs(c, &(struct field){map, mean, true}, counts, err);
     if (status == 0)
         sums_divide(c, counts);
     free(counts);
@@ -132,7 +158,12 @@ void correlation_destroy(struct correlation **correlation) {
 
 static double value_at(const struct correlation *c, long x, long y) {
     long nx = (long)c->padded.nx, ny = (long)c->padded.ny;
-    return c->values[((y % ny + ny) % ny) * nx + (x % nx + nx) % nx];
+    y = (y % ny + ny) % ny;
+    if (2 * y > ny) {
+        x = -x;
+        y = ny - y;
+    }
+    return c->values[y * nx + (x % nx + nx) % nx];
 }
 
 /* Weights of the points -1, 0, 1, 2 at t in [0, 1], for a cubic with the slopes of its neighbours.
