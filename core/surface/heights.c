@@ -57,8 +57,13 @@ static void weibull_min_moments(const struct heights *of, struct height_moments 
     out->highest = INFINITY;
 }
 
+/* x to the power 1/shape: x itself of the exponential distribution. */
+static double weibull_power(double x, double shape) {
+    return shape == 1 ? x : pow(x, 1 / shape);
+}
+
 static double weibull_min_quantile(const struct heights *of, double probability) {
-    return pow(-log1p(-probability), 1 / of->shape);
+    return weibull_power(-log1p(-probability), of->shape);
 }
 
 static double weibull_min_cdf(const struct heights *of, double raw) {
@@ -80,7 +85,7 @@ static void weibull_max_moments(const struct heights *of, struct height_moments 
 }
 
 static double weibull_max_quantile(const struct heights *of, double probability) {
-    return -pow(-log(probability), 1 / of->shape);
+    return -weibull_power(-log(probability), of->shape);
 }
 
 static double weibull_max_cdf(const struct heights *of, double raw) {

@@ -105,34 +105,35 @@ static void neighbours_of(const struct measured_map *map, uint32_t at, uint32_t 
     }
 }
 
-/* Of n points inside of a row, numbered from `first` on, fills how far the highest neighbour is, in
- * numbers; 0 of peaks. Of equal neighbours it is the first one. Plain loops, so that the compiler
- * makes vectors of them. */
+/* The highest point so far, and how far it is in numbers. */
+struct highest {
+    double z, step;
+};
+static inline void highest_take(struct highest *highest, double z, double step) {
+    highest->step = z > highest->z ? step : highest->step;
+    highest->z = z > highest->z ? z : highest->z;
+}
+
+/* Of n points inside of a row, fills how far the highest neighbour is, in numbers; 0 of peaks. Of
+ * equal points it is the first one. A plain loop, so that the compiler makes vectors of it. */
 WIDE_VECTORS static void steps_fill(const double *restrict row, size_t nx, size_t n,
                                     double *restrict step) {
     const double *up = row - nx, *down = row + nx;
     const double width = (double)nx;
     for (size_t i = 0; i < n; i++) {
-        double z = -INFINITY, to = 0;
-        to = (up - 1)[i] > z ? -width - 1 : to;
-        z = (up - 1)[i] > z ? (up - 1)[i] : z;
-        to = up[i] > z ? -width : to;
-        z = up[i] > z ? up[i] : z;
-        to = up[i + 1] > z ? 1 - width : to;
-        z = up[i + 1] > z ? up[i + 1] : z;
-        to = (row - 1)[i] > z ? -1 : to;
-        z = (row - 1)[i] > z ? (row - 1)[i] : z;
-        bool above = z >= row[i];
-        to = above ? to : 0;
-        z = above ? z : row[i];
-        to = row[i + 1] > z ? 1 : to;
-        z = row[i + 1] > z ? row[i + 1] : z;
-        to = (down - 1)[i] > z ? width - 1 : to;
-        z = (down - 1)[i] > z ? (down - 1)[i] : z;
-        to = down[i] > z ? width : to;
-        z = down[i] > z ? down[i] : z;
-        to = down[i + 1] > z ? width + 1 : to;
-        step[i] = to;
+        struct highest highest = {-INFINITY, 0};
+        highest_take(&highest, (up - 1)[i], -width - 1);
+        highest_take(&highest, up[i], -width);
+        highest_take(&highest, up[i + 1], 1 - width);
+        highest_take(&highest, (row - 1)[i], -1);
+        bool above = highest.z >= row[i];
+        highest.step = above ? highest.step : 0;
+        highest.z = above ? highest.z : row[i];
+        highest_take(&highest, row[i + 1], 1);
+        highest_take(&highest, (down - 1)[i], width - 1);
+        highest_take(&highest, down[i], width);
+        highest_take(&highest, down[i + 1], width + 1);
+        step[i] = highest.step;
     }
 }
 

@@ -28,9 +28,10 @@ struct powers {
     double mean, dx, dy;
 };
 
-/* Points with their neighbours. A profile has no up and down. */
+/* Points with their neighbours, and whether those below are there, and those above, too. */
 struct around {
     const double *z, *left, *right, *up, *down;
+    bool below, both;
 };
 
 WIDE_VECTORS static void points_add(size_t n, struct around at, struct powers *restrict powers) {
@@ -46,12 +47,19 @@ WIDE_VECTORS static void points_add(size_t n, struct around at, struct powers *r
     }
 }
 
-WIDE_VECTORS static void across_add(size_t n, struct around at, struct powers *restrict powers) {
-    double dy = powers->dy, square_x = powers->dx * powers->dx, square_y = dy * dy;
+WIDE_VECTORS static void slopes_add(size_t n, struct around at, struct powers *restrict powers) {
+    double dy = powers->dy;
+    for (size_t l = 0; l < n; l++) {
+        double slope = (at.down[l] - at.z[l]) / dy;
+        lane_add(&powers->lanes[SLOPE_Y], l, slope * slope);
+    }
+}
+
+WIDE_VECTORS static void bends_add(size_t n, struct around at, struct powers *restrict powers) {
+    double square_x = powers->dx * powers->dx, square_y = powers->dy * powers->dy;
     for (size_t l = 0; l < n; l++) {
         double z = at.z[l], bend_x = (at.left[l] - 2 * z + at.right[l]) / square_x;
-        double slope = (at.down[l] - z) / dy, bend = (at.up[l] - 2 * z + at.down[l]) / square_y;
-        lane_add(&powers->lanes[SLOPE_Y], l, slope * slope);
+        double bend = (at.up[l] - 2 * z + at.down[l]) / square_y;
         lane_add(&powers->lanes[BEND_Y], l, bend * bend);
         lane_add(&powers->lanes[EITHER], l, (bend_x + bend) * (bend_x + bend));
     }
@@ -59,33 +67,44 @@ WIDE_VECTORS static void across_add(size_t n, struct around at, struct powers *r
 
 static void part_add(size_t n, struct around at, struct powers *powers) {
     points_add(n, at, powers);
-    if (at.up != NULL)
-        across_add(n, at, powers);
+    if (at.below)
+        slopes_add(n, at, powers);
+    if (at.both)
+        bends_add(n, at, powers);
 }
 
-/* Adds row j. none: LANES heights that are not there. */
-static void open_row_add(const struct measured_map *map, size_t j, const double *none,
-                         struct powers *powers) {
+/* Returns row j from its second point on. */
+static struct around row_around(const struct measured_map *map, size_t j) {
     const size_t nx = map->grid->nx, ny = map->grid->ny;
     const bool open = map->boundary == BOUNDARY_OPEN, profile = grid_is_profile(map->grid);
-    const double *row = map->z + j * nx;
-    const double *up = open && j == 0 ? NULL : map->z + (j > 0 ? j - 1 : ny - 1) * nx;
-    const double *down = open && j + 1 == ny ? NULL : map->z + (j + 1 < ny ? j + 1 : 0) * nx;
-    for (size_t i = 0; i < nx;) {
-        bool first = i == 0, last = i + 1 == nx;
-        size_t n = first || last ? 1 : nx - 1 - i < LANES ? nx - 1 - i : LANES;
-        struct around at = {.z = row + i, .left = row + i - 1, .right = row + i + 1};
-        if (first)
-            at.left = open ? none : row + nx - 1;
-        if (last)
-            at.right = open ? none : row;
-        if (!profile) {
-            at.up = up != NULL ? up + i : none;
-            at.down = down != NULL ? down + i : none;
-        }
-        part_add(n, at, powers);
-        i += n;
+    const double *row = map->z + j * nx + 1;
+    const double *up = map->z + (j > 0 ? j - 1 : ny - 1) * nx + 1;
+    const double *down = map->z + (j + 1 < ny ? j + 1 : 0) * nx + 1;
+    bool above = !profile && (!open || j > 0), below = !profile && (!open || j + 1 < ny);
+    return (struct around){row, row - 1, row + 1, up, down, below, above && below};
+}
+
+/* Adds row j. Its first and its last point have one beside them that is at the other end, or none.
+ */
+static void open_row_add(const struct measured_map *map, size_t j, struct powers *powers) {
+    static const double NONE = (double)NAN;
+    const size_t nx = map->grid->nx, last = nx - 2;
+    const bool open = map->boundary == BOUNDARY_OPEN;
+    const struct around row = row_around(map, j);
+    struct around at = row;
+    for (size_t i = 0; i < last; i += LANES) {
+        at = (struct around){row.z + i,    row.left + i, row.right + i, row.up + i,
+                             row.down + i, row.below,    row.both};
+        part_add(last - i < LANES ? last - i : LANES, at, powers);
     }
+    at = (struct around){
+        row.z - 1, open ? &NONE : row.z + last, row.right - 1, row.up - 1, row.down - 1, row.below,
+        row.both};
+    part_add(1, at, powers);
+    at = (struct around){row.z + last,  row.left + last, open ? &NONE : row.z - 1,
+                         row.up + last, row.down + last, row.below,
+                         row.both};
+    part_add(1, at, powers);
     for (size_t p = 0; p < POWERS; p++)
         lane_mean_add(&powers->means[p], &powers->lanes[p]);
 }
@@ -93,13 +112,11 @@ static void open_row_add(const struct measured_map *map, size_t j, const double 
 void open_roughness_measure(const struct measured_map *map, struct roughness *out) {
     const struct grid *grid = map->grid;
     bool profile = grid_is_profile(grid);
-    double dx = grid_dx(grid), means[POWERS], none[LANES];
+    double dx = grid_dx(grid), means[POWERS];
     heights_measure(map, out);
     struct powers powers = {.mean = out->mean, .dx = dx, .dy = profile ? dx : grid_dy(grid)};
-    for (size_t l = 0; l < LANES; l++)
-        none[l] = (double)NAN;
     for (size_t j = 0; j < grid->ny; j++)
-        open_row_add(map, j, none, &powers);
+        open_row_add(map, j, &powers);
     for (size_t p = 0; p < POWERS; p++)
         means[p] = lane_mean_value(&powers.means[p]);
     double variance = means[SECOND];

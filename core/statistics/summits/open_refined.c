@@ -183,30 +183,39 @@ WIDE_VECTORS static int64_t above_mark(size_t n, struct beside at, bool profile,
     return any;
 }
 
-/* Appends the columns of the maxima among the fine points at one position in each cell. Those of
- * the next cell begin where those of the last one end; the row counts as periodic. */
+/* Appends the columns of the maxima among the fine points at one position in n cells, at most
+ * TOGETHER. left, right: the points beside the first one. */
+static size_t cells_search(const struct search *s, size_t phase, size_t cell, size_t n,
+                           const double *left, const double *right, size_t found) {
+    const bool profile = grid_is_profile(s->map->grid);
+    const size_t at = phase * s->cells_x + cell;
+    const struct beside beside = {s->rows[1] + at, left, right, s->rows[profile ? 1 : 0] + at,
+                                  s->rows[profile ? 1 : 2] + at};
+    int64_t hit[TOGETHER];
+    if (above_mark(n, beside, profile, hit) == 0)
+        return found;
+    for (size_t i = 0; i < n; i++)
+        if (hit[i] != 0)
+            s->columns[found++] = (cell + i) * s->fine + phase;
+    return found;
+}
+
+/* Likewise in all cells. The first position of a cell follows the last one of the cell before; the
+ * row counts as periodic. */
 static size_t phase_search(const struct search *s, size_t phase, size_t found) {
     const size_t cells = s->cells_x, last = s->fine - 1;
-    const bool profile = grid_is_profile(s->map->grid);
-    const double *row = s->rows[1] + phase * cells;
-    for (size_t cell = 0; cell < cells;) {
-        bool first = phase == 0 && cell == 0, end = phase == last && cell + 1 == cells;
-        size_t stop = phase == last && !end ? cells - 1 : cells;
-        size_t n = first || end ? 1 : stop - cell < TOGETHER ? stop - cell : TOGETHER;
-        const double *z = row + cell;
-        struct beside at = {
-            .z = z,
-            .left = phase > 0 ? z - cells : s->rows[1] + last * cells + (first ? cells : cell) - 1,
-            .right = phase < last ? z + cells : s->rows[1] + (end ? 0 : cell + 1),
-            .up = profile ? z : s->rows[0] + phase * cells + cell,
-            .down = profile ? z : s->rows[2] + phase * cells + cell};
-        int64_t hit[TOGETHER];
-        if (above_mark(n, at, profile, hit) != 0)
-            for (size_t i = 0; i < n; i++)
-                if (hit[i] != 0)
-                    s->columns[found++] = (cell + i) * s->fine + phase;
-        cell += n;
-    }
+    const double *row = s->rows[1] + phase * cells, *first_row = s->rows[1];
+    const double *last_row = s->rows[1] + last * cells;
+    const double *left = phase > 0 ? row - cells : last_row - 1;
+    const double *right = phase < last ? row + cells : first_row + 1;
+    const size_t begin = phase == 0 ? 1 : 0, end = phase == last ? cells - 1 : cells;
+    if (begin > 0)
+        found = cells_search(s, phase, 0, 1, last_row + cells - 1, right, found);
+    for (size_t cell = begin; cell < end; cell += TOGETHER)
+        found = cells_search(s, phase, cell, end - cell < TOGETHER ? end - cell : TOGETHER,
+                             left + cell, right + cell, found);
+    if (end < cells)
+        found = cells_search(s, phase, end, 1, left + end, first_row, found);
     return found;
 }
 

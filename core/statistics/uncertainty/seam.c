@@ -18,8 +18,8 @@ struct room {
     double *row;            /* nx + ORDER_MOST: a row, and its first points again */
 };
 
-/* Adds the squares of n differences of points at[k][i], k = 0 .. ORDER[d], and counts those that are
- * there. */
+/* Adds the squares of n differences of points at[k][i], k = 0 .. ORDER[d], and counts those that
+ * are there. */
 WIDE_VECTORS static void squares_add(size_t n, size_t d, const double *const *at,
                                      double *restrict square, double *restrict count) {
     double difference[LANES];
