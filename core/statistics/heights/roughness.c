@@ -91,7 +91,7 @@ static void open_row_add(const struct measured_map *map, size_t j, struct powers
     const size_t nx = map->grid->nx, last = nx - 2;
     const bool open = map->boundary == BOUNDARY_OPEN;
     const struct around row = row_around(map, j);
-    struct around at = row;
+    struct around at;
     for (size_t i = 0; i < last; i += LANES) {
         at = (struct around){row.z + i,    row.left + i, row.right + i, row.up + i,
                              row.down + i, row.below,    row.both};
