@@ -1,5 +1,4 @@
 #include "core/statistics/heights/roughness.h"
-#include "core/statistics/lanes.h"
 #include "core/sum.h"
 #include "core/surface/transform.h"
 #include "core/vectors.h"
@@ -19,14 +18,40 @@ static void heights_measure(const struct measured_map *map, struct roughness *ou
     out->mean = average_value(&mean);
 }
 
+enum { TOGETHER = 64 };
 enum { SECOND, THIRD, FOURTH, SLOPE_X, SLOPE_Y, BEND_X, BEND_Y, EITHER, POWERS };
 /* Powers of heights about the mean; squares of forward differences; squares of second ones, and of
  * their sum. */
 struct powers {
-    struct lanes lanes[POWERS];
-    struct lane_mean means[POWERS];
+    double terms[POWERS][TOGETHER]; /* of some points; NaN: not there */
+    double total[POWERS], rest[POWERS], count[POWERS];
     double mean, dx, dy;
 };
+
+/* Adds the terms of n points in their order, all powers at once, as sum_add does. */
+WIDE_VECTORS static void terms_add(size_t n, struct powers *powers) {
+    double sum[POWERS], rest[POWERS], count[POWERS];
+    for (size_t p = 0; p < POWERS; p++) {
+        sum[p] = powers->total[p];
+        rest[p] = powers->rest[p];
+        count[p] = powers->count[p];
+    }
+    for (size_t l = 0; l < n; l++)
+        for (size_t p = 0; p < POWERS; p++) {
+            double term = powers->terms[p][l];
+            bool there = term == term;
+            double x = there ? term : 0, total = sum[p] + x;
+            double larger = (sum[p] - total) + x, smaller = (x - total) + sum[p];
+            rest[p] += fabs(sum[p]) >= fabs(x) ? larger : smaller;
+            sum[p] = total;
+            count[p] += there ? 1 : 0;
+        }
+    for (size_t p = 0; p < POWERS; p++) {
+        powers->total[p] = sum[p];
+        powers->rest[p] = rest[p];
+        powers->count[p] = count[p];
+    }
+}
 
 /* Points with their neighbours, and whether those below are there, and those above, too. */
 struct around {
@@ -34,43 +59,48 @@ struct around {
     bool below, both;
 };
 
-WIDE_VECTORS static void points_add(size_t n, struct around at, struct powers *restrict powers) {
+WIDE_VECTORS static void points_fill(size_t n, struct around at, struct powers *restrict powers) {
     double mean = powers->mean, dx = powers->dx, square = powers->dx * powers->dx;
     for (size_t l = 0; l < n; l++) {
         double z = at.z[l], h = z - mean;
         double slope = (at.right[l] - z) / dx, bend = (at.left[l] - 2 * z + at.right[l]) / square;
-        lane_add(&powers->lanes[SECOND], l, h * h);
-        lane_add(&powers->lanes[THIRD], l, h * h * h);
-        lane_add(&powers->lanes[FOURTH], l, h * h * h * h);
-        lane_add(&powers->lanes[SLOPE_X], l, slope * slope);
-        lane_add(&powers->lanes[BEND_X], l, bend * bend);
+        powers->terms[SECOND][l] = h * h;
+        powers->terms[THIRD][l] = h * h * h;
+        powers->terms[FOURTH][l] = h * h * h * h;
+        powers->terms[SLOPE_X][l] = slope * slope;
+        powers->terms[BEND_X][l] = bend * bend;
     }
 }
 
-WIDE_VECTORS static void slopes_add(size_t n, struct around at, struct powers *restrict powers) {
+WIDE_VECTORS static void slopes_fill(size_t n, struct around at, struct powers *restrict powers) {
     double dy = powers->dy;
     for (size_t l = 0; l < n; l++) {
         double slope = (at.down[l] - at.z[l]) / dy;
-        lane_add(&powers->lanes[SLOPE_Y], l, slope * slope);
+        powers->terms[SLOPE_Y][l] = slope * slope;
     }
 }
 
-WIDE_VECTORS static void bends_add(size_t n, struct around at, struct powers *restrict powers) {
+WIDE_VECTORS static void bends_fill(size_t n, struct around at, struct powers *restrict powers) {
     double square_x = powers->dx * powers->dx, square_y = powers->dy * powers->dy;
     for (size_t l = 0; l < n; l++) {
         double z = at.z[l], bend_x = (at.left[l] - 2 * z + at.right[l]) / square_x;
         double bend = (at.up[l] - 2 * z + at.down[l]) / square_y;
-        lane_add(&powers->lanes[BEND_Y], l, bend * bend);
-        lane_add(&powers->lanes[EITHER], l, (bend_x + bend) * (bend_x + bend));
+        powers->terms[BEND_Y][l] = bend * bend;
+        powers->terms[EITHER][l] = (bend_x + bend) * (bend_x + bend);
     }
 }
 
 static void part_add(size_t n, struct around at, struct powers *powers) {
-    points_add(n, at, powers);
+    points_fill(n, at, powers);
     if (at.below)
-        slopes_add(n, at, powers);
+        slopes_fill(n, at, powers);
     if (at.both)
-        bends_add(n, at, powers);
+        bends_fill(n, at, powers);
+    for (size_t l = 0; l < n && !at.below; l++)
+        powers->terms[SLOPE_Y][l] = (double)NAN;
+    for (size_t l = 0; l < n && !at.both; l++)
+        powers->terms[BEND_Y][l] = powers->terms[EITHER][l] = (double)NAN;
+    terms_add(n, powers);
 }
 
 /* Returns row j from its second point on. */
@@ -92,21 +122,19 @@ static void open_row_add(const struct measured_map *map, size_t j, struct powers
     const bool open = map->boundary == BOUNDARY_OPEN;
     const struct around row = row_around(map, j);
     struct around at;
-    for (size_t i = 0; i < last; i += LANES) {
-        at = (struct around){row.z + i,    row.left + i, row.right + i, row.up + i,
-                             row.down + i, row.below,    row.both};
-        part_add(last - i < LANES ? last - i : LANES, at, powers);
-    }
     at = (struct around){
         row.z - 1, open ? &NONE : row.z + last, row.right - 1, row.up - 1, row.down - 1, row.below,
         row.both};
     part_add(1, at, powers);
+    for (size_t i = 0; i < last; i += TOGETHER) {
+        at = (struct around){row.z + i,    row.left + i, row.right + i, row.up + i,
+                             row.down + i, row.below,    row.both};
+        part_add(last - i < TOGETHER ? last - i : TOGETHER, at, powers);
+    }
     at = (struct around){row.z + last,  row.left + last, open ? &NONE : row.z - 1,
                          row.up + last, row.down + last, row.below,
                          row.both};
     part_add(1, at, powers);
-    for (size_t p = 0; p < POWERS; p++)
-        lane_mean_add(&powers->means[p], &powers->lanes[p]);
 }
 
 void open_roughness_measure(const struct measured_map *map, struct roughness *out) {
@@ -118,7 +146,8 @@ void open_roughness_measure(const struct measured_map *map, struct roughness *ou
     for (size_t j = 0; j < grid->ny; j++)
         open_row_add(map, j, &powers);
     for (size_t p = 0; p < POWERS; p++)
-        means[p] = lane_mean_value(&powers.means[p]);
+        means[p] = powers.count[p] > 0 ? (powers.total[p] + powers.rest[p]) / powers.count[p]
+                                       : (double)NAN;
     double variance = means[SECOND];
     out->rms_height = sqrt(variance);
     out->skewness = means[THIRD] / (variance * out->rms_height);
@@ -130,16 +159,16 @@ void open_roughness_measure(const struct measured_map *map, struct roughness *ou
     out->nayak_alpha = variance / out->m2 * (out->m4 / out->m2);
 }
 
-/* Sums over points in PARTS interleaved parts: short chains of rounding, and vectors for the
+/* Sums over points in LANES interleaved parts: short chains of rounding, and vectors for the
  * compiler. */
-enum { PARTS = 8 };
+enum { LANES = 8 };
 struct row_sums {
-    double second[PARTS], third[PARTS], fourth[PARTS]; /* powers of the height about the mean */
-    double slope_x[PARTS], slope_y[PARTS];             /* squares of forward differences */
-    double bend_x[PARTS], bend_y[PARTS], bend[PARTS];  /* squares of second ones, of their sum */
+    double second[LANES], third[LANES], fourth[LANES]; /* powers of the height about the mean */
+    double slope_x[LANES], slope_y[LANES];             /* squares of forward differences */
+    double bend_x[LANES], bend_y[LANES], bend[LANES];  /* squares of second ones, of their sum */
 };
 
-static double parts_total(const double *lanes) {
+static double lanes_total(const double *lanes) {
     return ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) +
            ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]));
 }
@@ -164,8 +193,8 @@ WIDE_VECTORS static void row_add(const double *up, const double *row, const doub
                                  double mean, struct row_sums *sums) {
     point_add(sums, 0, row[nx - 1], row[0], row[1], up[0], down[0], mean);
     size_t i = 1;
-    for (; i + PARTS < nx; i += PARTS)
-        for (size_t l = 0; l < PARTS; l++)
+    for (; i + LANES < nx; i += LANES)
+        for (size_t l = 0; l < LANES; l++)
             point_add(sums, l, row[i + l - 1], row[i + l], row[i + l + 1], up[i + l], down[i + l],
                       mean);
     for (; i < nx; i++)
@@ -188,7 +217,7 @@ static double map_mean(const struct grid *grid, const double *z, double *lowest,
     return sum_value(&total) / (double)grid_points(grid);
 }
 
-enum { SUMS = sizeof(struct row_sums) / sizeof(double[PARTS]) };
+enum { SUMS = sizeof(struct row_sums) / sizeof(double[LANES]) };
 
 /* Computes means over the map, in the order of struct row_sums. */
 static void map_means(const struct grid *grid, const double *z, double mean, double *means) {
@@ -199,11 +228,11 @@ static void map_means(const struct grid *grid, const double *z, double mean, dou
                      *down = z + (j + 1 < ny ? j + 1 : 0) * nx;
         union {
             struct row_sums named;
-            double lanes[SUMS][PARTS];
+            double lanes[SUMS][LANES];
         } sums = {.lanes = {{0}}};
         row_add(up, z + j * nx, down, nx, mean, &sums.named);
         for (size_t s = 0; s < SUMS; s++)
-            sum_add(&totals[s], parts_total(sums.lanes[s]));
+            sum_add(&totals[s], lanes_total(sums.lanes[s]));
     }
     for (size_t s = 0; s < SUMS; s++)
         means[s] = sum_value(&totals[s]) / (double)grid_points(grid);

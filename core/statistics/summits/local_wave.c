@@ -1,5 +1,4 @@
 #include "core/statistics/summits/local_wave.h"
-#include "core/statistics/lanes.h"
 #include "core/vectors.h"
 #include <stdlib.h>
 
@@ -41,7 +40,9 @@ struct derivatives {
     double *x, *y, *xx, *xy, *yy; /* nx each, one allocation, held by x */
 };
 
-/* Derives n points of a row, each with LOCAL_HALF others to both sides. */
+enum { TOGETHER = 64 };
+
+/* Derives n points of a row, at most TOGETHER, each with LOCAL_HALF others to both sides. */
 WIDE_VECTORS static void points_derive(const double *row, size_t n, const struct central *central,
                                        double dx, double *restrict slope, double *restrict bend) {
     for (size_t i = 0; i < n; i++)
@@ -64,8 +65,8 @@ static void derive_row(const double *row, size_t nx, const struct central *centr
                        double *slope, double *bend) {
     for (size_t i = 0; i < nx; i++)
         slope[i] = bend[i] = (double)NAN;
-    for (size_t i = LOCAL_HALF; i + LOCAL_HALF < nx; i += LANES) {
-        size_t n = nx - LOCAL_HALF - i < LANES ? nx - LOCAL_HALF - i : LANES;
+    for (size_t i = LOCAL_HALF; i + LOCAL_HALF < nx; i += TOGETHER) {
+        size_t n = nx - LOCAL_HALF - i < TOGETHER ? nx - LOCAL_HALF - i : TOGETHER;
         points_derive(row + i, n, central, dx, slope + i, bend + i);
     }
 }
@@ -85,62 +86,34 @@ WIDE_VECTORS static void derive_across(const double *row, size_t nx, const struc
     }
 }
 
-enum { M20, M02, M11, M22, M40, M04, M31, M13, CURVATURE, PRODUCTS };
-
 struct products {
-    struct lane_mean m00, means[PRODUCTS];
+    struct average m00, m20, m02, m11, m22, m40, m04, m31, m13, curvature;
 };
 
-/* Adds n points, at most LANES, from number i on: those that have all derivatives. */
-WIDE_VECTORS static void points_add(const struct derivatives *d, size_t i, size_t n,
-                                    struct lanes *restrict lanes) {
-    const double *dx = d->x + i, *dy = d->y + i, *dxx = d->xx + i, *dxy = d->xy + i;
-    const double *dyy = d->yy + i;
-    for (size_t l = 0; l < n; l++) {
-        double x = dx[l], y = dy[l], xx = dxx[l], xy = dxy[l], yy = dyy[l];
-        double none = 0 * (x + y + xx + xy + yy); /* NaN where one is missing */
-        lane_add(&lanes[M20], l, x * x + none);
-        lane_add(&lanes[M02], l, y * y + none);
-        lane_add(&lanes[M11], l, x * y + none);
-        lane_add(&lanes[M40], l, xx * xx + none);
-        lane_add(&lanes[M04], l, yy * yy + none);
-        lane_add(&lanes[M22], l, xy * xy + none);
-        lane_add(&lanes[M31], l, xx * xy + none);
-        lane_add(&lanes[M13], l, yy * xy + none);
-        lane_add(&lanes[CURVATURE], l, (xx + yy) * (xx + yy) + none);
-    }
-}
-
 static void row_add(const struct derivatives *d, size_t nx, struct products *sums) {
-    struct lanes lanes[PRODUCTS] = {0};
-    for (size_t i = 0; i < nx; i += LANES)
-        points_add(d, i, nx - i < LANES ? nx - i : LANES, lanes);
-    for (size_t p = 0; p < PRODUCTS; p++)
-        lane_mean_add(&sums->means[p], &lanes[p]);
-}
-
-WIDE_VECTORS static void powers_add(const double *z, size_t n, double mean, bool square,
-                                    struct lanes *restrict lanes) {
-    for (size_t l = 0; l < n; l++)
-        lane_add(lanes, l, square ? (z[l] - mean) * (z[l] - mean) : z[l] - mean);
-}
-
-/* Returns the mean of heights, or of their squares about `mean`. */
-static struct lane_mean heights_mean(const struct measured_map *map, double mean, bool square) {
-    const size_t nx = map->grid->nx;
-    struct lanes lanes = {0};
-    struct lane_mean out = {0};
-    for (size_t j = 0; j < map->grid->ny; j++) {
-        for (size_t i = 0; i < nx; i += LANES)
-            powers_add(map->z + j * nx + i, nx - i < LANES ? nx - i : LANES, mean, square, &lanes);
-        lane_mean_add(&out, &lanes);
+    for (size_t i = 0; i < nx; i++) {
+        double x = d->x[i], y = d->y[i], xx = d->xx[i], xy = d->xy[i], yy = d->yy[i];
+        if (isnan(x + y + xx + xy + yy))
+            continue;
+        average_add(&sums->m20, x * x);
+        average_add(&sums->m02, y * y);
+        average_add(&sums->m11, x * y);
+        average_add(&sums->m40, xx * xx);
+        average_add(&sums->m04, yy * yy);
+        average_add(&sums->m22, xy * xy);
+        average_add(&sums->m31, xx * xy);
+        average_add(&sums->m13, yy * xy);
+        average_add(&sums->curvature, (xx + yy) * (xx + yy));
     }
-    return out;
 }
 
 static void heights_add(const struct measured_map *map, struct products *sums) {
-    const struct lane_mean mean = heights_mean(map, 0, false);
-    sums->m00 = heights_mean(map, lane_mean_value(&mean), true);
+    struct average mean = {0};
+    for (size_t point = 0; point < grid_points(map->grid); point++)
+        average_add(&mean, map->z[point]);
+    double middle = average_value(&mean);
+    for (size_t point = 0; point < grid_points(map->grid); point++)
+        average_add(&sums->m00, (map->z[point] - middle) * (map->z[point] - middle));
 }
 
 static void rows_add(const struct measured_map *map, struct derivatives *d, struct products *sums) {
@@ -163,16 +136,16 @@ static void rows_add(const struct measured_map *map, struct derivatives *d, stru
 }
 
 static void moments_fill(const struct products *sums, bool profile, struct moments *out) {
-    *out = (struct moments){.m00 = lane_mean_value(&sums->m00),
-                            .m20 = lane_mean_value(&sums->means[M20]),
-                            .m40 = lane_mean_value(&sums->means[M40])};
+    *out = (struct moments){.m00 = average_value(&sums->m00),
+                            .m20 = average_value(&sums->m20),
+                            .m40 = average_value(&sums->m40)};
     if (!profile) {
-        out->m02 = lane_mean_value(&sums->means[M02]);
-        out->m11 = lane_mean_value(&sums->means[M11]);
-        out->m22 = lane_mean_value(&sums->means[M22]);
-        out->m04 = lane_mean_value(&sums->means[M04]);
-        out->m31 = lane_mean_value(&sums->means[M31]);
-        out->m13 = lane_mean_value(&sums->means[M13]);
+        out->m02 = average_value(&sums->m02);
+        out->m11 = average_value(&sums->m11);
+        out->m22 = average_value(&sums->m22);
+        out->m04 = average_value(&sums->m04);
+        out->m31 = average_value(&sums->m31);
+        out->m13 = average_value(&sums->m13);
     }
     out->m0 = out->m00;
     out->m2 = profile ? out->m20 : (out->m20 + out->m02) / 2;
@@ -180,7 +153,7 @@ static void moments_fill(const struct products *sums, bool profile, struct momen
     out->nayak_alpha = out->m0 / out->m2 * (out->m4 / out->m2);
     out->rms_height = sqrt(out->m00);
     out->rms_slope = profile ? sqrt(out->m20) : sqrt(2 * out->m2);
-    out->rms_curvature = sqrt(lane_mean_value(&sums->means[CURVATURE])) / (profile ? 1 : 2);
+    out->rms_curvature = sqrt(average_value(&sums->curvature)) / (profile ? 1 : 2);
 }
 
 int local_moments_measure(const struct measured_map *map, struct moments *out, struct error *err) {

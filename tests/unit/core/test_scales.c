@@ -15,7 +15,7 @@ static void means_leave_holes_out(void **state) {
             lane_add(&lanes, l, l == 5 ? (double)NAN : (double)l + 3);
         lane_mean_add(&mean, &lanes);
     }
-    double total = LANES * (LANES - 1) / 2 + 3 * LANES - 8;
+    double total = 0.5 * LANES * (LANES - 1) + 3 * LANES - 8;
     check_close(mean.count, 2 * (LANES - 1), 0);
     check_relative(lane_mean_value(&mean), total / (LANES - 1), 1e-15);
 }
