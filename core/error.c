@@ -56,11 +56,11 @@ int error_context(struct error *err, const char *format, ...) {
 
 /* Columns of a large spectrum are pages apart: huge pages keep their addresses at hand. */
 static void use_huge_pages(void *memory, size_t bytes) {
-    const uintptr_t HUGE_PAGE = (uintptr_t)1 << 21;
-    uintptr_t first = ((uintptr_t)memory + HUGE_PAGE - 1) & ~(HUGE_PAGE - 1);
-    uintptr_t end = ((uintptr_t)memory + bytes) & ~(HUGE_PAGE - 1);
-    if (first < end) /* where the system has none, nothing changes */
-        madvise((void *)first, end - first, MADV_HUGEPAGE);
+    const size_t HUGE_PAGE = (size_t)1 << 21;
+    size_t skip = (HUGE_PAGE - (uintptr_t)memory % HUGE_PAGE) % HUGE_PAGE;
+    size_t length = bytes > skip ? (bytes - skip) / HUGE_PAGE * HUGE_PAGE : 0;
+    if (length > 0) /* where the system has none, nothing changes */
+        madvise((char *)memory + skip, length, MADV_HUGEPAGE);
 }
 
 void *array_create(size_t count, size_t size) {

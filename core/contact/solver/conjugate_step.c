@@ -67,7 +67,7 @@ static int symbols_create(struct conjugate_gradient *solver, const struct compli
         solver->largest = fmax(solver->largest, fabs(compliance->length[k]));
     solver->factor = 1 / solver->largest;
     solver->compliance = compliance->length;
-    if (solver->product != NULL) {
+    if (compliance->weight != NULL) {
         for (size_t k = 0; k < waves; k++)
             solver->product[k] = compliance->length[k] * compliance->weight[k];
         solver->compliance = solver->product;
