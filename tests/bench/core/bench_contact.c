@@ -140,6 +140,7 @@ static int profiles(enum block_model model, struct error *err) {
 }
 
 static int surfaces(enum block_model model, bool open, struct error *err) {
+    const struct block block = {.model = model};
     printf("surfaces, %s%s, 8 loads 0.01 to 0.5: time a load and in all\n",
            model == MODEL_LAYERED ? "layered" : "halfspace", open ? " in free space" : "");
     for (size_t n = 256; n <= (open ? 1024 : 2048); n *= 2) {

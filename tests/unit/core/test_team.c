@@ -55,7 +55,8 @@ static double *copy(size_t n, const double *x) {
 }
 
 static double height(const struct grid *grid, size_t i) {
-    double x = (double)(i % grid->nx) / (double)grid->nx, y = (double)(i / grid->nx) * 0.0051;
+    size_t row = i / grid->nx;
+    double x = (double)(i % grid->nx) / (double)grid->nx, y = (double)row * 0.0051;
     double noise = sin(12.9898 * (double)(i + 1)) * 43758.5453;
     return 3 * cos(2 * M_PI * x) * cos(2 * M_PI * y) + noise - floor(noise);
 }
