@@ -5,23 +5,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { PART_ROWS = 16 }; /* of the grid, that a thread counts together */
-
-/* Numbers of nodes in contact, and of cells with all corners in contact and with any. */
-struct corners {
-    size_t nodes, all, any;
-};
-
 struct area_workspace {
     struct grid grid;
-    bool open; /* nothing is in contact beyond the sides */
     struct area_law law;
     struct mesh_error_workspace *mesh_error;
     struct edge_scan *scan;
-    size_t parts;
-    struct corners *corners; /* of each part of the rows */
-    const double *p;         /* pressures that are counted */
-    struct team *team;       /* borrowed; NULL: the caller alone */
 };
 
 int area_workspace_create(struct area_workspace **out, const struct compliance *compliance,
@@ -31,12 +19,7 @@ int area_workspace_create(struct area_workspace **out, const struct compliance *
     if (workspace == NULL)
         return error_memory(err, sizeof *workspace, "contact areas");
     workspace->grid = *grid;
-    workspace->open = compliance->open;
-    workspace->parts = grid->ny / PART_ROWS + 1;
-    workspace->corners = array_create(workspace->parts, sizeof *workspace->corners);
-    int status = workspace->corners == NULL
-                     ? error_memory(err, workspace->parts * sizeof(struct corners), "contact areas")
-                     : area_law_make(grid, &compliance->block, &workspace->law, err);
+    int status = area_law_make(grid, &compliance->block, &workspace->law, err);
     if (status == 0)
         status =
             edge_scan_create(&workspace->scan, &workspace->law.edge, grid, compliance->open, err);
@@ -53,14 +36,12 @@ void area_workspace_destroy(struct area_workspace **workspace) {
         return;
     mesh_error_destroy(&(*workspace)->mesh_error);
     edge_scan_destroy(&(*workspace)->scan);
-    free((*workspace)->corners);
     free(*workspace);
     *workspace = NULL;
 }
 
 int area_workspace_set_team(struct area_workspace *workspace, struct team *team,
                             struct error *err) {
-    workspace->team = team;
     edge_scan_set_team(workspace->scan, team);
     return mesh_error_set_team(workspace->mesh_error, team, err);
 }
@@ -77,41 +58,6 @@ const struct area_law *area_workspace_law(const struct area_workspace *workspace
     return &workspace->law;
 }
 
-static void count_part(void *context, size_t part, size_t thread) {
-    (void)thread;
-    const struct area_workspace *w = context;
-    const size_t nx = w->grid.nx, ny = w->grid.ny;
-    struct corners sums = {0};
-    for (size_t j = part * PART_ROWS; j < (part + 1) * PART_ROWS && j < ny; j++) {
-        const double *row = w->p + j * nx;
-        const double *next = w->p + (w->open && j + 1 == ny ? j : (j + 1) % ny) * nx;
-        for (size_t i = 0; i < nx; i++) {
-            size_t i2 = i + 1 < nx ? i + 1 : w->open ? i : 0;
-            bool a = row[i] > 0, b = row[i2] > 0, c = next[i] > 0, d = next[i2] > 0;
-            sums.nodes += a;
-            sums.all += a & b & c & d;
-            sums.any += a | b | c | d;
-        }
-    }
-    w->corners[part] = sums;
-}
-
-static void count_nodes(struct area_workspace *workspace, const double *p,
-                        struct contact_area *out) {
-    struct corners total = {0};
-    workspace->p = p;
-    team_share(workspace->team, workspace->parts, count_part, workspace);
-    for (size_t part = 0; part < workspace->parts; part++) {
-        total.nodes += workspace->corners[part].nodes;
-        total.all += workspace->corners[part].all;
-        total.any += workspace->corners[part].any;
-    }
-    double n = (double)grid_points(&workspace->grid);
-    out->nodes = (double)total.nodes / n;
-    out->lower = (double)total.all / n;
-    out->upper = (double)total.any / n;
-}
-
 /* Limits an estimate to what an area can be; only states that are no solutions exceed it. */
 static double within(const struct contact_area *area, double estimate) {
     return fmin(area->upper, fmax(estimate, area->nodes / 100));
@@ -123,8 +69,10 @@ void contact_area(struct area_workspace *workspace, const struct contact_state *
     const struct area_law *law = &workspace->law;
     struct edge_area edges;
     struct mesh_error error;
-    count_nodes(workspace, state->p, out);
     edge_area_measure(workspace->scan, state, &edges);
+    out->nodes = edges.nodes;
+    out->lower = edges.lower;
+    out->upper = edges.upper;
     mesh_error_measure(workspace->mesh_error, state, &error);
     out->mean_gap = state->mean_gap - error.weighting - error.compliance;
     /* The pressure that the exact block would have at this mean gap, less the mesh's. */

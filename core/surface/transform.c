@@ -328,13 +328,7 @@ static void inverse_columns_part(void *context, size_t part, size_t thread) {
 
 static void forward_columns_part(void *context, size_t part, size_t thread) {
     struct transform *t = context;
-    double complex *line = t->desks[thread].line;
-    size_t end = least((part + 1) * SHARE, t->columns);
-    for (size_t i = part * SHARE; i < end; i++) {
-        double complex *column = t->spectrum + i * t->ny;
-        fftw_execute_dft(t->one_forward, column, line);
-        memcpy(column, line, t->ny * sizeof *line);
-    }
+    columns_part(t, part, thread, t->one_forward);
 }
 
 void transform_inverse_columns(struct transform *t) {

@@ -19,6 +19,12 @@ static void add_crossing(const struct edge_crossing *x, const struct edge_law *l
         sums->rate += f.part * (f.rate * state->tangent[x->inside] / state->p[x->inside]) / f.apart;
 }
 
+/* Sums over some rows. */
+struct part_sums {
+    struct edge_area area;
+    double inside; /* nodes from whose side crossings are measured */
+};
+
 struct edge_scan {
     const struct edge_law *law; /* borrowed */
     struct grid grid;
@@ -26,7 +32,7 @@ struct edge_scan {
     size_t parts;
     double *own;            /* grid_points: takes memory where states have no scratch */
     double *rise;           /* that of the last state, or own */
-    struct edge_area *sums; /* of each part */
+    struct part_sums *sums; /* of each part */
     struct team *team;      /* borrowed; NULL: the caller alone */
     const struct contact_state *state;
     double highest; /* pressure */
@@ -68,7 +74,7 @@ void edge_scan_destroy(struct edge_scan **scan) {
 }
 
 double edge_scan_bytes(const struct grid *grid) {
-    return sizeof(struct edge_area) * (double)part_count(grid);
+    return sizeof(struct part_sums) * (double)part_count(grid);
 }
 
 void edge_scan_set_team(struct edge_scan *scan, struct team *team) {
@@ -85,41 +91,44 @@ static void add_between(const struct edge_scan *scan, const struct edge_family *
     add_crossing(&crossing, scan->law, scan->state, scan->rise, sums);
 }
 
-/* Counts patches less holes by the turns of their boundary: a cell with one corner in contact turns
- * it by a quarter, a cell with three turns it back by one. Counts the sides of the boundary, too.
- * It ends at the sides of an open grid. */
+/* Counts nodes and corners of a cell. Patches less holes are counted by the turns of their
+ * boundary: a cell with one corner in contact turns it by a quarter, a cell with three turns it
+ * back by one. The boundary ends at the sides of an open grid. */
 static void count_corners(bool in, bool right, bool back, bool across, struct edge_area *sums) {
     int corners = in + right + back + across;
+    sums->nodes += in;
+    sums->lower += corners == 4;
+    sums->upper += corners > 0;
     sums->patches += corners == 1 ? 0.25 : corners == 3 ? -0.25 : 0;
     sums->sides += (in != right) + (in != back);
 }
 
-static void scan_row(const struct edge_scan *scan, size_t j, struct edge_area *sums) {
+/* Adds a row of crossings and of cells with their corners. The square of a tiny pressure may be 0,
+ * so that crossings are found by rises and nodes counted by pressures. */
+static void scan_row(const struct edge_scan *scan, size_t j, struct part_sums *part) {
     const size_t nx = scan->grid.nx, ny = scan->grid.ny;
     const bool profile = ny == 1, last = scan->open && j + 1 == ny;
+    const size_t row = j * nx, next = (last ? j : (j + 1) % ny) * nx;
+    const double *rise = scan->rise, *p = scan->state->p;
     struct edge_family rows = edge_rows(&scan->grid), columns = edge_columns(&scan->grid);
     rows.open = columns.open = scan->open;
-    const double *row = scan->rise + j * nx, *next = scan->rise + (last ? j : (j + 1) % ny) * nx;
     for (size_t i = 0; i < nx; i++) {
-        bool end = i + 1 == nx;
+        bool end = i + 1 == nx, in = rise[row + i] > 0;
         size_t i2 = !end ? i + 1 : scan->open ? i : 0;
-        bool in = row[i] > 0, right = row[i2] > 0, back = next[i] > 0, across = next[i2] > 0;
-        sums->nodes += in;
-        if (in == right && in == back && in == across)
-            continue;
+        count_corners(p[row + i] > 0, p[row + i2] > 0, p[next + i] > 0, p[next + i2] > 0,
+                      &part->area);
+        part->inside += in;
         if (!(end && scan->open))
-            add_between(scan, &rows, j, i, in, right, sums);
+            add_between(scan, &rows, j, i, in, rise[row + i2] > 0, &part->area);
         if (!profile && !last)
-            add_between(scan, &columns, i, j, in, back, sums);
-        if (!profile)
-            count_corners(in, right, back, across, sums);
+            add_between(scan, &columns, i, j, in, rise[next + i] > 0, &part->area);
     }
 }
 
 static void scan_part(void *context, size_t part, size_t thread) {
     (void)thread;
     const struct edge_scan *scan = context;
-    struct edge_area sums = {0};
+    struct part_sums sums = {0};
     size_t rows = part_rows(&scan->grid);
     for (size_t j = part * rows; j < (part + 1) * rows && j < scan->grid.ny; j++)
         scan_row(scan, j, &sums);
@@ -138,23 +147,31 @@ void edge_area_measure(struct edge_scan *scan, const struct contact_state *state
                        struct edge_area *out) {
     const size_t points = grid_points(&scan->grid);
     const double n = (double)points;
-    struct edge_area total = {0};
+    struct part_sums total = {0};
+    struct edge_area *area = &total.area;
     scan->state = state;
     scan->rise = state->scratch != NULL ? state->scratch : scan->own;
     scan->highest = edge_highest_pressure(points, state->p);
     team_share(scan->team, scan->parts, fill_part, scan);
     team_share(scan->team, scan->parts, scan_part, scan);
     for (size_t part = 0; part < scan->parts; part++) {
-        const struct edge_area *sums = &scan->sums[part];
-        total.straight += sums->straight;
-        total.rate += sums->rate;
-        total.patches += sums->patches;
-        total.nodes += sums->nodes;
-        total.sides += sums->sides;
+        const struct edge_area *sums = &scan->sums[part].area;
+        total.inside += scan->sums[part].inside;
+        area->straight += sums->straight;
+        area->rate += sums->rate;
+        area->patches += sums->patches;
+        area->nodes += sums->nodes;
+        area->lower += sums->lower;
+        area->upper += sums->upper;
+        area->sides += sums->sides;
     }
-    *out = (struct edge_area){.straight = (total.nodes + total.straight) / n,
-                              .rate = total.rate / n,
-                              .patches = total.patches / n,
-                              .nodes = total.nodes / n,
-                              .sides = total.sides / n};
+    /* A profile has neither cells nor sides of them. */
+    const bool profile = grid_is_profile(&scan->grid);
+    *out = (struct edge_area){.straight = (total.inside + area->straight) / n,
+                              .rate = area->rate / n,
+                              .patches = profile ? 0 : area->patches / n,
+                              .nodes = area->nodes / n,
+                              .lower = area->lower / n,
+                              .upper = area->upper / n,
+                              .sides = profile ? 0 : area->sides / n};
 }

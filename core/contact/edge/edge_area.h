@@ -17,6 +17,8 @@ struct edge_area {
     double rate;     /* its derivative by the mean pressure; 0 without a tangent */
     double patches; /* patches less holes, over the number of nodes; diagonal contact counts half */
     double nodes;   /* in contact */
+    double lower;   /* segments (profiles) or cells with all corners in contact ... */
+    double upper;   /* ... and with any */
     double sides;   /* of nodes in contact that face open ones, over the number of nodes */
 };
 
