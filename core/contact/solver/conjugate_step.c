@@ -410,23 +410,16 @@ double conjugate_step_length(struct conjugate_gradient *solver) {
 
 /* --- scales --- */
 
-struct scaling {
-    double factor, *x;
-    size_t n;
-};
-enum { SCALED = 1 << 15 }; /* values of a part */
-
-static void scale_part(void *context, size_t part, size_t thread) {
-    (void)thread;
-    const struct scaling *scaling = context;
-    size_t end = (part + 1) * SCALED < scaling->n ? (part + 1) * SCALED : scaling->n;
-    for (size_t i = part * SCALED; i < end; i++)
-        scaling->x[i] *= scaling->factor;
+static void scale_block(const struct pass *pass, size_t first, size_t n, struct pass_result *out) {
+    (void)out;
+    for (size_t i = first; i < first + n; i++)
+        pass->scaled[i] *= pass->step;
 }
 
 void conjugate_step_scale(struct conjugate_gradient *solver, double mean, double sum, double *x) {
-    struct scaling scaling = {mean * (double)solver->n / sum, x, solver->n};
-    team_share(solver->board.team, solver->n / SCALED + 1, scale_part, &scaling);
+    const struct pass pass = {
+        .solver = solver, .step = mean * (double)solver->n / sum, .scaled = x};
+    pass_run(&solver->board, &pass, scale_block);
 }
 
 double conjugate_step_highest(const struct conjugate_gradient *solver) {

@@ -21,8 +21,9 @@ struct conjugate_gradient;
 /* What a pass works with; each takes what it names. */
 struct pass {
     struct conjugate_gradient *solver;
-    double step, mean, approach, released;
+    double step, mean, approach;
     double w_mean, t_mean, beta;
+    double *scaled; /* of all nodes */
 };
 enum { PASS_SUMS = 7, PASS_MOSTS = 3 };
 struct pass_result {

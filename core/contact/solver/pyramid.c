@@ -103,11 +103,14 @@ static void stage_part(void *context, size_t part, size_t thread) {
         stage->row(stage, j, line);
 }
 
-/* Computes rows of nx cells by the stage's function. */
-static void share_rows(struct stage stage, size_t rows, size_t nx) {
+/* Works on so many rows of one of the levels l - 1 and l. The stage has r, from, to and row. */
+static void share_rows(const struct pyramid *pyramid, size_t l, size_t rows, struct stage stage) {
+    stage.pyramid = pyramid;
+    stage.fine = &pyramid->levels[l - 1];
+    stage.coarse = &pyramid->levels[l];
     stage.rows = rows;
-    stage.of_part = PART / nx + 1;
-    team_share(stage.pyramid->team, rows / stage.of_part + 1, stage_part, &stage);
+    stage.of_part = PART / stage.fine->nx + 1;
+    team_share(pyramid->team, rows / stage.of_part + 1, stage_part, &stage);
 }
 
 /* --- upwards --- */
@@ -168,14 +171,11 @@ static void weigh_row(const struct stage *s, size_t j, double *line) {
 void pyramid_set(struct pyramid *pyramid, const double *r) {
     const struct pyramid_level *levels = pyramid->levels;
     for (size_t l = 1; l < pyramid->count; l++)
-        share_rows((struct stage){.pyramid = pyramid,
-                                  .fine = &levels[l - 1],
-                                  .coarse = &levels[l],
-                                  .r = l == 1 ? r : NULL,
+        share_rows(pyramid, l, levels[l].ny,
+                   (struct stage){.r = l == 1 ? r : NULL,
                                   .from = l == 1 ? r : levels[l - 1].sum,
                                   .to = levels[l].sum,
-                                  .row = weigh_row},
-                   levels[l].ny, levels[l - 1].nx);
+                                  .row = weigh_row});
 }
 
 static void push_row(const struct stage *s, size_t j, double *line) {
@@ -239,22 +239,16 @@ void pyramid_continue(struct pyramid *pyramid, const double *r, double *out) {
     const struct pyramid_level *levels = pyramid->levels;
     out[0] = r[0]; /* all of a grid of one node, which has no level above */
     for (size_t l = 1; l < pyramid->count; l++)
-        share_rows((struct stage){.pyramid = pyramid,
-                                  .fine = &levels[l - 1],
-                                  .coarse = &levels[l],
-                                  .from = l == 1 ? r : levels[l - 1].value,
+        share_rows(pyramid, l, levels[l].ny,
+                   (struct stage){.from = l == 1 ? r : levels[l - 1].value,
                                   .to = levels[l].value,
-                                  .row = push_row},
-                   levels[l].ny, levels[l - 1].nx);
+                                  .row = push_row});
     for (size_t l = pyramid->count - 1; l > 0; l--)
-        share_rows((struct stage){.pyramid = pyramid,
-                                  .fine = &levels[l - 1],
-                                  .coarse = &levels[l],
-                                  .r = l == 1 ? r : NULL,
+        share_rows(pyramid, l, levels[l - 1].ny,
+                   (struct stage){.r = l == 1 ? r : NULL,
                                   .from = levels[l].value,
                                   .to = l == 1 ? out : levels[l - 1].value,
-                                  .row = pull_row},
-                   levels[l - 1].ny, levels[l - 1].nx);
+                                  .row = pull_row});
 }
 
 /* --- the transpose --- */
@@ -331,20 +325,14 @@ static void spread_row(const struct stage *s, size_t j, double *line) {
 void pyramid_transpose(struct pyramid *pyramid, const double *r, double *x) {
     const struct pyramid_level *levels = pyramid->levels;
     for (size_t l = 1; l < pyramid->count; l++)
-        share_rows((struct stage){.pyramid = pyramid,
-                                  .fine = &levels[l - 1],
-                                  .coarse = &levels[l],
-                                  .r = l == 1 ? r : NULL,
+        share_rows(pyramid, l, levels[l].ny,
+                   (struct stage){.r = l == 1 ? r : NULL,
                                   .from = l == 1 ? x : levels[l - 1].value,
                                   .to = levels[l].value,
-                                  .row = return_row},
-                   levels[l].ny, levels[l - 1].nx);
+                                  .row = return_row});
     for (size_t l = pyramid->count - 1; l > 0; l--)
-        share_rows((struct stage){.pyramid = pyramid,
-                                  .fine = &levels[l - 1],
-                                  .coarse = &levels[l],
-                                  .from = levels[l].value,
+        share_rows(pyramid, l, levels[l].ny,
+                   (struct stage){.from = levels[l].value,
                                   .to = l == 1 ? x : levels[l - 1].value,
-                                  .row = spread_row},
-                   levels[l].ny, levels[l - 1].nx);
+                                  .row = spread_row});
 }

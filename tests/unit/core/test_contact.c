@@ -626,6 +626,9 @@ static void areas_of_patterns(void **state) {
     area = area_of(grid, p, opening);
     assert_true(area.nodes == 1 && area.lower == 1 && area.upper == 1 && area.edges == 1 &&
                 area.perimeter == 1);
+    p[7] = DBL_MIN; /* whose square is 0 */
+    area = area_of(grid, p, opening);
+    assert_true(area.nodes == 1 && area.lower == 1 && area.perimeter == 1);
     draw(".......#............", 20, p); /* one node: 4 cells round it, 4 sides */
     area = area_of(grid, p, opening);
     check_close(area.nodes, 1.0 / 20, 1e-15);
