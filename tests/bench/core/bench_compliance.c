@@ -3,23 +3,13 @@
  * longest wave (with the effect of the block's depth) and at 32, 16 and 8 points a wave (with that
  * of the mesh). */
 #include "core/contact/compliance.h"
+#include "tests/support/timing.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
 
 enum { REPEATS = 3 };
-
-static double cpu_ms(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
-}
-
-static int by_value(const void *a, const void *b) {
-    const double *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
 
 /* Over 2/|k| for k along x. */
 static double over_halfspace(const struct compliance *compliance, size_t mx) {

@@ -11,6 +11,7 @@
 #include "core/statistics/surface_pass.h"
 #include "core/surface/surface.h"
 #include "tests/support/growth.h"
+#include "tests/support/timing.h"
 #include <fftw3.h>
 #include <stdlib.h>
 #include <string.h>
@@ -62,22 +63,6 @@ struct task {
     size_t warm;          /* side of what runs before */
     size_t side_most;     /* larger ones take too long; 0: none does */
 };
-
-static double cpu_ms(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
-}
-
-static int by_value(const void *a, const void *b) {
-    const double *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
-
-static double median(double *values, size_t count) {
-    qsort(values, count, sizeof *values, by_value);
-    return values[count / 2];
-}
 
 /* --- tasks --- */
 

@@ -6,16 +6,11 @@
 #include "core/contact/contact.h"
 #include "core/contact/free_space.h"
 #include "core/surface/surface.h"
+#include "tests/support/timing.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
-
-static double cpu_ms(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
-}
 
 /* 10 evenly spaced loads to 0.3, and the 8 of the textbook comparison. */
 static const double EVEN[] = {.03, .06, .09, .12, .15, .18, .21, .24, .27, .3};

@@ -10,27 +10,12 @@
 #include "core/statistics/summits/summits.h"
 #include "core/surface/rank.h"
 #include "core/surface/surface.h"
+#include "tests/support/timing.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-
-static double cpu_ms(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
-}
-
-static int by_value(const void *a, const void *b) {
-    const double *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
-
-static double median(double *values, size_t n) {
-    qsort(values, n, sizeof *values, by_value);
-    return values[n / 2];
-}
 
 static struct spectrum self_affine(double hurst, double ratio) {
     return (struct spectrum){.type = SPECTRUM_SELF_AFFINE,

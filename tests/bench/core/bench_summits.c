@@ -3,16 +3,11 @@
 #include "core/statistics/summits/summits.h"
 #include "core/surface/surface.h"
 #include "core/theory/nayak.h"
+#include "tests/support/timing.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
-
-static double cpu_ms(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
-}
 
 static int bench(size_t points, enum summit_stencil stencil, const char *name, struct error *err) {
     size_t n = 64 * points, surfaces = points > 16 ? 50 : 200;

@@ -5,23 +5,13 @@
 #include "core/statistics/heights/roughness.h"
 #include "core/statistics/surface_pass.h"
 #include "core/surface/surface.h"
+#include "tests/support/timing.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
 
 enum { REPEATS = 9, STEPS = 4, BINS = 240 };
-
-static double cpu_ms(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
-}
-
-static int by_value(const void *a, const void *b) {
-    const double *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
 
 static int bench(size_t n, struct error *err) {
     double ratio = (double)n / 64;

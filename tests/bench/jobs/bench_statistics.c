@@ -8,6 +8,7 @@
  * is estimated before they run. Ratios are to the column before, and medians of ratios. */
 #include "core/statistics/summits/summits.h"
 #include "jobs/runner.h"
+#include "tests/support/timing.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,17 +25,6 @@ struct statistics_bench {
     size_t repeats;
     uint64_t block; /* realisations, 7 at most: pairs are those of number 0 and 8 */
 };
-
-static double cpu_ms(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
-}
-
-static int by_value(const void *a, const void *b) {
-    const double *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
 
 /* What is measured. */
 struct work {

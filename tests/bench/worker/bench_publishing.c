@@ -2,6 +2,7 @@
  * costs (study_cost.case_seconds), by bins, loads, models and levels. Medians of 9 cases. */
 #include "jobs/kind.h"
 #include "jobs/runner.h"
+#include "tests/support/timing.h"
 #include "worker/link/source.h"
 #include "worker/publish/aggregate.h"
 #include "worker/publish/publish.h"
@@ -20,12 +21,6 @@ static const char CONTACT[] =
     "{\"name\":\"c\",\"kind\":\"contact\",\"realisations\":1,\"surface\":{\"dimension\":1,"
     "\"hurst\":[0.1,0.2,0.3,0.4,0.5,0.6,0.7,0.8,0.9],\"wavelength_ratio\":4,\"length_ratio\":2},"
     "\"contact\":{\"model\":%s,\"levels\":%s,\"pressures\":{\"to\":0.1,\"steps\":%d}}}";
-
-static double cpu_ms(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
-}
 
 static int by_size(const void *a, const void *b) {
     double x = *(const double *)a, y = *(const double *)b;
