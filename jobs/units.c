@@ -1,4 +1,5 @@
 #include "jobs/units.h"
+#include <cjson/cJSON.h>
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
@@ -6,13 +7,14 @@
 enum { POWERS_MOST = 2 };
 
 /* An axis or a scalar in a physical unit: `factor` times powers of E* in Pa, of lambda_s in metres
- * and of scalars of the result. */
+ * and of scalars of the result, over the sum of the resistivities of both bodies. */
 struct unit_row {
     const char *of;     /* the label of the axis, or the name of the scalar */
     int dimension;      /* of surfaces of this dimension alone; 0: of all */
     const char *symbol; /* NULL: the name */
     const char *unit;
     int modulus, length;
+    enum conduction { NOTHING, CURRENT, HEAT } conducts; /* over the resistivities to it */
     struct scalar_power {
         const char *scalar;
         double power;
@@ -24,52 +26,56 @@ struct unit_row {
 #define SQUARE_ROOT_OF_A_THIRD 0.57735026918962576
 #define HEIGHT {{"rms_height", 1}}
 #define HEIGHT_SQUARED {{"rms_height", 2}}
+#define SLOPE_OVER_HEIGHT {{"rms_slope", 1}, {"rms_height", -1}}
+#define CONDUCTANCE "G (rho1 + rho2) sqrt(m0)/(2 h'_rms)"
 #define CURVATURE {{"m4", 0.5}}
 static const struct unit_row AXES[] = {
-    {"p/(E* h'_rms)", 0, "p", "Pa", 1, 0, {{"rms_slope", 1}}, 0},
-    {"peak p/(E* h'_rms)", 0, "peak p", "Pa", 1, 0, {{"rms_slope", 1}}, 0},
-    {"mean gap/sqrt(m0)", 0, "mean gap", "m", 0, 1, HEIGHT, 0},
-    {"K sqrt(m0)/(E* h'_rms)", 0, "K", "Pa/m", 1, -1, {{"rms_slope", 1}, {"rms_height", -1}}, 0},
-    {"patches per lambda_l^2", 0, "patches", "1/m^2", 0, -2, {{"wavelength_ratio", -2}}, 0},
-    {"patches per lambda_l", 0, "patches", "1/m", 0, -1, {{"wavelength_ratio", -1}}, 0},
-    {"mean patch/lambda_l^2", 0, "mean patch", "m^2", 0, 2, {{"wavelength_ratio", 2}}, 0},
-    {"mean patch/lambda_l", 0, "mean patch", "m", 0, 1, {{"wavelength_ratio", 1}}, 0},
-    {"z/sqrt(m0)", 0, "z", "m", 0, 1, HEIGHT, 0},
-    {"-sqrt(3/m4) kappa_m", 2, "-kappa_m", "1/m", 0, -1, CURVATURE, SQUARE_ROOT_OF_A_THIRD},
-    {"kappa_m/sqrt(m4)", 2, "kappa_m", "1/m", 0, -1, CURVATURE, 0},
-    {"z''/sqrt(m4)", 1, "z''", "1/m", 0, -1, CURVATURE, 0},
-    {"-z''/sqrt(m4)", 1, "-z''", "1/m", 0, -1, CURVATURE, 0},
-    {"k lambda_s", 0, "k", "1/m", 0, -1, {{0}}, 0},
-    {"power spectral density", 1, "C", "m^3", 0, 3, {{0}}, 0},
-    {"power spectral density", 2, "C", "m^4", 0, 4, {{0}}, 0},
-    {"lag/lambda_s", 0, "lag", "m", 0, 1, {{0}}, 0},
+    {"p/(E* h'_rms)", 0, "p", "Pa", 1, 0, NOTHING, {{"rms_slope", 1}}, 0},
+    {"peak p/(E* h'_rms)", 0, "peak p", "Pa", 1, 0, NOTHING, {{"rms_slope", 1}}, 0},
+    {"mean gap/sqrt(m0)", 0, "mean gap", "m", 0, 1, NOTHING, HEIGHT, 0},
+    {"K sqrt(m0)/(E* h'_rms)", 0, "K", "Pa/m", 1, -1, NOTHING, SLOPE_OVER_HEIGHT, 0},
+    {CONDUCTANCE, 0, "G", "S/m^2", 0, -1, CURRENT, SLOPE_OVER_HEIGHT, 2},
+    {CONDUCTANCE, 0, "G", "W/(m^2 K)", 0, -1, HEAT, SLOPE_OVER_HEIGHT, 2},
+    {"patches per lambda_l^2", 0, "patches", "1/m^2", 0, -2, NOTHING, {{"wavelength_ratio", -2}}, 0},
+    {"patches per lambda_l", 0, "patches", "1/m", 0, -1, NOTHING, {{"wavelength_ratio", -1}}, 0},
+    {"mean patch/lambda_l^2", 0, "mean patch", "m^2", 0, 2, NOTHING, {{"wavelength_ratio", 2}}, 0},
+    {"mean patch/lambda_l", 0, "mean patch", "m", 0, 1, NOTHING, {{"wavelength_ratio", 1}}, 0},
+    {"z/sqrt(m0)", 0, "z", "m", 0, 1, NOTHING, HEIGHT, 0},
+    {"-sqrt(3/m4) kappa_m", 2, "-kappa_m", "1/m", 0, -1, NOTHING, CURVATURE, SQUARE_ROOT_OF_A_THIRD},
+    {"kappa_m/sqrt(m4)", 2, "kappa_m", "1/m", 0, -1, NOTHING, CURVATURE, 0},
+    {"z''/sqrt(m4)", 1, "z''", "1/m", 0, -1, NOTHING, CURVATURE, 0},
+    {"-z''/sqrt(m4)", 1, "-z''", "1/m", 0, -1, NOTHING, CURVATURE, 0},
+    {"k lambda_s", 0, "k", "1/m", 0, -1, NOTHING, {{0}}, 0},
+    {"power spectral density", 1, "C", "m^3", 0, 3, NOTHING, {{0}}, 0},
+    {"power spectral density", 2, "C", "m^4", 0, 4, NOTHING, {{0}}, 0},
+    {"lag/lambda_s", 0, "lag", "m", 0, 1, NOTHING, {{0}}, 0},
 };
 static const struct unit_row SCALARS[] = {
-    {"rms_height", 0, NULL, "m", 0, 1, {{0}}, 0},
-    {"correlation_length", 0, NULL, "m", 0, 1, {{0}}, 0},
-    {"correlation_length_e", 0, NULL, "m", 0, 1, {{0}}, 0},
-    {"psd_plateau", 1, NULL, "m^3", 0, 3, {{0}}, 0},
-    {"psd_plateau", 2, NULL, "m^4", 0, 4, {{0}}, 0},
-    {"rms_curvature", 0, NULL, "1/m", 0, -1, {{0}}, 0},
-    {"lowest", 0, NULL, "m", 0, 1, HEIGHT, 0},
-    {"highest", 0, NULL, "m", 0, 1, HEIGHT, 0},
-    {"m0", 0, NULL, "m^2", 0, 2, {{0}}, 0},
-    {"m4", 0, NULL, "1/m^2", 0, -2, {{0}}, 0},
-    {"m4_finite_difference", 0, NULL, "1/m^2", 0, -2, {{0}}, 0},
-    {"summit_density", 1, NULL, "1/m", 0, -1, {{0}}, 0},
-    {"summit_density", 2, NULL, "1/m^2", 0, -2, {{0}}, 0},
-    {"summit_height_mean", 0, NULL, "m", 0, 1, HEIGHT, 0},
-    {"summit_height_variance", 0, NULL, "m^2", 0, 2, HEIGHT_SQUARED, 0},
-    {"summit_curvature_mean", 0, NULL, "1/m", 0, -1, CURVATURE, 0},
-    {"pit_density", 1, NULL, "1/m", 0, -1, {{0}}, 0},
-    {"pit_density", 2, NULL, "1/m^2", 0, -2, {{0}}, 0},
-    {"pit_height_mean", 0, NULL, "m", 0, 1, HEIGHT, 0},
-    {"pit_height_variance", 0, NULL, "m^2", 0, 2, HEIGHT_SQUARED, 0},
-    {"pit_curvature_mean", 0, NULL, "1/m", 0, -1, CURVATURE, 0},
-    {"mean_gap_last", 0, NULL, "m", 0, 1, HEIGHT, 0},
-    {"kappa_highest_load", 0, NULL, "Pa", 1, 0, {{"rms_slope", 1}}, 0},
-    {"power_law_highest_load", 0, NULL, "Pa", 1, 0, {{"rms_slope", 1}}, 0},
-    {"erf_highest_load", 0, NULL, "Pa", 1, 0, {{"rms_slope", 1}}, 0},
+    {"rms_height", 0, NULL, "m", 0, 1, NOTHING, {{0}}, 0},
+    {"correlation_length", 0, NULL, "m", 0, 1, NOTHING, {{0}}, 0},
+    {"correlation_length_e", 0, NULL, "m", 0, 1, NOTHING, {{0}}, 0},
+    {"psd_plateau", 1, NULL, "m^3", 0, 3, NOTHING, {{0}}, 0},
+    {"psd_plateau", 2, NULL, "m^4", 0, 4, NOTHING, {{0}}, 0},
+    {"rms_curvature", 0, NULL, "1/m", 0, -1, NOTHING, {{0}}, 0},
+    {"lowest", 0, NULL, "m", 0, 1, NOTHING, HEIGHT, 0},
+    {"highest", 0, NULL, "m", 0, 1, NOTHING, HEIGHT, 0},
+    {"m0", 0, NULL, "m^2", 0, 2, NOTHING, {{0}}, 0},
+    {"m4", 0, NULL, "1/m^2", 0, -2, NOTHING, {{0}}, 0},
+    {"m4_finite_difference", 0, NULL, "1/m^2", 0, -2, NOTHING, {{0}}, 0},
+    {"summit_density", 1, NULL, "1/m", 0, -1, NOTHING, {{0}}, 0},
+    {"summit_density", 2, NULL, "1/m^2", 0, -2, NOTHING, {{0}}, 0},
+    {"summit_height_mean", 0, NULL, "m", 0, 1, NOTHING, HEIGHT, 0},
+    {"summit_height_variance", 0, NULL, "m^2", 0, 2, NOTHING, HEIGHT_SQUARED, 0},
+    {"summit_curvature_mean", 0, NULL, "1/m", 0, -1, NOTHING, CURVATURE, 0},
+    {"pit_density", 1, NULL, "1/m", 0, -1, NOTHING, {{0}}, 0},
+    {"pit_density", 2, NULL, "1/m^2", 0, -2, NOTHING, {{0}}, 0},
+    {"pit_height_mean", 0, NULL, "m", 0, 1, NOTHING, HEIGHT, 0},
+    {"pit_height_variance", 0, NULL, "m^2", 0, 2, NOTHING, HEIGHT_SQUARED, 0},
+    {"pit_curvature_mean", 0, NULL, "1/m", 0, -1, NOTHING, CURVATURE, 0},
+    {"mean_gap_last", 0, NULL, "m", 0, 1, NOTHING, HEIGHT, 0},
+    {"kappa_highest_load", 0, NULL, "Pa", 1, 0, NOTHING, {{"rms_slope", 1}}, 0},
+    {"power_law_highest_load", 0, NULL, "Pa", 1, 0, NOTHING, {{"rms_slope", 1}}, 0},
+    {"erf_highest_load", 0, NULL, "Pa", 1, 0, NOTHING, {{"rms_slope", 1}}, 0},
 };
 /* clang-format on */
 
@@ -77,8 +83,9 @@ static const struct unit_row SCALARS[] = {
 struct scales {
     const struct case_result *result;
     int dimension;
-    double length;  /* lambda_s in metres */
-    double modulus; /* E* in Pa */
+    double length;                /* lambda_s in metres */
+    double modulus;               /* E* in Pa */
+    double resistivity[HEAT + 1]; /* to each, of both bodies together; 1 to nothing */
 };
 
 static double number_of(const struct case_result *result, const char *pointer) {
@@ -96,6 +103,19 @@ static double modulus_of(const struct case_result *result, double length) {
     double young = number_of(result, "/contact/young"), nu = number_of(result, "/contact/poisson");
     bool known = young != 1 && (!isnan(length) || has_loads_in_pascal(result));
     return known ? young / (1 - nu * nu) : (double)NAN;
+}
+
+/* Returns the sum of the resistivities of both bodies, from an array of one for both or of two. */
+static double resistivity_of(const struct case_result *result, const char *pointer, int power) {
+    const struct result_parameter *given = result_parameter(result, pointer);
+    cJSON *list = given != NULL ? cJSON_Parse(given->text) : NULL;
+    const cJSON *one = cJSON_GetArrayItem(list, 0), *two = cJSON_GetArrayItem(list, 1);
+    double sum = NAN;
+    if (cJSON_IsNumber(one))
+        sum = pow(one->valuedouble, power) +
+              pow(cJSON_IsNumber(two) ? two->valuedouble : one->valuedouble, power);
+    cJSON_Delete(list);
+    return sum;
 }
 
 void units_scales(const struct case_result *result, double *metres, double *modulus) {
@@ -117,6 +137,7 @@ static double scale_of(const struct scales *scales, const struct unit_row *row) 
         scale *= pow(scales->modulus, row->modulus);
     if (row->length != 0)
         scale *= pow(scales->length, row->length);
+    scale /= scales->resistivity[row->conducts];
     for (size_t p = 0; p < POWERS_MOST && row->powers[p].scalar != NULL; p++)
         scale *= pow(scalar_of(scales->result, row->powers[p].scalar), row->powers[p].power);
     return scale;
@@ -158,8 +179,12 @@ static void set_curve(const struct scales *scales, struct curve *curve) {
 }
 
 void units_set(struct case_result *result) {
-    struct scales scales = {.result = result,
-                            .dimension = number_of(result, "/surface/dimension") == 1 ? 1 : 2};
+    struct scales scales = {
+        .result = result,
+        .dimension = number_of(result, "/surface/dimension") == 1 ? 1 : 2,
+        .resistivity = {[NOTHING] = 1,
+                        [CURRENT] = resistivity_of(result, "/contact/resistivity", 1),
+                        [HEAT] = resistivity_of(result, "/contact/conductivity", -1)}};
     units_scales(result, &scales.length, &scales.modulus);
     if (isnan(scales.length) && isnan(scales.modulus))
         return;

@@ -174,6 +174,22 @@ double contact_full_pressure(const struct contact *c) {
     return c->compliance->open ? INFINITY : c->full * pressure_unit(c);
 }
 
+double contact_held_stiffness(struct contact *c, const double *p, double residual) {
+    struct conjugate_gradient *d = &c->solver;
+    size_t nodes = 0;
+    c->mean = 0;
+    memset(d->q, 0, d->padded * sizeof *d->q); /* the digits do not depend on the set before */
+    for (size_t i = 0; i < d->n; i++) {
+        d->p[i] = p[i] > 0 ? p[i] : 0;
+        nodes += p[i] > 0;
+    }
+    if (nodes == 0)
+        return 0;
+    if (nodes == d->n && !c->compliance->open)
+        return INFINITY;
+    return 1 / (conjugate_gradient_tangent(d, residual) * d->largest);
+}
+
 /* The state without contact: the highest point touches the flat without force. */
 static void fill_open(struct contact *c, struct contact_state *out) {
     const struct conjugate_gradient *d = &c->solver;

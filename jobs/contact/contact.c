@@ -146,10 +146,10 @@ static int result(const void *one_case, const struct surface_basis *basis, const
 /* --- values of single realisations, for differences of cases by pairs --- */
 
 /* Finds the measure whose mean a curve is. */
-static bool measure_of(const struct curve *curve, enum contact_measure *measure) {
+static bool measure_of_curve(const struct curve *curve, enum contact_measure *measure) {
     for (*measure = 0; *measure < MEASURE_OWN; ++*measure)
-        if (same_text(MEASURES[*measure].quantity, curve->quantity) &&
-            same_text(MEASURES[*measure].series, curve->series))
+        if (same_text(measure_row(*measure)->quantity, curve->quantity) &&
+            same_text(measure_row(*measure)->series, curve->series))
             return true;
     return false;
 }
@@ -165,7 +165,8 @@ static bool point_values(const void *of, const struct curve *curve, size_t at,
         model++;
     if (model == one_case->model_count || at >= one_case->load_count ||
         !same_number(curve->level, contact_case_finest(one_case)->points) ||
-        !measure_of(curve, &measure) || !contact_rows_column(one_case, model, measure, &column))
+        !measure_of_curve(curve, &measure) ||
+        !contact_rows_column(one_case, model, measure, &column))
         return false;
     *out = (struct point_values){tally->rows.values + column + at, tally->rows.width};
     return true;
@@ -303,6 +304,8 @@ static const struct shown_name NAMES[] = {
     {"local p/(E* h'_rms)", "local pressure", "local pressure p/(E* h'_rms)"},
     {"A/A0", "contact area", "contact area A/A0"},
     {"K sqrt(m0)/(E* h'_rms)", "stiffness", "stiffness K sqrt(m0)/(E* h'_rms)"},
+    {"G (rho1 + rho2) sqrt(m0)/(2 h'_rms)", "conductance",
+     "conductance G (rho1 + rho2) sqrt(m0)/(2 h'_rms)"},
     {"mean patch/cell", "mean patch area", "mean patch area/A0"},
     {"mean patch/lambda_l", "mean patch length", "mean patch length/lambda_l"},
     {"mean patch/lambda_l^2", "mean patch area", "mean patch area/lambda_l^2"},

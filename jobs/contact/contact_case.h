@@ -8,6 +8,7 @@
 #include "core/statistics/heights/histogram.h"
 #include "jobs/contact/companion/companion_plan.h"
 #include "jobs/contact/model/model.h"
+#include "jobs/contact/quantity/quantities_asked.h"
 #include "jobs/kind.h"
 #include "jobs/like/like_case.h"
 #include "schema/study/fault.h"
@@ -54,11 +55,12 @@ struct contact_case {
      * load: owned; NULL: none. */
     double *like_areas, *like_gaps;
     size_t load_count;
-    double *loads;                /* owned: p/(E* h'), rising, > 0 */
-    bool nodes, edges, perimeter; /* estimators shown */
-    bool stiffness;               /* is measured */
-    bool asperities;              /* theories by counted summits are wanted */
-    double tolerance;             /* of solutions (contact_tolerance.h) */
+    double *loads;                 /* owned: p/(E* h'), rising, > 0 */
+    bool nodes, edges, perimeter;  /* estimators shown */
+    bool stiffness;                /* is shown */
+    struct quantities_asked asked; /* beside these (quantity/quantity.h) */
+    bool asperities;               /* theories by counted summits are wanted */
+    double tolerance;              /* of solutions (contact_tolerance.h) */
     size_t pdf_count;
     size_t *pdf_loads;    /* owned: loads whose pressures are counted, rising */
     bool pdf_pairs;       /* on all levels, with their differences (contact_densities.h) */
@@ -96,6 +98,9 @@ static inline bool contact_case_has(const struct contact_case *one_case,
  * several times the relative difference of compliance from a half-space, at the longest wave of the
  * cell. */
 double contact_case_block_bound(const struct contact_case *one_case, size_t model);
+
+/* Returns whether solutions need their tangent. */
+bool contact_case_needs_tangent(const struct contact_case *one_case);
 
 /* Returns the most complete of the models, of which the others differ by their errors. */
 size_t contact_case_complete(const struct contact_case *one_case);

@@ -3,6 +3,7 @@
 #include "jobs/contact/companion/companion.h"
 #include "jobs/contact/contact_densities.h"
 #include "jobs/contact/contact_loads.h"
+#include "jobs/contact/quantity/quantity.h"
 #include "jobs/like/like_parameters.h"
 #include "jobs/surface/surface_parameters.h"
 #include "jobs/target.h"
@@ -10,7 +11,8 @@
 #include <stdlib.h>
 
 const struct parameter_table *const CONTACT_TABLES[] = {&CONTACT_PARAMETERS, &SURFACE_PARAMETERS,
-                                                        &LIKE_PARAMETERS, &TARGET_PARAMETERS, NULL};
+                                                        &LIKE_PARAMETERS, &TARGET_PARAMETERS,
+                                                        CONTACT_QUANTITY_TABLES NULL};
 
 static const double ROUNDING = 1e-9; /* relative: of numbers that should be equal */
 enum { BINS_MOST = 10000, PRESSURE_CELLS_MOST = 1000000 };
@@ -232,6 +234,7 @@ static int read_alone(struct contact_case *out, struct asked *asked, struct valu
                       struct error *err) {
     out->tolerance = values_number(values, "/contact/tolerance");
     out->stiffness = values_choice(values, "/contact/stiffness") != STIFFNESS_OMITTED;
+    contact_quantities_read(out, values);
     read_estimators(out, values);
     read_asperities(out, values);
     read_block(out, asked, values);

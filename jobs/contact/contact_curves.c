@@ -274,7 +274,7 @@ static int append(struct contact_curve_maker *maker, const struct row *row, size
                   size_t level, struct error *err) {
     const struct contact_case *one_case = maker->one_case;
     const struct theories *theories = &maker->theories;
-    const struct measure *of = &MEASURES[row->measure];
+    const struct measure *of = measure_row(row->measure);
     struct curve curve =
         curve_of(one_case, model, level, row->quantity, "p/(E* h'_rms)", row->y_label);
     size_t n = one_case->load_count;
@@ -318,7 +318,7 @@ static int append_row(struct contact_curve_maker *maker, const struct row *row, 
     const struct contact_case *one_case = maker->one_case;
     int status = 0;
     for (size_t m = 0; m < one_case->model_count && status == 0; m++)
-        if (MEASURES[row->measure].shown(one_case, m))
+        if (measure_row(row->measure)->shown(one_case, m))
             status = append_model(maker, row, m, err);
     return status;
 }
@@ -327,7 +327,7 @@ static int append_row(struct contact_curve_maker *maker, const struct row *row, 
 static int append_measure(struct contact_curve_maker *maker, enum contact_measure measure,
                           struct error *err) {
     const struct surface_case *surface = &maker->one_case->surface;
-    const struct measure *of = &MEASURES[measure];
+    const struct measure *of = measure_row(measure);
     if (of->quantity == NULL)
         return 0;
     const char *in_cell = measure_label(of, UNIT_CELL, surface->dimension, maker->result);

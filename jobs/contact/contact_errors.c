@@ -84,7 +84,7 @@ static void limit_errors(const struct contact_tally *tally, enum contact_measure
                          size_t model, change_at *change, struct contact_error *out) {
     for (size_t k = 0; k < tally->one_case->load_count; k++) {
         struct level_changes changes = changes_of(tally, measure, model, k, change);
-        struct mesh_error error = mesh_error(&changes.of, MEASURES[measure].order);
+        struct mesh_error error = mesh_error(&changes.of, measure_row(measure)->order);
         out[k] =
             (struct contact_error){.value = isnan(error.bound) ? (double)NAN : error.error,
                                    .bound = error.bound,
@@ -100,7 +100,7 @@ double contact_errors_mesh_floor(const struct contact_case *one_case, enum conta
     const struct contact_model *of = one_case->models[model];
     const struct grid *grid = &contact_case_finest(one_case)->grid;
     return of->mesh_floor != NULL
-               ? of->mesh_floor(one_case->surface.dimension, MEASURES[measure].field,
+               ? of->mesh_floor(one_case->surface.dimension, measure_row(measure)->field,
                                 contact_case_transition(one_case, grid))
                : 0;
 }
@@ -196,8 +196,8 @@ static bool solver_errors(const struct contact_tally *tally, enum contact_measur
         double nodes = solved * finest_mean(tally, MEASURE_NODES, model, k).value *
                        (double)grid_points(&one_case->levels[finest].grid);
         double patches = solved * finest_mean(tally, MEASURE_PATCHES, model, k).value;
-        double share =
-            contact_errors_solver(MEASURES[measure].solver, one_case->tolerance, nodes, patches);
+        double share = contact_errors_solver(measure_row(measure)->solver, one_case->tolerance,
+                                             nodes, patches);
         out[k] = (struct contact_error){.value = 0 * y, .bound = share * fabs(y), .order = NAN};
     }
     return true;

@@ -2,6 +2,7 @@
 #include "core/contact/stretch.h"
 #include "core/statistics/fit.h"
 #include "jobs/contact/contact_case.h"
+#include "jobs/contact/quantity/quantity.h"
 #include <math.h>
 #include <stdio.h>
 
@@ -21,6 +22,18 @@ static bool has_stretched(const struct contact_case *one_case) {
 static double stretched(const struct measure_context *context, double edges, double open) {
     return context->free_space ? stretch_free(edges, open) : stretch_first_order(edges, open);
 }
+
+static bool never_shown(const struct contact_case *one_case, size_t model) {
+    (void)one_case, (void)model;
+    return false;
+}
+
+static bool never_kept(const struct contact_case *one_case) {
+    (void)one_case;
+    return false;
+}
+
+static const struct measure NO_MEASURE = {.shown = never_shown, .kept = never_kept};
 
 /* One row a measure, in the order of their curves in a result:
  *
@@ -97,16 +110,38 @@ LIST(CONDITIONS)
     [MEASURE_##name] = {quantity, series, label, shown_##name, kept_##name, order,                 \
                         THEORIES_##theories, SOLVER_##solver, FIELD_##field,                       \
                         LOAD_##load, CELL_##cell, VALUES_##values, OVER_##over},
-const struct measure MEASURES[MEASURE_COUNT] = {LIST(MEMBERS)};
+static const struct measure MEASURES[MEASURE_COUNT] = {LIST(MEMBERS)};
 /* clang-format on */
 
+const struct measure *measure_row(size_t measure) {
+    const struct measure *own = MEASURES[measure].kept != NULL ? &MEASURES[measure] : NULL;
+    if (measure >= MEASURE_QUANTITIES && measure < MEASURE_PAIRED)
+        own = quantity_measure(measure - MEASURE_QUANTITIES);
+    return own != NULL ? own : &NO_MEASURE;
+}
+
+bool measure_is_of(const struct contact_case *one_case, size_t measure) {
+    return measure < MEASURE_QUANTITIES || measure >= MEASURE_PAIRED ||
+           quantity_is_asked(one_case, measure - MEASURE_QUANTITIES);
+}
+
+size_t measure_paired(const struct contact_case *one_case) {
+    return MEASURE_QUANTITIES + one_case->asked.measures;
+}
+
 #define NAME(name, ...) MEASURE_##name,
-const enum contact_measure MEASURE_CURVES[MEASURE_OWN] = {LIST(NAME)};
-_Static_assert(sizeof((enum contact_measure[]){LIST(NAME)}) == sizeof MEASURE_CURVES,
+#define QUANTITY(n) (enum contact_measure)(MEASURE_QUANTITIES + (n))
+#define FOUR(n) QUANTITY(n), QUANTITY((n) + 1), QUANTITY((n) + 2), QUANTITY((n) + 3)
+const enum contact_measure MEASURE_CURVES[MEASURE_OWN] = {LIST(NAME) FOUR(0), FOUR(4), FOUR(8),
+                                                          FOUR(12)};
+_Static_assert(QUANTITY_MEASURES_MOST == 16, "measures of quantities without a number above");
+_Static_assert(sizeof((enum contact_measure[]){LIST(NAME)}) +
+                       QUANTITY_MEASURES_MOST * sizeof *MEASURE_CURVES ==
+                   sizeof MEASURE_CURVES,
                "a measure without a row");
 
-void contact_measure(const struct measure_context *context, const struct contact_pressed *pressed,
-                     double values[MEASURE_OWN]) {
+int contact_measure(const struct measure_context *context, const struct contact_pressed *pressed,
+                    double values[MEASURE_OWN], struct error *err) {
     const struct contact_state *state = &pressed->state;
     double now = pressed->stretch;
     struct contact_area area;
@@ -117,6 +152,7 @@ void contact_measure(const struct measure_context *context, const struct contact
     double open_now = area.nodes < 1 ? (1 - now * area.nodes) / (1 - area.nodes) : 1;
 #define VALUE(name, shown, kept, value, ...) values[MEASURE_##name] = value;
     LIST(VALUE)
+    return contact_quantities_measure(context, pressed, values + MEASURE_QUANTITIES, err);
 }
 
 double measure_factor(enum measure_cell cell, double cells) {

@@ -8,19 +8,23 @@
 #include "jobs/contact/model/model.h"
 #include "schema/result/result.h"
 
+struct contact_quantities;
+
 /* What measuring on one grid needs; all borrowed. */
 struct measure_context {
     const struct contact_case *one_case; /* whose parameters measures may need */
     struct area_workspace *area;
     struct patch_finder *finder;
-    double points;                /* of the grid */
-    double rms_slope, rms_height; /* of the prescribed spectrum */
-    bool scaled;                  /* the surface has a scale */
-    bool free_space;              /* the grid is a map in free space, no cell of fixed sides */
+    struct contact_quantities *quantities; /* quantity/quantity.h */
+    double points;                         /* of the grid */
+    double rms_slope, rms_height;          /* of the prescribed spectrum */
+    bool scaled;                           /* the surface has a scale */
+    bool free_space; /* the grid is a map in free space, no cell of fixed sides */
 };
-/* Fills all measures but the fits. */
-void contact_measure(const struct measure_context *context, const struct contact_pressed *pressed,
-                     double values[MEASURE_OWN]);
+/* Fills all measures but the fits; NaN for those of quantities that are not asked for. Errors are
+ * those of a quantity. */
+int contact_measure(const struct measure_context *context, const struct contact_pressed *pressed,
+                    double values[MEASURE_OWN], struct error *err);
 /* Fits through rising loads, from the areas by edges there: at load k over the loads up to it, in
  * fits[k], one stride behind the other in the order of the measures from MEASURE_KAPPA on. NaN from
  * the first load on that has no area. Of the error function loads of full contact are left out.

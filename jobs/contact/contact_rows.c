@@ -6,7 +6,7 @@
 static size_t kept_below(const struct contact_case *one_case, enum contact_measure measure) {
     size_t count = 0;
     for (size_t a = 0; a < (size_t)measure; a++)
-        count += MEASURES[a].kept(one_case);
+        count += measure_row(a)->kept(one_case);
     return count;
 }
 
@@ -44,7 +44,7 @@ double contact_rows_bytes(const struct contact_case *one_case) {
 
 bool contact_rows_column(const struct contact_case *one_case, size_t model,
                          enum contact_measure measure, size_t *column) {
-    if (!MEASURES[measure].kept(one_case))
+    if (!measure_row(measure)->kept(one_case))
         return false;
     *column = model * model_width(one_case) + kept_below(one_case, measure) * one_case->load_count;
     return true;

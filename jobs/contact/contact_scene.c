@@ -4,6 +4,8 @@
 #include "core/cost.h"
 #include "jobs/contact/contact_measure.h"
 #include "jobs/contact/contact_steps.h"
+#include "jobs/contact/model/model_linear.h"
+#include "jobs/contact/quantity/quantity.h"
 #include "jobs/publishing_cost.h"
 #include <math.h>
 #include <stdlib.h>
@@ -17,6 +19,7 @@ struct contact_scene {
     struct pressures *pressures[CONTACT_MODELS_MOST][CONTACT_LEVELS_MOST]; /* NULL: not counted */
     double *shares;                                                        /* of pressures */
     struct patch_finder *finders[CONTACT_LEVELS_MOST];
+    struct contact_quantities quantities[CONTACT_MODELS_MOST][CONTACT_LEVELS_MOST];
     struct companion_bench *companions;
     double *z; /* heights on a level; room for the finest */
 };
@@ -41,6 +44,14 @@ void contact_compliances_clear(struct contact_compliances *compliances) {
             compliance_destroy(&compliances->of[m][l]);
 }
 
+static struct quantity_scene quantity_scene_of(const struct contact_case *one_case, size_t model,
+                                               size_t level) {
+    return (struct quantity_scene){.one_case = one_case,
+                                   .grid = one_case->levels[level].grid,
+                                   .block = one_case->blocks[model],
+                                   .exact = linear_is_exact(one_case->models[model])};
+}
+
 static int scene_fill(struct contact_scene *scene, const struct contact_compliances *compliances,
                       struct error *err) {
     const struct contact_case *one_case = scene->one_case;
@@ -52,6 +63,9 @@ static int scene_fill(struct contact_scene *scene, const struct contact_complian
             if (status == 0)
                 status = one_case->models[m]->create(&scene->solvers[m][l], one_case, m,
                                                      compliances->of[m][l], err);
+            const struct quantity_scene quantities = quantity_scene_of(one_case, m, l);
+            if (status == 0)
+                status = contact_quantities_create(&scene->quantities[m][l], &quantities, err);
             if (status == 0 && contact_tally_counts(one_case, l))
                 status = pressures_create(&scene->pressures[m][l], scene->areas[m][l], err);
         }
@@ -105,6 +119,7 @@ void contact_scene_destroy(struct contact_scene **scene) {
     for (size_t l = 0; l < CONTACT_LEVELS_MOST; l++) {
         patch_finder_destroy(&s->finders[l]);
         for (size_t m = 0; m < CONTACT_MODELS_MOST; m++) {
+            contact_quantities_clear(&s->quantities[m][l]);
             pressures_destroy(&s->pressures[m][l]);
             area_workspace_destroy(&s->areas[m][l]);
             if (s->solvers[m][l] != NULL)
@@ -119,24 +134,28 @@ void contact_scene_destroy(struct contact_scene **scene) {
 }
 
 /* Puts the measures of a solved load into a cell. */
-static void measure(struct contact_scene *scene, size_t model, size_t level,
-                    const struct contact_pressed *pressed, struct contact_tally *tally,
-                    size_t cell) {
+static int measure(struct contact_scene *scene, size_t model, size_t level,
+                   const struct contact_pressed *pressed, struct contact_tally *tally, size_t cell,
+                   struct error *err) {
     const struct measure_context context = {
         .one_case = scene->one_case,
         .area = scene->areas[model][level],
         .finder = scene->finders[level],
+        .quantities = &scene->quantities[model][level],
         .points = (double)grid_points(&scene->one_case->levels[level].grid),
         .rms_slope = scene->rms_slope,
         .rms_height = scene->rms_height,
         .scaled = contact_case_has_scale(scene->one_case)};
     double values[MEASURE_OWN];
-    contact_measure(&context, pressed, values);
+    int status = contact_measure(&context, pressed, values, err);
+    if (status != 0)
+        return status;
     for (size_t a = 0; a < MEASURE_OWN; a++)
         contact_tally_values(tally, (enum contact_measure)a)[cell] = values[a];
     for (size_t a = 0; a < MODEL_MEASURES_MOST; a++)
         contact_tally_values(tally, (enum contact_measure)(MEASURE_OWN + a))[cell] =
             pressed->own[a];
+    return 0;
 }
 
 /* Tallies areas by pressure, by edges and as they are under load. Forces are over undeformed
@@ -177,7 +196,8 @@ static int solve_loads(struct contact_scene *scene, size_t m, size_t level,
                              one_case->load_count);
         status = model->press(solver, one_case->loads[k] * scene->rms_slope, &pressed, err);
         if (status == 0)
-            measure(scene, m, level, &pressed, tally, contact_case_cell(one_case, m, level, k));
+            status = measure(scene, m, level, &pressed, tally,
+                             contact_case_cell(one_case, m, level, k), err);
         else if (!isnan(pressed.reached))
             error_context(err, "load %g, reached %.4g", one_case->loads[k],
                           pressed.reached / scene->rms_slope);
@@ -264,6 +284,8 @@ static double plain_bytes(const struct contact_case *one_case) {
         bytes += patch_finder_bytes(grid);
         for (size_t m = 0; m < one_case->model_count; m++) {
             bytes += contact_tally_counts(one_case, l) ? pressures_bytes(grid) : 0;
+            const struct quantity_scene quantities = quantity_scene_of(one_case, m, l);
+            bytes += contact_quantities_bytes(&quantities);
             bytes += area_workspace_bytes(grid, &one_case->blocks[m]) +
                      one_case->models[m]->bytes(one_case, m, grid) +
                      compliance_bytes(grid, &one_case->blocks[m]);
@@ -307,8 +329,11 @@ void contact_case_estimate(const struct contact_case *one_case, struct study_cos
                               (double)grid_points(&surface->grid);
     out->kept = contact_kept_cost(one_case, out->seconds);
     for (size_t l = 0; l < one_case->level_count; l++)
-        for (size_t m = 0; m < one_case->model_count; m++)
-            out->seconds += one_case->models[m]->seconds(one_case, m, &one_case->levels[l].grid);
+        for (size_t m = 0; m < one_case->model_count; m++) {
+            const struct quantity_scene quantities = quantity_scene_of(one_case, m, l);
+            out->seconds += one_case->models[m]->seconds(one_case, m, &one_case->levels[l].grid) +
+                            contact_quantities_seconds(&quantities);
+        }
     out->seconds += companions_seconds(one_case);
     out->result_bytes = contact_rows_bytes(one_case);
     out->runs_most = RUNS_MOST;

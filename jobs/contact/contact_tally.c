@@ -63,8 +63,11 @@ int contact_tally_create(struct contact_tally *out, const struct contact_case *o
     if (out->values == NULL)
         status = error_memory(err, cells * MEASURE_COUNT * sizeof(double), "a tally");
     for (size_t a = 0; a < MEASURE_COUNT && status == 0; a++)
-        status = contact_sums_create(&out->sums[a], cells, err);
+        if (measure_is_of(one_case, a))
+            status = contact_sums_create(&out->sums[a], cells, err);
     for (size_t a = 0; a < MEASURE_PAIRED && status == 0; a++) {
+        if (!measure_is_of(one_case, a))
+            continue;
         status = contact_sums_create(&out->sums[SUMS_LEVELS + a], offsets_levels(one_case), err);
         if (status == 0)
             status =
@@ -101,10 +104,12 @@ void contact_tally_clear(struct contact_tally *tally) {
 
 double contact_tally_bytes(const struct contact_case *one_case) {
     size_t pairs = offsets_levels(one_case) + offsets_models(one_case);
-    double bytes = MEASURE_COUNT * (contact_sums_bytes(contact_case_cells(one_case)) +
-                                    sizeof(double) * (double)contact_case_cells(one_case)) +
-                   MEASURE_PAIRED * contact_sums_bytes(pairs) +
-                   tally_bytes(offsets_pressures(one_case)) + contact_densities_bytes(one_case);
+    size_t unasked = MEASURE_PAIRED - measure_paired(one_case);
+    double bytes =
+        (double)(MEASURE_COUNT - unasked) * contact_sums_bytes(contact_case_cells(one_case)) +
+        MEASURE_COUNT * sizeof(double) * (double)contact_case_cells(one_case) +
+        (double)(MEASURE_PAIRED - unasked) * contact_sums_bytes(pairs) +
+        tally_bytes(offsets_pressures(one_case)) + contact_densities_bytes(one_case);
     for (size_t c = 0; c < COMPANION_COUNT; c++)
         bytes += companion_tally_bytes(one_case, &one_case->companions[c]);
     return bytes;
@@ -179,6 +184,8 @@ int contact_tally_add(struct contact_tally *tally, struct error *err) {
                         tally->companions);
     fill_fits(tally);
     for (size_t a = 0; a < MEASURE_COUNT; a++) {
+        if (!measure_is_of(one_case, a))
+            continue;
         const double *values = contact_tally_values(tally, (enum contact_measure)a);
         for (size_t cell = 0; cell < cells; cell++)
             contact_sums_add(&tally->sums[a], cell,
@@ -186,6 +193,8 @@ int contact_tally_add(struct contact_tally *tally, struct error *err) {
                                                                cell % one_case->load_count));
     }
     for (size_t a = 0; a < MEASURE_PAIRED; a++) {
+        if (!measure_is_of(one_case, a))
+            continue;
         add_level_pairs(tally, (enum contact_measure)a);
         if (one_case->model_count > 1)
             add_model_pairs(tally, (enum contact_measure)a);
@@ -199,10 +208,19 @@ int contact_tally_add(struct contact_tally *tally, struct error *err) {
     return 0;
 }
 
+/* Returns whether a case has the sums of this index. */
+static bool has_sums(const struct contact_case *one_case, size_t sums) {
+    size_t measure = sums < SUMS_LEVELS   ? sums
+                     : sums < SUMS_MODELS ? sums - SUMS_LEVELS
+                                          : sums - SUMS_MODELS;
+    return measure_is_of(one_case, measure);
+}
+
 void contact_tally_put(struct bytes *bytes, const struct contact_tally *tally) {
     bytes_put_unsigned(bytes, tally->realisations);
     for (size_t a = 0; a < CONTACT_SUMS; a++)
-        contact_sums_put(bytes, &tally->sums[a]);
+        if (has_sums(tally->one_case, a))
+            contact_sums_put(bytes, &tally->sums[a]);
     for (size_t c = 0; c < COMPANION_COUNT; c++)
         companion_tally_put(bytes, &tally->companions[c]);
     tally_total_put(bytes, &tally->points);
@@ -215,7 +233,8 @@ void contact_tally_put(struct bytes *bytes, const struct contact_tally *tally) {
 void contact_tally_get(struct byte_reader *reader, struct contact_tally *tally) {
     tally->realisations = bytes_get_unsigned(reader);
     for (size_t a = 0; a < CONTACT_SUMS; a++)
-        contact_sums_get(reader, &tally->sums[a]);
+        if (has_sums(tally->one_case, a))
+            contact_sums_get(reader, &tally->sums[a]);
     for (size_t c = 0; c < COMPANION_COUNT; c++)
         companion_tally_get(reader, &tally->companions[c]);
     tally_total_get(reader, &tally->points);
@@ -385,7 +404,7 @@ static bool count_fits(const struct contact_tally *tally, enum contact_measure m
     const struct contact_case *one_case = tally->one_case;
     const uint64_t *count = tally->sums[measure].counts.count;
     size_t model = cell / (one_case->level_count * one_case->load_count);
-    if (MEASURES[measure].values != VALUES_ALL)
+    if (measure_row(measure)->values != VALUES_ALL)
         return count[cell] <= tally->realisations;
     if (one_case->models[model]->may_fail)
         return count[cell] <=
@@ -509,7 +528,8 @@ static bool rows_fit(const struct contact_tally *tally) {
 bool contact_tally_adds_up(const struct contact_tally *tally) {
     const struct contact_case *one_case = tally->one_case;
     for (size_t a = 0; a < MEASURE_COUNT; a++)
-        for (size_t cell = 0; cell < contact_case_cells(one_case); cell++)
+        for (size_t cell = 0; measure_is_of(one_case, a) && cell < contact_case_cells(one_case);
+             cell++)
             if (!count_fits(tally, (enum contact_measure)a, cell))
                 return false;
     for (size_t a = MEASURE_COUNT; a < CONTACT_SUMS; a++)

@@ -1,13 +1,14 @@
 /* The measures of a solved load: a value, or none (NaN), for each realisation, model, level and
  * load. A measure is a name in the enum and a row of the list in contact_measure.c; nothing else
- * lists them. Partial results hold measures in the order of the enum. */
+ * lists them. Those of quantities that a study may ask for (quantity/quantity.h) are rows there.
+ * Partial results hold measures in the order of the enum. */
 #ifndef RUGO_JOBS_CONTACT_MEASURE_H
 #define RUGO_JOBS_CONTACT_MEASURE_H
 
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { MODEL_MEASURES_MOST = 5 };
+enum { MODEL_MEASURES_MOST = 5, QUANTITY_MEASURES_MOST = 16 };
 enum contact_measure {
     MEASURE_NODES, /* share of the cell, as all areas */
     MEASURE_EDGES,
@@ -23,9 +24,11 @@ enum contact_measure {
     MEASURE_KAPPA, /* of the line area = kappa load through the loads up to this one, by edges */
     MEASURE_POWER_LAW_A, /* likewise of area = a load^b; none at the first load */
     MEASURE_POWER_LAW_B,
-    MEASURE_ERF_KAPPA, /* likewise of area = erf(sqrt(pi)/2 kappa load) */
-    MEASURE_PAIRED,    /* measures above: differences are summed too */
-    MEASURE_FITS = MEASURE_PAIRED - MEASURE_KAPPA, /* the last of these */
+    MEASURE_ERF_KAPPA,  /* likewise of area = erf(sqrt(pi)/2 kappa load) */
+    MEASURE_QUANTITIES, /* from here on those of quantities, in the order of their table */
+    MEASURE_FITS = MEASURE_QUANTITIES - MEASURE_KAPPA,            /* the last of those above */
+    MEASURE_PAIRED = MEASURE_QUANTITIES + QUANTITY_MEASURES_MOST, /* measures above: differences
+                                                                     are summed too */
     MEASURE_ITERATIONS = MEASURE_PAIRED,
     MEASURE_WORK, /* transforms of the level's grid */
     MEASURE_VIOLATION,
@@ -72,8 +75,15 @@ struct measure {
     enum measure_values values;
     enum measure_over over;
 };
-/* Measures of the models have no rows: they are zero. */
-extern const struct measure MEASURES[MEASURE_COUNT];
+/* Returns the row of a measure; those of the models, and numbers that no quantity takes, have one
+ * of zeros, which is not shown. measure: below MEASURE_COUNT. */
+const struct measure *measure_row(size_t measure);
+/* Returns whether a case may have values of a measure: all but those of quantities that it does not
+ * ask for. */
+bool measure_is_of(const struct contact_case *one_case, size_t measure);
+/* Returns how many measures below MEASURE_PAIRED have sums of differences: less than that in a case
+ * that asks for no quantity behind. */
+size_t measure_paired(const struct contact_case *one_case);
 /* In the order of their curves in a result. */
 extern const enum contact_measure MEASURE_CURVES[MEASURE_OWN];
 

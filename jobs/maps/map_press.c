@@ -2,6 +2,7 @@
 #include "core/full/full.h"
 #include "core/statistics/heights/roughness.h"
 #include "core/statistics/summits/local_wave.h"
+#include "jobs/contact/model/model_linear.h"
 #include <math.h>
 #include <stdio.h>
 
@@ -33,7 +34,7 @@ static const struct measure OWN_MEASURES[PRESS_VALUES - PRESS_LOAD] = {
 #undef OWN
 
 const struct measure *press_measure(size_t value) {
-    return value < PRESS_LOAD ? &MEASURES[value] : &OWN_MEASURES[value - PRESS_LOAD];
+    return value < PRESS_LOAD ? measure_row(value) : &OWN_MEASURES[value - PRESS_LOAD];
 }
 
 const struct press_column PRESS_COLUMNS[PRESS_COLUMN_COUNT] = {
@@ -48,6 +49,7 @@ const struct press_column PRESS_COLUMNS[PRESS_COLUMN_COUNT] = {
     {"approach/rms", "approach", PRESS_APPROACH, false, true},
     {"gap/rms", "mean_gap", MEASURE_GAP, false, true},
     {"stiffness", "stiffness", MEASURE_STIFFNESS, false, false},
+    {"conductance", "conductance", CONDUCTANCE_MEASURE, false, true},
     {"patches", "patch_count", MEASURE_PATCHES, true, false},
     {"contact nodes", "contact_nodes", PRESS_CONTACT_NODES, false, false},
     {"iterations", "iterations", MEASURE_ITERATIONS, false, false},
@@ -60,6 +62,7 @@ static const struct contact_model *model_of(const struct map_press *press) {
 }
 
 void map_press_release(struct map_press *press) {
+    contact_quantities_clear(&press->quantities);
     patch_finder_destroy(&press->patches);
     area_workspace_destroy(&press->areas);
     if (press->solver != NULL)
@@ -136,6 +139,8 @@ static void fill_case(struct map_press *press, const struct press_block *asked) 
                                             .perimeter = true,
                                             .stiffness = true,
                                             .tolerance = tolerance_of(asked)};
+    if (asked->conducts)
+        contact_quantities_ask(&press->one_case, CONDUCTANCE_MEASURE);
 }
 
 static int solver_create(struct map_press *press, struct error *err) {
@@ -156,7 +161,12 @@ static int solver_create(struct map_press *press, struct error *err) {
         status = patch_finder_create(&press->patches, grid, err);
     if (status == 0 && open)
         patch_finder_open(press->patches);
-    return status;
+    const struct quantity_scene scene = {.one_case = one_case,
+                                         .grid = *grid,
+                                         .block = one_case->blocks[0],
+                                         .exact = linear_is_exact(model_of(press)),
+                                         .open = open};
+    return status == 0 ? contact_quantities_create(&press->quantities, &scene, err) : status;
 }
 
 /* Writes "halfspace", or "a or b": the models that press a map that does not repeat. */
@@ -237,21 +247,24 @@ static double cell_factor(const struct map_press *press, enum measure_cell cell)
     return measure_factor(cell == CELL_UNLIMITED ? CELL_SHRINKS : cell, press->copies);
 }
 
-static void measure_load(const struct map_press *press, const struct contact_pressed *pressed,
-                         double *value) {
+static int measure_load(struct map_press *press, const struct contact_pressed *pressed,
+                        double *value, struct error *err) {
     const struct measure_context context = {.one_case = &press->one_case,
                                             .area = press->areas,
                                             .finder = press->patches,
+                                            .quantities = &press->quantities,
                                             .points = (double)grid_points(&press->grid),
                                             .rms_slope = press->slope,
                                             .rms_height = press->height,
                                             .scaled = true,
                                             .free_space = press->boundary == PRESS_OPEN};
     const struct contact_state *state = &press->state;
-    contact_measure(&context, pressed, value);
+    int status = contact_measure(&context, pressed, value, err);
+    if (status != 0)
+        return status;
     value[PRESS_VIOLATION] = value[MEASURE_VIOLATION];
     for (size_t m = 0; m < MEASURE_OWN; m++)
-        value[m] *= cell_factor(press, MEASURES[m].cell);
+        value[m] *= cell_factor(press, measure_row(m)->cell);
     for (size_t m = 0; m < MODEL_MEASURES_MOST; m++)
         value[MEASURE_OWN + m] = pressed->own[m];
     value[PRESS_PEAK] = largest(grid_points(&press->grid), state->p) / press->slope;
@@ -262,6 +275,7 @@ static void measure_load(const struct map_press *press, const struct contact_pre
         value[PRESS_BGT_COUNTED] = counted_asperities_area(press->asperities, COUNTED_BGT, load);
         value[PRESS_GW_COUNTED] = counted_asperities_area(press->asperities, COUNTED_GW, load);
     }
+    return 0;
 }
 
 /* Makes the row of a load without a solution. */
@@ -282,8 +296,7 @@ int map_press_load(struct map_press *press, double pressure, struct press_row *r
     if (status != 0)
         return status;
     press->state = pressed.state;
-    measure_load(press, &pressed, row->value);
-    return 0;
+    return measure_load(press, &pressed, row->value, err);
 }
 
 int map_press_loads(struct map_press *press, const double *z, size_t loads, const double *pressures,

@@ -12,6 +12,7 @@
 #include "jobs/contact/contact_case.h"
 #include "jobs/contact/contact_measure.h"
 #include "jobs/contact/contact_steps.h"
+#include "jobs/contact/quantity/quantity.h"
 #include "schema/result/result.h"
 
 enum press_boundary { PRESS_OPEN, PRESS_MIRRORED, PRESS_PERIODIC };
@@ -21,6 +22,7 @@ struct press_block {
     double poisson;
     double lengths; /* height of the block in lengths of the map as it is pressed; 0: the model's */
     double tolerance; /* of a solution, as in studies; 0: the model's */
+    bool conducts;    /* its conductance is asked for */
 };
 
 /* Values of a load have the numbers of the measures of studies and of the model's own; these
@@ -46,7 +48,7 @@ struct press_column {
     bool fold;      /* tables for people may start a line here */
     bool uncertain; /* its errors stand in tables for people */
 };
-enum { PRESS_COLUMN_COUNT = 17 };
+enum { PRESS_COLUMN_COUNT = 18 };
 extern const struct press_column PRESS_COLUMNS[PRESS_COLUMN_COUNT];
 
 /* (reported - true) lies within value +- bound; NaN: not known. */
@@ -88,6 +90,7 @@ struct map_press {
     struct contact_solver *solver;
     struct area_workspace *areas;
     struct patch_finder *patches;
+    struct contact_quantities quantities;
     const struct press_watch *watch;       /* borrowed; NULL: none */
     struct counted_asperities *asperities; /* of the map as it is pressed; NULL: a profile */
 };

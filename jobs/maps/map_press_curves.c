@@ -113,7 +113,7 @@ int map_press_result(struct case_result *out, const struct map_press *press, siz
     for (size_t c = 0; c < PRESS_COLUMN_COUNT && status == 0; c++)
         status = append_value(&maker, PRESS_COLUMNS[c].value, err);
     for (size_t a = 0; a < MEASURE_OWN && status == 0; a++)
-        if (MEASURES[MEASURE_CURVES[a]].quantity != NULL && !is_column(MEASURE_CURVES[a]))
+        if (measure_row(MEASURE_CURVES[a])->quantity != NULL && !is_column(MEASURE_CURVES[a]))
             status = append_value(&maker, MEASURE_CURVES[a], err);
     for (size_t m = 0; m < count && status == 0; m++)
         status = append_own(&maker, m, err);

@@ -110,7 +110,8 @@ static int difference_parameters(const struct case_result *a, const struct case_
         value_text(other, second);
         *to = (struct result_parameter){.pointer = result_text(out, one->pointer),
                                         .number = same ? one->number : (double)NAN,
-                                        .list = same && one->list};
+                                        .list = same && one->list,
+                                        .flag = same && one->flag};
         if (!same || one->text != NULL)
             to->text = same ? result_text(out, one->text) : difference_text(out, first, second);
         if (to->pointer == NULL || (to->text == NULL && isnan(to->number)))

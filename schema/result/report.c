@@ -208,8 +208,9 @@ static int copy_about(struct case_result *out, const struct case_result *result)
     for (size_t p = 0; p < result->parameter_count && done; p++) {
         const struct result_parameter *from = &result->parameters[p];
         struct result_parameter *to = &out->parameters[out->parameter_count++];
-        *to = (struct result_parameter){result_text(out, from->pointer),
-                                        result_text(out, from->text), from->number, from->list};
+        *to =
+            (struct result_parameter){result_text(out, from->pointer), result_text(out, from->text),
+                                      from->number, from->list, from->flag};
         done = to->pointer != NULL && (from->text == NULL || to->text != NULL);
     }
     for (size_t n = 0; n < result->note_count && done; n++) {

@@ -182,6 +182,7 @@ struct result_parameter {
     const char *text; /* NULL: a number */
     double number;
     bool list; /* the text is a JSON array: one value of several, such as levels */
+    bool flag; /* the text is true or false, as JSON has them */
 };
 
 struct arena; /* private */

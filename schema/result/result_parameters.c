@@ -34,6 +34,9 @@ bool result_add_parameter(struct case_result *result, const char *pointer, const
         *one = (struct result_parameter){.number = value->valuedouble};
     } else if (cJSON_IsString(value)) {
         *one = (struct result_parameter){.text = result_text(result, value->valuestring)};
+    } else if (cJSON_IsBool(value)) {
+        const char *text = cJSON_IsTrue(value) ? "true" : "false";
+        *one = (struct result_parameter){.text = result_text(result, text), .flag = true};
     } else if (cJSON_IsArray(value)) {
         char *text = json_print(value);
         *one = (struct result_parameter){.text = result_text(result, text), .list = true};

@@ -236,7 +236,7 @@ bool result_print_parameters(FILE *file, size_t count, const struct result_param
         const struct result_parameter *one = &parameters[p];
         if (one->text == NULL) {
             done = put_number(file, &first, one->pointer, one->number);
-        } else if (one->list) {
+        } else if (one->list || one->flag) {
             done = put_key(file, &first, one->pointer);
             fputs(one->text, file);
         } else {

@@ -35,6 +35,11 @@ static cJSON *choice_schema(const struct parameter *parameter) {
     return fields_finish(schema, complete);
 }
 
+static cJSON *flag_schema(void) {
+    cJSON *schema = cJSON_CreateObject();
+    return fields_finish(schema, field_put_text(schema, "type", "boolean"));
+}
+
 /* Makes {"anyOf": [first, second]}; takes both. */
 static cJSON *either(cJSON *first, cJSON *second) {
     cJSON *schema = cJSON_CreateObject();
@@ -124,6 +129,8 @@ static cJSON *value_schema(const struct parameter *parameter) {
         return seed_schema(parameter);
     case PARAMETER_CHOICE:
         return choice_schema(parameter);
+    case PARAMETER_FLAG:
+        return flag_schema();
     case PARAMETER_NUMBERS:
         return parameter->choices == NULL
                    ? numbers_schema(parameter)

@@ -13,6 +13,7 @@ enum parameter_type {
     PARAMETER_TEXT,    /* a string of minimum..maximum characters, none of control */
     PARAMETER_SEED,    /* an integer of minimum..maximum, or any of 64 bits as a decimal string */
     PARAMETER_CHOICE,  /* a string out of choices */
+    PARAMETER_FLAG,    /* true or false; absent and without a default it is false */
     PARAMETER_NUMBERS, /* an array of items_low..items_high numbers: one value, e.g. bins; or, where
                           there are choices, a string out of them */
     PARAMETER_CHOICES, /* an array of different strings out of choices, or one alone: one value */
@@ -43,7 +44,7 @@ struct parameter {
      * is target_choice (NULL: no value may). NULL: such a study answers the parameter as any other
      * study, or chooses it where it is left out. */
     const char *target_refusal, *target_choice;
-    double minimum, maximum;      /* of each number; ignored for choices */
+    double minimum, maximum;      /* of each number; ignored for choices and flags */
     size_t items_low, items_high; /* PARAMETER_NUMBERS */
     enum parameter_type type;
     bool above_minimum; /* minimum itself excluded: "(0, 1]" */

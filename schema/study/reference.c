@@ -19,6 +19,7 @@ static void describe_type(const struct parameter *row, char *text, size_t size) 
         [PARAMETER_NUMBER] = "number",   [PARAMETER_INTEGER] = "integer",
         [PARAMETER_TEXT] = "text",       [PARAMETER_SEED] = "integer, or a decimal string",
         [PARAMETER_CHOICE] = "one name", [PARAMETER_CHOICES] = "one name, or a list",
+        [PARAMETER_FLAG] = "flag",
     };
     if (row->type == PARAMETER_NUMBERS && row->items_low == row->items_high)
         snprintf(text, size, "%zu numbers", row->items_low);
@@ -44,6 +45,8 @@ static void describe_range(const struct parameter *row, char *text, size_t size)
         snprintf(text, size, "%s; %s", names, range);
     } else if (row->choices != NULL) {
         value_choices(row->choices, text, size);
+    } else if (row->type == PARAMETER_FLAG) {
+        snprintf(text, size, "true, false");
     } else if (row->type == PARAMETER_TEXT) {
         snprintf(text, size, "%.0f to %.0f characters", row->minimum, row->maximum);
     } else if (row->type == PARAMETER_SEED) {

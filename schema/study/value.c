@@ -153,6 +153,10 @@ static bool choice_check(const struct parameter *parameter, const cJSON *value, 
     return is_not(value, pointer, faults, what);
 }
 
+static bool flag_check(const cJSON *value, const char *pointer, struct fault_list *faults) {
+    return cJSON_IsBool(value) || is_not(value, pointer, faults, "true or false");
+}
+
 static bool choices_check(const struct parameter *parameter, const cJSON *value,
                           const char *pointer, struct fault_list *faults) {
     if (!cJSON_IsArray(value))
@@ -236,6 +240,8 @@ bool value_check(const struct parameter *parameter, const cJSON *value, const ch
         return seed_check(parameter, value, pointer, faults);
     case PARAMETER_CHOICE:
         return choice_check(parameter, value, pointer, faults);
+    case PARAMETER_FLAG:
+        return flag_check(value, pointer, faults);
     case PARAMETER_NUMBERS:
         return numbers_check(parameter, value, pointer, faults);
     case PARAMETER_CHOICES:

@@ -134,6 +134,11 @@ int values_choice(struct values *values, const char *path) {
     return row != NULL ? choice_value(row->choices, value) : 0;
 }
 
+bool values_flag(struct values *values, const char *path) {
+    const cJSON *value;
+    return find(values, path, PARAMETER_FLAG, &value) != NULL && cJSON_IsTrue(value);
+}
+
 const char *values_text(struct values *values, const char *path) {
     const cJSON *value;
     const struct parameter *row = find(values, path, PARAMETER_TEXT, &value);

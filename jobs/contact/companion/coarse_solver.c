@@ -4,6 +4,7 @@
 #include "core/contact/patches.h"
 #include "core/cost.h"
 #include "jobs/contact/contact_measure.h"
+#include "jobs/contact/quantity/quantity.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -17,6 +18,7 @@ struct coarse_solver {
     struct contact *contact;
     struct area_workspace *area;
     struct patch_finder *finder;
+    struct contact_quantities quantities;
 };
 
 struct contact_level coarse_level(const struct contact_case *one_case) {
@@ -32,17 +34,27 @@ struct contact_level coarse_level(const struct contact_case *one_case) {
     return level;
 }
 
+static struct quantity_scene quantity_scene_of(const struct contact_case *one_case,
+                                               const struct grid *grid, double height) {
+    const struct block block = {.model = MODEL_HALFSPACE, .height = height, .layer_growth = 1};
+    return (struct quantity_scene){
+        .one_case = one_case, .grid = *grid, .block = block, .exact = true};
+}
+
 static int solver_fill(struct coarse_solver *solver, double height, struct error *err) {
     struct block block = {.model = MODEL_HALFSPACE, .height = height, .layer_growth = 1};
     struct contact_options options = CONTACT_DEFAULTS;
     options.tolerance = solver->one_case->tolerance;
-    options.without_tangent = !solver->one_case->stiffness;
+    options.without_tangent = !contact_case_needs_tangent(solver->one_case);
     int status = compliance_create(&solver->compliance, &solver->grid, &block, err);
     if (status == 0)
         status = contact_create(&solver->contact, solver->compliance, &options, err);
     if (status == 0)
         status = area_workspace_create(&solver->area, solver->compliance, err);
-    return status != 0 ? status : patch_finder_create(&solver->finder, &solver->grid, err);
+    if (status == 0)
+        status = patch_finder_create(&solver->finder, &solver->grid, err);
+    const struct quantity_scene scene = quantity_scene_of(solver->one_case, &solver->grid, height);
+    return status != 0 ? status : contact_quantities_create(&solver->quantities, &scene, err);
 }
 
 int coarse_solver_create(struct coarse_solver **out, const struct contact_case *one_case,
@@ -66,6 +78,7 @@ void coarse_solver_destroy(struct coarse_solver **solver) {
     struct coarse_solver *gone = *solver;
     if (gone == NULL)
         return;
+    contact_quantities_clear(&gone->quantities);
     patch_finder_destroy(&gone->finder);
     area_workspace_destroy(&gone->area);
     contact_destroy(&gone->contact);
@@ -82,6 +95,7 @@ int coarse_solver_press(struct coarse_solver *solver, const double *z, double *s
     const struct measure_context context = {.one_case = one_case,
                                             .area = solver->area,
                                             .finder = solver->finder,
+                                            .quantities = &solver->quantities,
                                             .points = (double)grid_points(&solver->grid),
                                             .rms_slope = solver->rms_slope,
                                             .rms_height = solver->rms_height,
@@ -98,23 +112,28 @@ int coarse_solver_press(struct coarse_solver *solver, const double *z, double *s
                                &pressed.state, &reason);
         if (status != 0)
             break;
-        contact_measure(&context, &pressed, values);
-        for (size_t a = 0; a < MEASURE_PAIRED; a++)
+        status = contact_measure(&context, &pressed, values, &reason);
+        for (size_t a = 0; a < measure_paired(one_case) && status == 0; a++)
             series[a * n + k] = values[a];
     }
-    for (size_t a = 0; status == ERROR_NUMERIC && a < MEASURE_PAIRED * n; a++)
+    for (size_t a = 0; status == ERROR_NUMERIC && a < measure_paired(one_case) * n; a++)
         series[a] = NAN;
     return status == 0 || status == ERROR_NUMERIC
                ? 0
                : error_set(err, status, "probe on a coarse mesh: %s", reason.text);
 }
 
-double coarse_solver_bytes(const struct grid *grid) {
+/* Quantities take more under low blocks. */
+double coarse_solver_bytes(const struct contact_case *one_case, const struct grid *grid) {
     const struct block block = {.model = MODEL_HALFSPACE, .height = INFINITY};
-    return patch_finder_bytes(grid) + contact_bytes(grid, &block) +
-           area_workspace_bytes(grid, &block) + compliance_bytes(grid, &block);
+    const struct quantity_scene scene = quantity_scene_of(one_case, grid, 1);
+    return contact_quantities_bytes(&scene) + patch_finder_bytes(grid) +
+           contact_bytes(grid, &block) + area_workspace_bytes(grid, &block) +
+           compliance_bytes(grid, &block);
 }
 
 double coarse_solver_seconds(const struct contact_case *one_case, const struct grid *grid) {
-    return cost_linear_contact(grid, one_case->tolerance, one_case->load_count);
+    const struct quantity_scene scene = quantity_scene_of(one_case, grid, INFINITY);
+    return cost_linear_contact(grid, one_case->tolerance, one_case->load_count) +
+           contact_quantities_seconds(&scene);
 }

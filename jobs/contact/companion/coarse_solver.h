@@ -27,7 +27,7 @@ void coarse_solver_destroy(struct coarse_solver **solver);
 int coarse_solver_press(struct coarse_solver *solver, const double *z, double *series,
                         const struct contact_stopper *stopper, struct error *err);
 
-double coarse_solver_bytes(const struct grid *grid);
+double coarse_solver_bytes(const struct contact_case *one_case, const struct grid *grid);
 /* Returns the mean CPU seconds of all loads on a 3 GHz core. */
 double coarse_solver_seconds(const struct contact_case *one_case, const struct grid *grid);
 

@@ -85,14 +85,14 @@ static double cell_bytes(const struct contact_case *one_case, const struct compa
     const struct grid *grid = &plan->level.grid;
     (void)one_case;
     return surface_case_bytes(&plan->surface) + 8 * (double)grid_points(grid) +
-           coarse_solver_bytes(grid);
+           coarse_solver_bytes(one_case, grid);
 }
 
 /* Returns whether the grids of a cell so many times as long exist, and suit the memory. */
 static bool set_length(const struct contact_case *one_case, double length,
                        struct companion_plan *out) {
     double own = surface_case_bytes(&one_case->surface) +
-                 coarse_solver_bytes(&contact_case_finest(one_case)->grid);
+                 coarse_solver_bytes(one_case, &contact_case_finest(one_case)->grid);
     *out = (struct companion_plan){.length = length};
     return choose_grids(one_case, out) && cell_bytes(one_case, out) <= fmax(BYTES_LEAST, own);
 }
@@ -215,9 +215,10 @@ static void cell_clear(void *workspace) {
  * the case's own cell, and shares are of that area. */
 static void scale_measures(const struct cell *cell, double *series) {
     double cells = pow(cell->plan->length, cell->one_case->surface.dimension);
-    for (size_t a = 0; a < MEASURE_PAIRED; a++)
+    for (size_t a = 0; a < measure_paired(cell->one_case); a++)
         for (size_t k = 0; k < cell->one_case->load_count; k++)
-            series[a * cell->one_case->load_count + k] *= measure_factor(MEASURES[a].cell, cells);
+            series[a * cell->one_case->load_count + k] *=
+                measure_factor(measure_row(a)->cell, cells);
 }
 
 /* Returns the key of a draw. Sequences of cases have none of the bits by which these differ. */

@@ -30,7 +30,7 @@ struct law {
 static double law_bytes(const struct contact_case *one_case, const struct companion_plan *plan) {
     const struct grid *grid = &plan->level.grid;
     return other_law_bytes(&one_case->surface) + 8 * (double)grid_points(grid) +
-           SERIES * coarse_solver_bytes(grid);
+           SERIES * coarse_solver_bytes(one_case, grid);
 }
 
 /* Returns the CPU seconds of both surfaces, one generated and both pressed. */
@@ -88,7 +88,7 @@ static int press_own(struct law *law, const struct contact_surface *surface,
     const struct contact_case *one_case = tally->one_case;
     if (subset_has(&one_case->companions[COMPANION_PROBE].due, surface->key.realisation)) {
         memcpy(series, contact_tally_series(tally, COMPANION_PROBE, 0, 0),
-               MEASURE_PAIRED * one_case->load_count * sizeof *series);
+               measure_paired(one_case) * one_case->load_count * sizeof *series);
         return 0;
     }
     int status = contact_level_sample(&law->plan->level, &one_case->surface, law->rms_height,

@@ -37,7 +37,8 @@ static bool like_plan(const struct contact_case *one_case, struct companion_plan
 
 static double like_bytes(const struct contact_case *one_case, const struct companion_plan *plan) {
     (void)one_case;
-    return coarse_solver_bytes(&plan->level.grid) + 16.0 * (double)grid_points(&plan->level.grid);
+    return coarse_solver_bytes(one_case, &plan->level.grid) +
+           16.0 * (double)grid_points(&plan->level.grid);
 }
 
 static double like_seconds(const struct contact_case *one_case, const struct companion_plan *plan) {

@@ -49,7 +49,7 @@ static size_t solved_blocks(const struct contact_case *one_case,
 static double probe_bytes(const struct contact_case *one_case, const struct companion_plan *plan) {
     const struct grid *grid = &plan->level.grid;
     return 8 * (double)grid_points(grid) +
-           (double)solved_blocks(one_case, plan) * coarse_solver_bytes(grid);
+           (double)solved_blocks(one_case, plan) * coarse_solver_bytes(one_case, grid);
 }
 
 static double probe_seconds(const struct contact_case *one_case,
@@ -114,7 +114,7 @@ static int probe_solve(void *workspace, const struct contact_surface *surface,
             status = coarse_solver_press(probe->blocks[b], probe->z, series, stopper, err);
         else
             memcpy(series, companion_series(one_case, out, probe->same[b]),
-                   MEASURE_PAIRED * one_case->load_count * sizeof *series);
+                   measure_paired(one_case) * one_case->load_count * sizeof *series);
     }
     return status;
 }

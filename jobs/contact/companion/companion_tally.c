@@ -53,7 +53,7 @@ static void add_pair(struct companion_tally *tally, const struct contact_case *o
                      const struct companion_plan *plan, size_t pair) {
     const double *of = companion_series(one_case, tally, plan->pairs[pair].of);
     const double *less = companion_series(one_case, tally, plan->pairs[pair].less);
-    for (enum contact_measure a = 0; a < MEASURE_PAIRED; a++)
+    for (enum contact_measure a = 0; a < measure_paired(one_case); a++)
         for (size_t k = 0; k < one_case->load_count; k++) {
             size_t cell = companion_cell(one_case, 0, a, k);
             contact_sums_add(&tally->differences, companion_cell(one_case, pair, a, k),
@@ -67,7 +67,7 @@ static void add_draw(struct companion_tally *tally, const struct contact_case *o
     for (size_t series = 0; series < plan->series; series++) {
         double *values = companion_series(one_case, tally, series);
         fill_fits(one_case, values);
-        for (enum contact_measure a = 0; a < MEASURE_PAIRED; a++)
+        for (enum contact_measure a = 0; a < measure_paired(one_case); a++)
             for (size_t k = 0; k < one_case->load_count; k++)
                 contact_sums_add(&tally->sums, companion_cell(one_case, series, a, k),
                                  values[companion_cell(one_case, 0, a, k)] *

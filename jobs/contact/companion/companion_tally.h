@@ -6,7 +6,7 @@
 #include "jobs/contact/contact_sums.h"
 
 struct companion_tally {
-    double *values; /* owned: by draw, series, measure below MEASURE_PAIRED and load; NaN: none */
+    double *values; /* owned: by draw, series, measure below measure_paired and load; NaN: none */
     size_t draw;    /* that is being solved */
     size_t draws;   /* of the present realisation, 1 until it has more */
     struct contact_sums sums;        /* by series, measure and load */
@@ -16,7 +16,7 @@ struct companion_tally {
 /* Returns the index of a series or pair, a measure and a load. */
 static inline size_t companion_cell(const struct contact_case *one_case, size_t series,
                                     enum contact_measure measure, size_t load) {
-    return (series * MEASURE_PAIRED + (size_t)measure) * one_case->load_count + load;
+    return (series * measure_paired(one_case) + (size_t)measure) * one_case->load_count + load;
 }
 /* Returns the values of a series of the draw that is being solved, by measure and load. */
 static inline double *companion_series(const struct contact_case *one_case,

@@ -24,7 +24,7 @@ int linear_create(struct contact_solver **out, const struct contact_case *one_ca
     if (solver == NULL)
         return error_memory(err, sizeof *solver, "a contact solver");
     options.tolerance = one_case->tolerance;
-    options.without_tangent = !one_case->stiffness;
+    options.without_tangent = !contact_case_needs_tangent(one_case);
     solver->poisson = one_case->blocks[model].poisson;
     int status = contact_create(&solver->contact, compliance, &options, err);
     if (status != 0)

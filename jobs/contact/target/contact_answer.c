@@ -594,7 +594,7 @@ static enum contact_measure area_measure(const struct contact_answer *answer) {
  * limit in large cells. */
 static bool is_answered(const struct contact_answer *answer, enum contact_measure measure) {
     const struct contact_case *one_case = answer->one_case;
-    const struct measure *of = &MEASURES[measure];
+    const struct measure *of = measure_row(measure);
     return measure < MEASURE_PAIRED && of->quantity != NULL && of->cell != CELL_UNLIMITED &&
            of->shown(one_case, one_case->model_count - 1);
 }
@@ -631,7 +631,7 @@ static int answer_sums(const struct contact_answer *answer, double work, uint64_
             continue;
         status = sum_measure(answer, measure, &sums[measure], err);
         if (status == 0)
-            status = put_curve(answer, &sums[measure], &MEASURES[measure], err);
+            status = put_curve(answer, &sums[measure], measure_row(measure), err);
     }
     if (status == 0 && answer->densities)
         status = put_densities(answer, &sums[MEASURE_EDGES], err);

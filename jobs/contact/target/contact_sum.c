@@ -28,7 +28,7 @@ static double heights_bound(const struct target_component *base, double value, s
 }
 
 static double factor_of(const struct target_component *component, enum contact_measure measure) {
-    return measure_factor(MEASURES[measure].cell,
+    return measure_factor(measure_row(measure)->cell,
                           surface_case_waves(&component_case(component)->surface));
 }
 

@@ -174,6 +174,10 @@ static const struct option_row OPTIONS[] = {
      "Young's modulus of the block, such as 210GPa: results in physical units"},
     {"effective-modulus", 0, OPTION_TEXT, 0, 0, AT(words.effective_modulus), "E*", NULL,
      "in place of it: E* = E/(1 - nu^2), or that of two elastic bodies"},
+    {"resistivity", 0, OPTION_TEXT, 0, 0, AT(words.resistivity), "RHO[,RHO]", NULL,
+     "electric resistivity of both bodies, or of each, in ohm m: the conductance of the contact"},
+    {"conductivity", 0, OPTION_TEXT, 0, 0, AT(words.conductivity), "K[,K]", NULL,
+     "in place of it: thermal conductivity in W/(m K)"},
     {"model", 0, OPTION_MODELS, 0, 0, AT(model), "MODEL", "halfspace",
      "what the block is made of; of several, with commas between, the differences to the most "
      "complete one are errors of the others"},
@@ -383,6 +387,8 @@ static int report(const struct press_order *order, const struct pressed *pressed
                                         .model_count = order->model_count,
                                         .series = pressed->series,
                                         .modulus = order->loads.modulus,
+                                        .resistivity = order->loads.resistivity,
+                                        .heat = order->loads.heat,
                                         .metres = strcmp(map->xy_unit, "m") == 0,
                                         .map_area = map_area(press),
                                         .loads = order->loads.count,
@@ -443,7 +449,8 @@ static int order_models(struct press_order *order, struct error *err) {
         order->blocks[m] = (struct press_block){.model = CONTACT_MODELS[positions[m]],
                                                 .poisson = options->words.poisson,
                                                 .lengths = options->lengths,
-                                                .tolerance = options->tolerance};
+                                                .tolerance = options->tolerance,
+                                                .conducts = order->loads.resistivity > 0};
     return 0;
 }
 
@@ -456,10 +463,10 @@ static int run(const void *values, const char *const *arguments) {
     if (status == 0) {
         order->path = arguments[0];
         order->options = options;
-        status = order_models(order, &err);
+        status = press_loads_parse(&order->loads, &options->words, &err);
     }
     if (status == 0)
-        status = press_loads_parse(&order->loads, &options->words, &err);
+        status = order_models(order, &err);
     if (status == 0)
         status = press_files_check(&options->paths, &err);
     if (status == 0)

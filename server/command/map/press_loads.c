@@ -1,6 +1,8 @@
 #include "server/command/map/press_loads.h"
 #include "server/command/options.h"
 #include "server/show/quantity.h"
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const char REDUCED[] = "0.01,0.02,0.05,0.1,0.2,0.3";
@@ -22,6 +24,37 @@ static int parse_modulus(struct press_loads *out, const struct press_words *word
     return 0;
 }
 
+/* Reads one number for both bodies, or two. */
+static bool read_pair(const char *text, double pair[2]) {
+    char *end;
+    pair[0] = pair[1] = strtod(text, &end);
+    if (end != text && *end == ',') {
+        text = end + 1;
+        pair[1] = strtod(text, &end);
+    }
+    return end != text && *end == '\0' && pair[0] > 0 && pair[1] > 0 && isfinite(pair[0]) &&
+           isfinite(pair[1]);
+}
+
+static int parse_conduction(struct press_loads *out, const struct press_words *words,
+                            struct error *err) {
+    double pair[2];
+    out->heat = words->conductivity != NULL;
+    const char *text = out->heat ? words->conductivity : words->resistivity;
+    if (out->heat && words->resistivity != NULL)
+        return error_set(err, ERROR_INPUT, "--resistivity and --conductivity: give one of the two");
+    if (text == NULL)
+        return 0;
+    if (!read_pair(text, pair))
+        return error_set(err, ERROR_INPUT,
+                         "--%s %.40s: allowed is a number above 0 in %s for both bodies, such as "
+                         "%s, or one for each, with a comma between",
+                         out->heat ? "conductivity" : "resistivity", text,
+                         out->heat ? "W/(m K)" : "ohm m", out->heat ? "50" : "1e-7");
+    out->resistivity = out->heat ? 1 / pair[0] + 1 / pair[1] : pair[0] + pair[1];
+    return 0;
+}
+
 int press_loads_parse(struct press_loads *out, const struct press_words *words, struct error *err) {
     const char *loads = words->loads;
     int given = (loads != NULL) + (words->pressure != NULL) + (words->force != NULL);
@@ -29,6 +62,8 @@ int press_loads_parse(struct press_loads *out, const struct press_words *words, 
     if (given > 1)
         return error_set(err, ERROR_INPUT, "--loads, --pressure, --force: give one of the three");
     int status = parse_modulus(out, words, err);
+    if (status == 0)
+        status = parse_conduction(out, words, err);
     if (status != 0)
         return status;
     if (words->pressure == NULL && words->force == NULL)

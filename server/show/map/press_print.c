@@ -38,6 +38,11 @@ static double number_at(const double *numbers, size_t load) {
     return numbers != NULL ? numbers[load] : (double)NAN;
 }
 
+/* Returns whether a column is of this contact: those of quantities are where they are asked for. */
+static bool has_column(const struct press_report *report, const struct press_column *column) {
+    return column->value >= MEASURE_COUNT || measure_is_of(&report->press->one_case, column->value);
+}
+
 static const struct press_column *column_of(size_t value) {
     size_t c = 0;
     while (PRESS_COLUMNS[c].value != value)
@@ -47,7 +52,15 @@ static const struct press_column *column_of(size_t value) {
 
 /* --- physical units --- */
 
-enum kind { KIND_PRESSURE, KIND_FORCE, KIND_AREA, KIND_LENGTH, KIND_STIFFNESS };
+enum kind {
+    KIND_PRESSURE,
+    KIND_FORCE,
+    KIND_AREA,
+    KIND_LENGTH,
+    KIND_STIFFNESS,
+    KIND_CURRENT,
+    KIND_HEAT
+};
 
 /* A column of the table in physical units: a value times a scale. */
 struct physical_column {
@@ -56,7 +69,7 @@ struct physical_column {
     size_t value;
     double scale; /* to SI units; 0: not known */
 };
-enum { PHYSICAL_COLUMNS = 7 };
+enum { PHYSICAL_COLUMNS = 8 };
 
 static void fill_physical(const struct press_report *report,
                           struct physical_column columns[PHYSICAL_COLUMNS]) {
@@ -64,6 +77,10 @@ static void fill_physical(const struct press_report *report,
     double pressure = press->slope * report->modulus, length = report->metres ? press->height : 0;
     double area = report->metres ? report->map_area : 0;
     double stiffness = length > 0 ? pressure / length * area : 0;
+    double conducted = length > 0 && report->resistivity > 0
+                           ? 2 * press->slope / press->height * area / report->resistivity
+                           : 0;
+    enum kind conduction = report->heat ? KIND_HEAT : KIND_CURRENT;
     const struct physical_column all[PHYSICAL_COLUMNS] = {
         {"pressure", "pressure", KIND_PRESSURE, PRESS_LOAD, pressure},
         {"force", "force", KIND_FORCE, PRESS_LOAD, pressure * area},
@@ -71,14 +88,15 @@ static void fill_physical(const struct press_report *report,
         {"peak pressure", "peak_pressure", KIND_PRESSURE, PRESS_PEAK, pressure},
         {"approach", "approach", KIND_LENGTH, PRESS_APPROACH, length},
         {"mean gap", "mean_gap", KIND_LENGTH, MEASURE_GAP, length},
-        {"stiffness", "stiffness", KIND_STIFFNESS, MEASURE_STIFFNESS, stiffness}};
+        {"stiffness", "stiffness", KIND_STIFFNESS, MEASURE_STIFFNESS, stiffness},
+        {"conductance", "conductance", conduction, CONDUCTANCE_MEASURE, conducted}};
     memcpy(columns, all, sizeof all);
 }
 
 /* Returns the unit in SI, as in JSON. */
 static const char *si_unit(enum kind kind, bool profile) {
-    static const char *const UNITS[] = {"Pa", "N", "m^2", "m", "N/m"};
-    static const char *const PROFILE_UNITS[] = {"Pa", "N/m", "m", "m", "N/m^2"};
+    static const char *const UNITS[] = {"Pa", "N", "m^2", "m", "N/m", "S", "W/K"};
+    static const char *const PROFILE_UNITS[] = {"Pa", "N/m", "m", "m", "N/m^2", "S/m", "W/(m K)"};
     return profile ? PROFILE_UNITS[kind] : UNITS[kind];
 }
 
@@ -170,20 +188,20 @@ static void print_errors(FILE *file, const struct part *part, enum error_source 
     struct text_table table = {.columns = 1};
     bool known = source == ERROR_DISCRETISATION;
     for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++) {
-        table.columns += PRESS_COLUMNS[c].uncertain;
-        known = known || (PRESS_COLUMNS[c].uncertain &&
-                          error_of(part, &PRESS_COLUMNS[c], source).value != NULL);
+        bool shown = PRESS_COLUMNS[c].uncertain && has_column(part->report, &PRESS_COLUMNS[c]);
+        table.columns += shown;
+        known = known || (shown && error_of(part, &PRESS_COLUMNS[c], source).value != NULL);
     }
     if (!known || SOURCE_WORDS[source] == NULL)
         return;
     table_cell(&table, "%s", column_of(PRESS_LOAD)->heading);
     for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++)
-        if (PRESS_COLUMNS[c].uncertain)
+        if (PRESS_COLUMNS[c].uncertain && has_column(part->report, &PRESS_COLUMNS[c]))
             table_cell(&table, "%s", PRESS_COLUMNS[c].heading);
     for (size_t l = 0; l < part->report->loads; l++) {
         table_number(&table, value_of(part, l, column_of(PRESS_LOAD)));
         for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++)
-            if (PRESS_COLUMNS[c].uncertain) {
+            if (PRESS_COLUMNS[c].uncertain && has_column(part->report, &PRESS_COLUMNS[c])) {
                 struct curve_error error = error_of(part, &PRESS_COLUMNS[c], source);
                 put_error(&table, &error, l);
             }
@@ -194,16 +212,21 @@ static void print_errors(FILE *file, const struct part *part, enum error_source 
 }
 
 static void print_part(FILE *file, const struct part *part) {
-    struct text_table table = {.columns = PRESS_COLUMN_COUNT};
+    struct text_table table = {0};
     print_heading(file, part);
+    for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++)
+        table.columns += has_column(part->report, &PRESS_COLUMNS[c]);
     for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++) {
+        if (!has_column(part->report, &PRESS_COLUMNS[c]))
+            continue;
         if (PRESS_COLUMNS[c].fold)
             table_fold(&table);
         table_cell(&table, "%s", PRESS_COLUMNS[c].heading);
     }
     for (size_t l = 0; l < part->report->loads; l++)
         for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++)
-            table_number(&table, value_of(part, l, &PRESS_COLUMNS[c]));
+            if (has_column(part->report, &PRESS_COLUMNS[c]))
+                table_number(&table, value_of(part, l, &PRESS_COLUMNS[c]));
     table_print(&table, file);
     table_clear(&table);
     print_physical(file, part);
@@ -238,7 +261,7 @@ static bool add_bounds(cJSON *document, const struct part *part, double *column)
     for (size_t c = 0; c < PRESS_COLUMN_COUNT && complete; c++) {
         struct curve_error error = error_of(part, &PRESS_COLUMNS[c], ERROR_DISCRETISATION);
         char key[40];
-        if (!PRESS_COLUMNS[c].uncertain)
+        if (!PRESS_COLUMNS[c].uncertain || !has_column(part->report, &PRESS_COLUMNS[c]))
             continue;
         snprintf(key, sizeof key, "%s_error", PRESS_COLUMNS[c].key);
         for (size_t l = 0; l < part->report->loads; l++)
@@ -325,7 +348,9 @@ static bool add_part(cJSON *document, const struct part *part, double *column) {
     double full_contact = part->series->full_contact / part->report->press->slope;
     bool complete = cJSON_AddItemToObject(document, "full_contact", json_number(full_contact));
     for (size_t c = 0; c < PRESS_COLUMN_COUNT && complete; c++)
-        complete = add_column(document, PRESS_COLUMNS[c].key, part, &PRESS_COLUMNS[c], 1, column);
+        if (has_column(part->report, &PRESS_COLUMNS[c]))
+            complete =
+                add_column(document, PRESS_COLUMNS[c].key, part, &PRESS_COLUMNS[c], 1, column);
     return complete && add_errors(document, part, column) && add_physical(document, part, column);
 }
 

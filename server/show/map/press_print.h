@@ -16,6 +16,8 @@ struct press_report {
     size_t model_count;
     const struct press_series *series; /* one a model */
     double modulus;                    /* E* in Pa; 0: not known */
+    double resistivity;                /* of both bodies, ohm m or m K/W; 0: not known */
+    bool heat;                         /* to heat, else to current */
     bool metres;                       /* the map's lengths are */
     double map_area;                   /* of a profile its length */
     size_t loads;

@@ -285,7 +285,7 @@ static bool print_members(const struct case_table *table, size_t r, size_t at, F
         bool text = parameter != NULL && parameter->text != NULL &&
                     at == offsetof(struct table_value, value);
         fputc(n > 0 ? ',' : '[', file);
-        if (text && parameter->list)
+        if (text && (parameter->list || parameter->flag))
             fputs(parameter->text, file);
         else if (text)
             done = json_print_text(file, parameter->text);

@@ -31,7 +31,8 @@ static cJSON *value_of(const struct result_parameter *parameter) {
         return cJSON_CreateNull();
     if (parameter->text == NULL)
         return json_number(parameter->number);
-    return parameter->list ? cJSON_Parse(parameter->text) : cJSON_CreateString(parameter->text);
+    return parameter->list || parameter->flag ? cJSON_Parse(parameter->text)
+                                              : cJSON_CreateString(parameter->text);
 }
 
 static bool put_case(cJSON *list, const struct shown_cases *shown, const struct case_result *one) {

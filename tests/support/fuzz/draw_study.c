@@ -121,6 +121,8 @@ static cJSON *drawn_value(struct choices *choices, const struct parameter *row,
     case PARAMETER_CHOICE:
         return cJSON_CreateString(row->choices != NULL ? drawn_choice(choices, row->choices)
                                                        : "contact");
+    case PARAMETER_FLAG:
+        return cJSON_CreateBool((cJSON_bool)choose(choices, 2));
     case PARAMETER_NUMBERS:
         return row->choices != NULL && choose_rarely(choices, 2)
                    ? cJSON_CreateString(drawn_choice(choices, row->choices))

@@ -98,6 +98,31 @@ static void statistics_have_heights_and_curvatures(void **state) {
     study_result_clear(&study);
 }
 
+/* One resistivity is that of both bodies; without one conductance has no unit. */
+static void conductance_is_of_current_or_heat(void **state) {
+    (void)state;
+    static const struct {
+        const char *parameter, *list, *unit;
+        double both;
+    } CASES[] = {{"/contact/resistivity", "[2e-8]", "S/m^2", 4e-8},
+                 {"/contact/resistivity", "[2e-8,6e-8]", "S/m^2", 8e-8},
+                 {"/contact/conductivity", "[50]", "W/(m^2 K)", 2. / 50},
+                 {"/contact/conductivity", "[50,20]", "W/(m^2 K)", 1. / 50 + 1. / 20},
+                 {"/contact/tolerance", NULL, NULL, 0}};
+    for (size_t n = 0; n < sizeof CASES / sizeof *CASES; n++) {
+        struct study_result study = built_study("contact", "units", 1);
+        struct case_result *one = &study.cases[0];
+        built_parameter(one, "/surface/unit", NULL, 2e-6);
+        built_parameter(one, CASES[n].parameter, CASES[n].list, NAN);
+        built_scalar(one, "rms_height", 0.05, 0, NAN);
+        built_scalar(one, "rms_slope", 0.1, 0, NAN);
+        add_curve(one, "conductance", "p/(E* h'_rms)", "G (rho1 + rho2) sqrt(m0)/(2 h'_rms)");
+        units_set(one);
+        check_unit(&one->curves[0].y_unit, CASES[n].unit, 2 * 0.1 / (0.05 * 2e-6) / CASES[n].both);
+        study_result_clear(&study);
+    }
+}
+
 /* Without the unit of lengths pressures are known for loads in Pa alone, and not for the modulus
  * that stands for none. */
 static void what_is_not_known_has_no_unit(void **state) {
@@ -190,6 +215,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(contact_has_pressures_and_lengths),
         cmocka_unit_test(statistics_have_heights_and_curvatures),
+        cmocka_unit_test(conductance_is_of_current_or_heat),
         cmocka_unit_test(what_is_not_known_has_no_unit),
         cmocka_unit_test(documents_keep_units),
         cmocka_unit_test(differences_have_common_units),

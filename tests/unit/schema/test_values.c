@@ -35,6 +35,7 @@ static const struct parameter SECOND[] = {
      .type = PARAMETER_CHOICES,
      .choices = COLOURS,
      .default_json = "\"green\""},
+    {.path = "/flag", .type = PARAMETER_FLAG},
     {.path = "/measure",
      .type = PARAMETER_MEASURE,
      .choices = DEPTHS,
@@ -64,7 +65,7 @@ static void given(void **state) {
     struct values *values =
         values_of("{\"a\": {\"number\": 1, \"integer\": 9, \"choice\": \"red\"},"
                   " \"numbers\": [-1, 0, 1], \"choices\": [\"blue\", \"red\"],"
-                  " \"measure\": {\"feet\": 3}}",
+                  " \"measure\": {\"feet\": 3}, \"flag\": true}",
                   &parameters, NULL);
     double *numbers;
     size_t n;
@@ -72,6 +73,7 @@ static void given(void **state) {
     assert_true(values_number(values, "/a/number") == 1 &&
                 values_number(values, "/a/integer") == 9);
     assert_int_equal(values_choice(values, "/a/choice"), RED);
+    assert_true(values_flag(values, "/flag"));
     assert_int_equal(values_numbers(values, "/numbers", &numbers, &n, NULL), 0);
     assert_true(n == 3 && numbers[0] == -1 && numbers[2] == 1);
     free(numbers);

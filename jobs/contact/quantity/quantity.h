@@ -1,0 +1,88 @@
+/* The interface of a quantity that stands on a solved contact, such as its conductance. A quantity
+ * is one struct, filled in one file quantity_NAME.c, and one entry in the list below. It is made of
+ * the pressures, the gap and the stiffness of a load (struct contact_pressed), whatever the model,
+ * and costs nothing in studies that do not ask for it.
+ *
+ * It has measures of its own (measure.h), so that its curves have every error that others have. */
+#ifndef RUGO_JOBS_CONTACT_QUANTITY_QUANTITY_H
+#define RUGO_JOBS_CONTACT_QUANTITY_QUANTITY_H
+
+#include "jobs/contact/contact_case.h"
+#include "jobs/contact/contact_measure.h"
+
+/* All quantities: NAME and how many measures it has. NAME_QUANTITY is its struct, NAME_PARAMETERS
+ * its table of parameters. Partial results hold measures in this order, so that an entry comes
+ * behind all others. */
+#define CONTACT_QUANTITY_LIST(ENTRY) ENTRY(CONDUCTANCE, 1)
+
+/* NAME_MEASURE: the number of its first measure. */
+#define CONTACT_QUANTITY_NUMBER(name, count)                                                       \
+    name##_MEASURE, name##_MEASURE_LAST = name##_MEASURE + (count)-1,
+enum {
+    CONTACT_QUANTITY_BEFORE = MEASURE_QUANTITIES - 1,
+    CONTACT_QUANTITY_LIST(CONTACT_QUANTITY_NUMBER) CONTACT_QUANTITY_BEHIND
+};
+_Static_assert((int)CONTACT_QUANTITY_BEHIND <= (int)MEASURE_PAIRED, "too many measures");
+
+/* What a quantity is measured on: one grid under one model. */
+struct quantity_scene {
+    const struct contact_case *one_case; /* borrowed, for as long as the state lives */
+    struct grid grid;
+    struct block block;
+    bool exact; /* by core/contact on the block itself, without a mesh */
+    bool open;  /* in free space */
+};
+
+struct quantity_state; /* each quantity's own */
+
+struct contact_quantity {
+    const struct measure *measures;
+    bool tangent; /* needs that of linear solutions */
+    /* Returns whether a study asks for the quantity, and adds its faults. */
+    bool (*read)(const struct contact_case *one_case, struct values *values);
+    /* Return the bytes of a state, and the CPU seconds of all loads on a 3 GHz core. */
+    double (*bytes)(const struct quantity_scene *scene);
+    double (*seconds)(const struct quantity_scene *scene);
+    int (*create)(struct quantity_state **out, const struct quantity_scene *scene,
+                  struct error *err);
+    void (*destroy)(struct quantity_state **state);
+    /* Measures a solved load into as many values as the quantity has; NaN: none. */
+    int (*measure)(struct quantity_state *state, const struct measure_context *context,
+                   const struct contact_pressed *pressed, double *values, struct error *err);
+};
+
+/* The parameters of all, for the tables of the kind. */
+#define CONTACT_QUANTITY_DECLARE(name, count)                                                      \
+    extern const struct contact_quantity name##_QUANTITY;                                          \
+    extern const struct parameter_table name##_PARAMETERS;
+CONTACT_QUANTITY_LIST(CONTACT_QUANTITY_DECLARE)
+#define CONTACT_QUANTITY_TABLE(name, count) &name##_PARAMETERS,
+#define CONTACT_QUANTITY_TABLES CONTACT_QUANTITY_LIST(CONTACT_QUANTITY_TABLE)
+
+/* Fills which quantities the study asks for, with their faults. */
+void contact_quantities_read(struct contact_case *one_case, struct values *values);
+/* Asks for the quantity with this measure, in a case that no study describes. */
+void contact_quantities_ask(struct contact_case *one_case, size_t measure);
+/* Returns whether one that the case asks for needs the tangent. */
+bool contact_quantities_need_tangent(const struct contact_case *one_case);
+/* Returns the row of a measure by its number from MEASURE_QUANTITIES on; NULL: no quantity has it.
+ */
+const struct measure *quantity_measure(size_t number);
+/* Returns whether the case asks for the quantity with this measure. */
+bool quantity_is_asked(const struct contact_case *one_case, size_t number);
+
+/* The states of all quantities that a case asks for, of one grid and one thread. */
+struct contact_quantities {
+    struct quantity_state *of[CONTACT_QUANTITIES_MOST]; /* owned; NULL: not asked for */
+};
+int contact_quantities_create(struct contact_quantities *out, const struct quantity_scene *scene,
+                              struct error *err);
+void contact_quantities_clear(struct contact_quantities *quantities);
+double contact_quantities_bytes(const struct quantity_scene *scene);
+double contact_quantities_seconds(const struct quantity_scene *scene);
+/* Fills values[QUANTITY_MEASURES_MOST]; NaN where not asked for. */
+int contact_quantities_measure(const struct measure_context *context,
+                               const struct contact_pressed *pressed, double *values,
+                               struct error *err);
+
+#endif

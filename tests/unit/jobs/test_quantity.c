@@ -1,0 +1,171 @@
+/* Protects what studies ask of a solved contact: the conductance is the stiffness of a half-space
+ * without end, and of other blocks that of half-spaces through their nodes; it has the errors of
+ * other curves and does not depend on how realisations are cut into blocks. A case that does not
+ * ask for it keeps the bytes of its partial results. */
+#include "jobs/contact/contact_case_read.h"
+#include "jobs/contact/quantity/quantity.h"
+#include "tests/support/check.h"
+#include "tests/support/contact_document.h"
+#include <stdio.h>
+#include <stdlib.h>
+
+#define STUDY(contact)                                                                             \
+    "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": " \
+    "4, \"points_per_wavelength\": 8, \"rms_slope\": 0.1}, \"contact\": {\"levels\": [4, 8], "     \
+    "\"pressures\": {\"values\": [0.01, 0.1]}, " contact "}}"
+enum { LOADS = 2 };
+
+static void half_space_conducts_as_it_is_stiff(void **state) {
+    (void)state;
+    cJSON *document = solve(STUDY("\"conductance\": true"), 3);
+    const cJSON *conductance = curve_of(document, "conductance", "", "halfspace");
+    const cJSON *stiffness = curve_of(document, "stiffness", "", "halfspace");
+    static const char *const KEYS[] = {"/y", "/standard_error", "/discretisation_bound",
+                                       "/solver_bound", "/cell_bound"};
+    for (int k = 0; k < LOADS; k++)
+        for (size_t a = 0; a < sizeof KEYS / sizeof *KEYS; a++) {
+            double value = at(conductance, KEYS[a], k);
+            if (!(value > 0))
+                fail_msg("%s at %d: %g", KEYS[a], k, value);
+            assert_near(value, at(stiffness, KEYS[a], k), 0, at(conductance, "/x", k));
+        }
+    cJSON_Delete(document);
+}
+
+/* A layer of a twentieth of the cell is at least a fifth stiffer than half-spaces that touch in its
+ * nodes, which conduct; a high one is as stiff as they. */
+static void low_blocks_conduct_as_half_spaces(void **state) {
+    (void)state;
+    static const struct {
+        const char *study;
+        double least, most; /* stiffness over conductance */
+    } BLOCKS[] = {
+        {STUDY("\"conductance\": true, \"block_height\": {\"lengths\": 0.05}"), 1.2, 20},
+        {STUDY("\"conductance\": true, \"block_height\": {\"lengths\": 2}"), 0.9999, 1.0001}};
+    for (size_t b = 0; b < 2; b++) {
+        cJSON *document = solve(BLOCKS[b].study, 2);
+        for (int k = 0; k < LOADS; k++) {
+            double stiff = at(curve_of(document, "stiffness", "", "halfspace"), "/y", k) /
+                           at(curve_of(document, "conductance", "", "halfspace"), "/y", k);
+            if (!(stiff > BLOCKS[b].least && stiff < BLOCKS[b].most))
+                fail_msg("block %zu, load %d: %.6g times as stiff as what conducts", b, k, stiff);
+        }
+        cJSON_Delete(document);
+    }
+}
+
+/* Without the stiffness shown the conductance stays what it is. */
+static void stiffness_may_be_omitted(void **state) {
+    (void)state;
+    cJSON *with = solve(STUDY("\"conductance\": true"), 2);
+    cJSON *without = solve(STUDY("\"conductance\": true, \"stiffness\": \"omitted\""), 2);
+    for (int k = 0; k < LOADS; k++)
+        assert_near(at(curve_of(without, "conductance", "", "halfspace"), "/y", k),
+                    at(curve_of(with, "conductance", "", "halfspace"), "/y", k), 0, k);
+    const cJSON *curve;
+    cJSON_ArrayForEach(curve, json_at(without, "/curves")) {
+        assert_false(text_is(curve, "/quantity", "stiffness"));
+    }
+    cJSON_Delete(with);
+    cJSON_Delete(without);
+}
+
+/* The document of realisations 0 .. 3 in blocks of `block`. */
+static char *in_blocks(const char *study, uint64_t block, size_t *bytes) {
+    const struct job_kind *kind = kind_find("contact");
+    struct job_runner *runner = NULL;
+    struct job_merger *merger = NULL;
+    struct error err = {0};
+    cJSON *parameters = cJSON_Parse(study), *document = NULL;
+    *bytes = 0;
+    if (runner_create(&runner, kind, parameters, NULL, CONTACT_SEED, 0, &err) != 0 ||
+        merger_create(&merger, kind, parameters, &err) != 0)
+        fail_msg("%s: %s", study, err.text);
+    for (uint64_t first = 0; first < 4; first += block) {
+        struct block_result result = {0};
+        if (runner_run(runner, first, block, NULL, &result, &err) != 0 ||
+            merger_add(merger, &result, &err) != 0)
+            fail_msg("%s: %s", study, err.text);
+        *bytes += result.size;
+        block_result_clear(&result);
+    }
+    if (merger_tree(merger, NULL, NULL, &document, &err) != 0)
+        fail_msg("%s: %s", study, err.text);
+    char *text = cJSON_PrintUnformatted(document);
+    cJSON_Delete(document);
+    cJSON_Delete(parameters);
+    runner_destroy(&runner);
+    merger_destroy(&merger);
+    return text;
+}
+
+static void blocks_do_not_matter(void **state) {
+    (void)state;
+    static const char STUDIED[] =
+        STUDY("\"conductance\": true, \"model\": [\"halfspace\", \"layered\"]");
+    size_t one_block, four_blocks;
+    char *one = in_blocks(STUDIED, 4, &one_block), *four = in_blocks(STUDIED, 1, &four_blocks);
+    assert_string_equal(one, four);
+    assert_non_null(strstr(one, "\"conductance\""));
+    free(one);
+    free(four);
+}
+
+/* What a case without quantities holds is counted by what it has to: sums of 20 measures of the
+ * values, 15 of their differences, whatever quantities exist. */
+static void what_is_not_asked_for_takes_no_room(void **state) {
+    (void)state;
+    struct contact_case one_case;
+    struct error err = {0};
+    size_t without, with;
+    cJSON *parameters = cJSON_Parse(STUDY("\"conductance\": false"));
+    assert_int_equal(contact_case_read(&one_case, parameters, 0, NULL, &err), 0);
+    cJSON_Delete(parameters);
+    assert_int_equal(measure_paired(&one_case), MEASURE_QUANTITIES);
+    for (size_t a = MEASURE_QUANTITIES; a < MEASURE_PAIRED; a++) {
+        assert_false(measure_is_of(&one_case, a));
+        assert_false(measure_row(a)->kept(&one_case) || measure_row(a)->shown(&one_case, 0));
+    }
+    contact_case_clear(&one_case);
+    free(in_blocks(STUDY("\"conductance\": false"), 4, &without));
+    free(in_blocks(STUDY("\"conductance\": true"), 4, &with));
+    assert_true(with > without);
+    for (size_t a = 0; a < MEASURE_OWN; a++) /* each has its curve once */
+        for (size_t b = 0; b < a; b++)
+            assert_true(MEASURE_CURVES[a] != MEASURE_CURVES[b]);
+}
+
+static void refuse(const char *contact, const char *expected) {
+    struct contact_case one_case;
+    struct error err = {0};
+    char study[600];
+    snprintf(study, sizeof study, STUDY("%s"), contact);
+    cJSON *parameters = cJSON_Parse(study);
+    assert_non_null(parameters);
+    assert_int_equal(contact_case_read(&one_case, parameters, 0, NULL, &err), ERROR_INPUT);
+    cJSON_Delete(parameters);
+    assert_string_equal(err.text, expected);
+}
+
+static void what_does_not_fit_is_refused(void **state) {
+    (void)state;
+    refuse("\"conductance\": 1", "/contact/conductance: 1 is not true or false");
+    refuse("\"resistivity\": [1e-7]",
+           "/contact/resistivity: nothing conducts unless /contact/conductance is true");
+    refuse("\"conductance\": true, \"resistivity\": [1e-7], \"conductivity\": [50]",
+           "/contact/conductivity: give it or /contact/resistivity, not both");
+    refuse("\"conductance\": true, \"resistivity\": [1, 2, 3]",
+           "/contact/resistivity: [1,2,3] is not an array of 1 to 2 numbers");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(half_space_conducts_as_it_is_stiff),
+        cmocka_unit_test(low_blocks_conduct_as_half_spaces),
+        cmocka_unit_test(stiffness_may_be_omitted),
+        cmocka_unit_test(blocks_do_not_matter),
+        cmocka_unit_test(what_is_not_asked_for_takes_no_room),
+        cmocka_unit_test(what_does_not_fit_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
