@@ -415,10 +415,13 @@ check-documents: all
 FIGURES = jobs/studies/figures
 # Pages with tables of growth; growth.svg beside a page is drawn from them.
 GROWING = schema/README.md jobs/studies/GROWTH.md
+# The page with the table of other codes at equal error, of which equal-error.svg is drawn.
+PEERS_PAGE = jobs/studies/VALIDATION.md
 figures: all
 	@$(FIGURES)/draw $(BUILD)/rugo $(FIGURES)
 	@tests/install-deps "" python3 python3
 	@for page in $(GROWING); do python3 tests/bench/growth_picture.py $$page >$$(dirname $$page)/growth.svg || exit; done
+	@python3 tests/bench/error_picture.py $(PEERS_PAGE) >jobs/studies/equal-error.svg
 page-figures: all
 	@tests/browser/run $(abspath $(BUILD))/rugo $(FIGURES)
 # Needs sqlite3, as the documents do.
@@ -434,6 +437,7 @@ check-figures: all
 	@tests/install-deps "" python3 python3
 	@for page in $(GROWING); do \
 	    python3 tests/bench/growth_picture.py $$page | cmp - $$(dirname $$page)/growth.svg || exit; done
+	@python3 tests/bench/error_picture.py $(PEERS_PAGE) | cmp - jobs/studies/equal-error.svg
 	@echo "figures: as the program draws them"
 .PHONY: check-citations figures page-figures check-figures
 

@@ -9,12 +9,12 @@ enum { POWERS_MOST = 2 };
 /* An axis or a scalar in a physical unit: `factor` times powers of E* in Pa, of lambda_s in metres
  * and of scalars of the result, over the sum of the resistivities of both bodies. */
 struct unit_row {
-    const char *of;     /* the label of the axis, or the name of the scalar */
-    int dimension;      /* of surfaces of this dimension alone; 0: of all */
-    const char *symbol; /* NULL: the name */
+    const char *of; /* the label of the axis, or the name of the scalar */
+    int dimension;  /* of surfaces of this dimension alone; 0: of all */
+    enum conduction { NOTHING, CURRENT, HEAT } conducts; /* over the resistivities to it */
+    const char *symbol;                                  /* NULL: the name */
     const char *unit;
     int modulus, length;
-    enum conduction { NOTHING, CURRENT, HEAT } conducts; /* over the resistivities to it */
     struct scalar_power {
         const char *scalar;
         double power;
@@ -30,52 +30,52 @@ struct unit_row {
 #define CONDUCTANCE "G (rho1 + rho2) sqrt(m0)/(2 h'_rms)"
 #define CURVATURE {{"m4", 0.5}}
 static const struct unit_row AXES[] = {
-    {"p/(E* h'_rms)", 0, "p", "Pa", 1, 0, NOTHING, {{"rms_slope", 1}}, 0},
-    {"peak p/(E* h'_rms)", 0, "peak p", "Pa", 1, 0, NOTHING, {{"rms_slope", 1}}, 0},
-    {"mean gap/sqrt(m0)", 0, "mean gap", "m", 0, 1, NOTHING, HEIGHT, 0},
-    {"K sqrt(m0)/(E* h'_rms)", 0, "K", "Pa/m", 1, -1, NOTHING, SLOPE_OVER_HEIGHT, 0},
-    {CONDUCTANCE, 0, "G", "S/m^2", 0, -1, CURRENT, SLOPE_OVER_HEIGHT, 2},
-    {CONDUCTANCE, 0, "G", "W/(m^2 K)", 0, -1, HEAT, SLOPE_OVER_HEIGHT, 2},
-    {"patches per lambda_l^2", 0, "patches", "1/m^2", 0, -2, NOTHING, {{"wavelength_ratio", -2}}, 0},
-    {"patches per lambda_l", 0, "patches", "1/m", 0, -1, NOTHING, {{"wavelength_ratio", -1}}, 0},
-    {"mean patch/lambda_l^2", 0, "mean patch", "m^2", 0, 2, NOTHING, {{"wavelength_ratio", 2}}, 0},
-    {"mean patch/lambda_l", 0, "mean patch", "m", 0, 1, NOTHING, {{"wavelength_ratio", 1}}, 0},
-    {"z/sqrt(m0)", 0, "z", "m", 0, 1, NOTHING, HEIGHT, 0},
-    {"-sqrt(3/m4) kappa_m", 2, "-kappa_m", "1/m", 0, -1, NOTHING, CURVATURE, SQUARE_ROOT_OF_A_THIRD},
-    {"kappa_m/sqrt(m4)", 2, "kappa_m", "1/m", 0, -1, NOTHING, CURVATURE, 0},
-    {"z''/sqrt(m4)", 1, "z''", "1/m", 0, -1, NOTHING, CURVATURE, 0},
-    {"-z''/sqrt(m4)", 1, "-z''", "1/m", 0, -1, NOTHING, CURVATURE, 0},
-    {"k lambda_s", 0, "k", "1/m", 0, -1, NOTHING, {{0}}, 0},
-    {"power spectral density", 1, "C", "m^3", 0, 3, NOTHING, {{0}}, 0},
-    {"power spectral density", 2, "C", "m^4", 0, 4, NOTHING, {{0}}, 0},
-    {"lag/lambda_s", 0, "lag", "m", 0, 1, NOTHING, {{0}}, 0},
+    {"p/(E* h'_rms)", 0, NOTHING, "p", "Pa", 1, 0, {{"rms_slope", 1}}, 0},
+    {"peak p/(E* h'_rms)", 0, NOTHING, "peak p", "Pa", 1, 0, {{"rms_slope", 1}}, 0},
+    {"mean gap/sqrt(m0)", 0, NOTHING, "mean gap", "m", 0, 1, HEIGHT, 0},
+    {"K sqrt(m0)/(E* h'_rms)", 0, NOTHING, "K", "Pa/m", 1, -1, SLOPE_OVER_HEIGHT, 0},
+    {CONDUCTANCE, 0, CURRENT, "G", "S/m^2", 0, -1, SLOPE_OVER_HEIGHT, 2},
+    {CONDUCTANCE, 0, HEAT, "G", "W/(m^2 K)", 0, -1, SLOPE_OVER_HEIGHT, 2},
+    {"patches per lambda_l^2", 0, NOTHING, "patches", "1/m^2", 0, -2, {{"wavelength_ratio", -2}}, 0},
+    {"patches per lambda_l", 0, NOTHING, "patches", "1/m", 0, -1, {{"wavelength_ratio", -1}}, 0},
+    {"mean patch/lambda_l^2", 0, NOTHING, "mean patch", "m^2", 0, 2, {{"wavelength_ratio", 2}}, 0},
+    {"mean patch/lambda_l", 0, NOTHING, "mean patch", "m", 0, 1, {{"wavelength_ratio", 1}}, 0},
+    {"z/sqrt(m0)", 0, NOTHING, "z", "m", 0, 1, HEIGHT, 0},
+    {"-sqrt(3/m4) kappa_m", 2, NOTHING, "-kappa_m", "1/m", 0, -1, CURVATURE, SQUARE_ROOT_OF_A_THIRD},
+    {"kappa_m/sqrt(m4)", 2, NOTHING, "kappa_m", "1/m", 0, -1, CURVATURE, 0},
+    {"z''/sqrt(m4)", 1, NOTHING, "z''", "1/m", 0, -1, CURVATURE, 0},
+    {"-z''/sqrt(m4)", 1, NOTHING, "-z''", "1/m", 0, -1, CURVATURE, 0},
+    {"k lambda_s", 0, NOTHING, "k", "1/m", 0, -1, {{0}}, 0},
+    {"power spectral density", 1, NOTHING, "C", "m^3", 0, 3, {{0}}, 0},
+    {"power spectral density", 2, NOTHING, "C", "m^4", 0, 4, {{0}}, 0},
+    {"lag/lambda_s", 0, NOTHING, "lag", "m", 0, 1, {{0}}, 0},
 };
 static const struct unit_row SCALARS[] = {
-    {"rms_height", 0, NULL, "m", 0, 1, NOTHING, {{0}}, 0},
-    {"correlation_length", 0, NULL, "m", 0, 1, NOTHING, {{0}}, 0},
-    {"correlation_length_e", 0, NULL, "m", 0, 1, NOTHING, {{0}}, 0},
-    {"psd_plateau", 1, NULL, "m^3", 0, 3, NOTHING, {{0}}, 0},
-    {"psd_plateau", 2, NULL, "m^4", 0, 4, NOTHING, {{0}}, 0},
-    {"rms_curvature", 0, NULL, "1/m", 0, -1, NOTHING, {{0}}, 0},
-    {"lowest", 0, NULL, "m", 0, 1, NOTHING, HEIGHT, 0},
-    {"highest", 0, NULL, "m", 0, 1, NOTHING, HEIGHT, 0},
-    {"m0", 0, NULL, "m^2", 0, 2, NOTHING, {{0}}, 0},
-    {"m4", 0, NULL, "1/m^2", 0, -2, NOTHING, {{0}}, 0},
-    {"m4_finite_difference", 0, NULL, "1/m^2", 0, -2, NOTHING, {{0}}, 0},
-    {"summit_density", 1, NULL, "1/m", 0, -1, NOTHING, {{0}}, 0},
-    {"summit_density", 2, NULL, "1/m^2", 0, -2, NOTHING, {{0}}, 0},
-    {"summit_height_mean", 0, NULL, "m", 0, 1, NOTHING, HEIGHT, 0},
-    {"summit_height_variance", 0, NULL, "m^2", 0, 2, NOTHING, HEIGHT_SQUARED, 0},
-    {"summit_curvature_mean", 0, NULL, "1/m", 0, -1, NOTHING, CURVATURE, 0},
-    {"pit_density", 1, NULL, "1/m", 0, -1, NOTHING, {{0}}, 0},
-    {"pit_density", 2, NULL, "1/m^2", 0, -2, NOTHING, {{0}}, 0},
-    {"pit_height_mean", 0, NULL, "m", 0, 1, NOTHING, HEIGHT, 0},
-    {"pit_height_variance", 0, NULL, "m^2", 0, 2, NOTHING, HEIGHT_SQUARED, 0},
-    {"pit_curvature_mean", 0, NULL, "1/m", 0, -1, NOTHING, CURVATURE, 0},
-    {"mean_gap_last", 0, NULL, "m", 0, 1, NOTHING, HEIGHT, 0},
-    {"kappa_highest_load", 0, NULL, "Pa", 1, 0, NOTHING, {{"rms_slope", 1}}, 0},
-    {"power_law_highest_load", 0, NULL, "Pa", 1, 0, NOTHING, {{"rms_slope", 1}}, 0},
-    {"erf_highest_load", 0, NULL, "Pa", 1, 0, NOTHING, {{"rms_slope", 1}}, 0},
+    {"rms_height", 0, NOTHING, NULL, "m", 0, 1, {{0}}, 0},
+    {"correlation_length", 0, NOTHING, NULL, "m", 0, 1, {{0}}, 0},
+    {"correlation_length_e", 0, NOTHING, NULL, "m", 0, 1, {{0}}, 0},
+    {"psd_plateau", 1, NOTHING, NULL, "m^3", 0, 3, {{0}}, 0},
+    {"psd_plateau", 2, NOTHING, NULL, "m^4", 0, 4, {{0}}, 0},
+    {"rms_curvature", 0, NOTHING, NULL, "1/m", 0, -1, {{0}}, 0},
+    {"lowest", 0, NOTHING, NULL, "m", 0, 1, HEIGHT, 0},
+    {"highest", 0, NOTHING, NULL, "m", 0, 1, HEIGHT, 0},
+    {"m0", 0, NOTHING, NULL, "m^2", 0, 2, {{0}}, 0},
+    {"m4", 0, NOTHING, NULL, "1/m^2", 0, -2, {{0}}, 0},
+    {"m4_finite_difference", 0, NOTHING, NULL, "1/m^2", 0, -2, {{0}}, 0},
+    {"summit_density", 1, NOTHING, NULL, "1/m", 0, -1, {{0}}, 0},
+    {"summit_density", 2, NOTHING, NULL, "1/m^2", 0, -2, {{0}}, 0},
+    {"summit_height_mean", 0, NOTHING, NULL, "m", 0, 1, HEIGHT, 0},
+    {"summit_height_variance", 0, NOTHING, NULL, "m^2", 0, 2, HEIGHT_SQUARED, 0},
+    {"summit_curvature_mean", 0, NOTHING, NULL, "1/m", 0, -1, CURVATURE, 0},
+    {"pit_density", 1, NOTHING, NULL, "1/m", 0, -1, {{0}}, 0},
+    {"pit_density", 2, NOTHING, NULL, "1/m^2", 0, -2, {{0}}, 0},
+    {"pit_height_mean", 0, NOTHING, NULL, "m", 0, 1, HEIGHT, 0},
+    {"pit_height_variance", 0, NOTHING, NULL, "m^2", 0, 2, HEIGHT_SQUARED, 0},
+    {"pit_curvature_mean", 0, NOTHING, NULL, "1/m", 0, -1, CURVATURE, 0},
+    {"mean_gap_last", 0, NOTHING, NULL, "m", 0, 1, HEIGHT, 0},
+    {"kappa_highest_load", 0, NOTHING, NULL, "Pa", 1, 0, {{"rms_slope", 1}}, 0},
+    {"power_law_highest_load", 0, NOTHING, NULL, "Pa", 1, 0, {{"rms_slope", 1}}, 0},
+    {"erf_highest_load", 0, NOTHING, NULL, "Pa", 1, 0, {{"rms_slope", 1}}, 0},
 };
 /* clang-format on */
 

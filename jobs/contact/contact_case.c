@@ -1,7 +1,6 @@
 #include "jobs/contact/contact_case.h"
 #include "core/cost.h"
 #include "jobs/contact/companion/block_error.h"
-#include "jobs/contact/quantity/quantity.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -16,10 +15,6 @@ double contact_case_transition(const struct contact_case *one_case, const struct
         return one_case->transition_depth;
     return one_case->fine_height /
            (2 * (grid_is_profile(grid) ? width : fmax(width, grid_dy(grid))));
-}
-
-bool contact_case_needs_tangent(const struct contact_case *one_case) {
-    return one_case->stiffness || contact_quantities_need_tangent(one_case);
 }
 
 bool contact_case_has_scale(const struct contact_case *one_case) {

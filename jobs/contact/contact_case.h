@@ -99,9 +99,6 @@ static inline bool contact_case_has(const struct contact_case *one_case,
  * cell. */
 double contact_case_block_bound(const struct contact_case *one_case, size_t model);
 
-/* Returns whether solutions need their tangent. */
-bool contact_case_needs_tangent(const struct contact_case *one_case);
-
 /* Returns the most complete of the models, of which the others differ by their errors. */
 size_t contact_case_complete(const struct contact_case *one_case);
 /* Returns the depth on a mesh from which columns become wider, in widths of the wide ones. */

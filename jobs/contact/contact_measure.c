@@ -152,7 +152,8 @@ int contact_measure(const struct measure_context *context, const struct contact_
     double open_now = area.nodes < 1 ? (1 - now * area.nodes) / (1 - area.nodes) : 1;
 #define VALUE(name, shown, kept, value, ...) values[MEASURE_##name] = value;
     LIST(VALUE)
-    return contact_quantities_measure(context, pressed, values + MEASURE_QUANTITIES, err);
+    return contact_quantities_measure(context->quantities, context, pressed,
+                                      values + MEASURE_QUANTITIES, err);
 }
 
 double measure_factor(enum measure_cell cell, double cells) {

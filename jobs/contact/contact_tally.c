@@ -525,13 +525,20 @@ static bool rows_fit(const struct contact_tally *tally) {
     return fit;
 }
 
-bool contact_tally_adds_up(const struct contact_tally *tally) {
+static bool counts_fit(const struct contact_tally *tally) {
     const struct contact_case *one_case = tally->one_case;
     for (size_t a = 0; a < MEASURE_COUNT; a++)
         for (size_t cell = 0; measure_is_of(one_case, a) && cell < contact_case_cells(one_case);
              cell++)
             if (!count_fits(tally, (enum contact_measure)a, cell))
                 return false;
+    return true;
+}
+
+bool contact_tally_adds_up(const struct contact_tally *tally) {
+    const struct contact_case *one_case = tally->one_case;
+    if (!counts_fit(tally))
+        return false;
     for (size_t a = MEASURE_COUNT; a < CONTACT_SUMS; a++)
         if (!contact_sums_fit(&tally->sums[a], tally->realisations))
             return false;

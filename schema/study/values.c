@@ -123,6 +123,13 @@ double values_number(struct values *values, const char *path) {
     return row != NULL && value != NULL ? value->valuedouble : NAN;
 }
 
+bool values_is_given(struct values *values, const char *path) {
+    size_t index = 0;
+    if (row_of(values, path, &index) == NULL)
+        values->misread = path;
+    return values->misread != path && values->at[index] != NULL;
+}
+
 static int choice_value(const struct choice *choices, const cJSON *value) {
     const struct choice *choice = choice_find(choices, cJSON_GetStringValue(value));
     return choice != NULL ? choice->value : 0;

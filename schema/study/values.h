@@ -27,6 +27,8 @@ void values_destroy(struct values **values);
 double values_number(struct values *values, const char *path);
 /* Returns what the choice stands for; 0 where it is absent and has no default. */
 int values_choice(struct values *values, const char *path);
+/* Returns whether there is a value: given, or a default. */
+bool values_is_given(struct values *values, const char *path);
 /* Returns whether a flag is true. */
 bool values_flag(struct values *values, const char *path);
 /* Returns the text, which lives as long as the values; NULL where it is absent. */

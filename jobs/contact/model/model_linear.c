@@ -1,6 +1,7 @@
 #include "jobs/contact/model/model_linear.h"
 #include "core/contact/stretch.h"
 #include "core/cost.h"
+#include "jobs/contact/quantity/quantity.h"
 #include <stdlib.h>
 
 struct contact_solver {

@@ -4,13 +4,11 @@
 static const struct contact_quantity *const QUANTITIES[] = {CONTACT_QUANTITY_LIST(ADDRESS)};
 #define COUNT(name, count) (count),
 static const size_t COUNTS[] = {CONTACT_QUANTITY_LIST(COUNT)};
-enum { QUANTITY_COUNT = sizeof COUNTS / sizeof *COUNTS };
-_Static_assert((int)QUANTITY_COUNT <= (int)CONTACT_QUANTITIES_MOST, "too many quantities");
 
-/* Returns the quantity with a measure, and its first number; QUANTITY_COUNT: there is none. */
+/* Returns the quantity with a measure, and its first number; CONTACT_QUANTITIES: there is none. */
 static size_t quantity_of(size_t number, size_t *first) {
     size_t q = 0;
-    for (*first = 0; q < QUANTITY_COUNT && number >= *first + COUNTS[q]; q++)
+    for (*first = 0; q < CONTACT_QUANTITIES && number >= *first + COUNTS[q]; q++)
         *first += COUNTS[q];
     return q;
 }
@@ -25,39 +23,39 @@ static void ask(struct contact_case *one_case, size_t q) {
 }
 
 void contact_quantities_read(struct contact_case *one_case, struct values *values) {
-    for (size_t q = 0; q < QUANTITY_COUNT; q++)
+    for (size_t q = 0; q < CONTACT_QUANTITIES; q++)
         if (QUANTITIES[q]->read(one_case, values))
             ask(one_case, q);
 }
 
 void contact_quantities_ask(struct contact_case *one_case, size_t measure) {
     size_t first, q = quantity_of(measure - MEASURE_QUANTITIES, &first);
-    if (q < QUANTITY_COUNT)
+    if (q < CONTACT_QUANTITIES)
         ask(one_case, q);
 }
 
-bool contact_quantities_need_tangent(const struct contact_case *one_case) {
-    bool need = false;
-    for (size_t q = 0; q < QUANTITY_COUNT; q++)
+bool contact_case_needs_tangent(const struct contact_case *one_case) {
+    bool need = one_case->stiffness;
+    for (size_t q = 0; q < CONTACT_QUANTITIES; q++)
         need = need || (one_case->asked.of[q] && QUANTITIES[q]->tangent);
     return need;
 }
 
 const struct measure *quantity_measure(size_t number) {
     size_t first, q = quantity_of(number, &first);
-    return q < QUANTITY_COUNT ? &QUANTITIES[q]->measures[number - first] : NULL;
+    return q < CONTACT_QUANTITIES ? &QUANTITIES[q]->measures[number - first] : NULL;
 }
 
 bool quantity_is_asked(const struct contact_case *one_case, size_t number) {
     size_t first, q = quantity_of(number, &first);
-    return q < QUANTITY_COUNT && one_case->asked.of[q];
+    return q < CONTACT_QUANTITIES && one_case->asked.of[q];
 }
 
 int contact_quantities_create(struct contact_quantities *out, const struct quantity_scene *scene,
                               struct error *err) {
     int status = 0;
     *out = (struct contact_quantities){0};
-    for (size_t q = 0; q < QUANTITY_COUNT && status == 0; q++)
+    for (size_t q = 0; q < CONTACT_QUANTITIES && status == 0; q++)
         if (scene->one_case->asked.of[q])
             status = QUANTITIES[q]->create(&out->of[q], scene, err);
     if (status != 0)
@@ -66,35 +64,36 @@ int contact_quantities_create(struct contact_quantities *out, const struct quant
 }
 
 void contact_quantities_clear(struct contact_quantities *quantities) {
-    for (size_t q = 0; q < QUANTITY_COUNT; q++)
+    for (size_t q = 0; q < CONTACT_QUANTITIES; q++)
         if (quantities->of[q] != NULL)
             QUANTITIES[q]->destroy(&quantities->of[q]);
 }
 
 double contact_quantities_bytes(const struct quantity_scene *scene) {
     double bytes = 0;
-    for (size_t q = 0; q < QUANTITY_COUNT; q++)
+    for (size_t q = 0; q < CONTACT_QUANTITIES; q++)
         bytes += scene->one_case->asked.of[q] ? QUANTITIES[q]->bytes(scene) : 0;
     return bytes;
 }
 
 double contact_quantities_seconds(const struct quantity_scene *scene) {
     double seconds = 0;
-    for (size_t q = 0; q < QUANTITY_COUNT; q++)
+    for (size_t q = 0; q < CONTACT_QUANTITIES; q++)
         seconds += scene->one_case->asked.of[q] ? QUANTITIES[q]->seconds(scene) : 0;
     return seconds;
 }
 
-int contact_quantities_measure(const struct measure_context *context,
+int contact_quantities_measure(const struct contact_quantities *quantities,
+                               const struct measure_context *context,
                                const struct contact_pressed *pressed, double *values,
                                struct error *err) {
     size_t first = 0;
     int status = 0;
     for (size_t a = 0; a < QUANTITY_MEASURES_MOST; a++)
         values[a] = (double)NAN;
-    for (size_t q = 0; q < QUANTITY_COUNT && status == 0; first += COUNTS[q++])
-        if (context->quantities != NULL && context->quantities->of[q] != NULL)
-            status = QUANTITIES[q]->measure(context->quantities->of[q], context, pressed,
-                                            values + first, err);
+    for (size_t q = 0; q < CONTACT_QUANTITIES && status == 0; first += COUNTS[q++])
+        if (quantities != NULL && quantities->of[q] != NULL)
+            status =
+                QUANTITIES[q]->measure(quantities->of[q], context, pressed, values + first, err);
     return status;
 }

@@ -8,14 +8,16 @@
 #define RUGO_JOBS_CONTACT_QUANTITY_QUANTITY_H
 
 #include "jobs/contact/contact_case.h"
-#include "jobs/contact/contact_measure.h"
 
 /* All quantities: NAME and how many measures it has. NAME_QUANTITY is its struct, NAME_PARAMETERS
  * its table of parameters. Partial results hold measures in this order, so that an entry comes
  * behind all others. */
 #define CONTACT_QUANTITY_LIST(ENTRY) ENTRY(CONDUCTANCE, 1)
 
-/* NAME_MEASURE: the number of its first measure. */
+/* NAME_AT: its position, as in quantities_asked. NAME_MEASURE: the number of its first measure. */
+#define CONTACT_QUANTITY_POSITION(name, count) name##_AT,
+enum { CONTACT_QUANTITY_LIST(CONTACT_QUANTITY_POSITION) CONTACT_QUANTITIES };
+_Static_assert((int)CONTACT_QUANTITIES <= (int)CONTACT_QUANTITIES_MOST, "too many quantities");
 #define CONTACT_QUANTITY_NUMBER(name, count)                                                       \
     name##_MEASURE, name##_MEASURE_LAST = name##_MEASURE + (count)-1,
 enum {
@@ -23,6 +25,8 @@ enum {
     CONTACT_QUANTITY_LIST(CONTACT_QUANTITY_NUMBER) CONTACT_QUANTITY_BEHIND
 };
 _Static_assert((int)CONTACT_QUANTITY_BEHIND <= (int)MEASURE_PAIRED, "too many measures");
+
+struct measure_context; /* contact_measure.h */
 
 /* What a quantity is measured on: one grid under one model. */
 struct quantity_scene {
@@ -63,8 +67,8 @@ CONTACT_QUANTITY_LIST(CONTACT_QUANTITY_DECLARE)
 void contact_quantities_read(struct contact_case *one_case, struct values *values);
 /* Asks for the quantity with this measure, in a case that no study describes. */
 void contact_quantities_ask(struct contact_case *one_case, size_t measure);
-/* Returns whether one that the case asks for needs the tangent. */
-bool contact_quantities_need_tangent(const struct contact_case *one_case);
+/* Returns whether solutions need their tangent: for the stiffness, or for a quantity. */
+bool contact_case_needs_tangent(const struct contact_case *one_case);
 /* Returns the row of a measure by its number from MEASURE_QUANTITIES on; NULL: no quantity has it.
  */
 const struct measure *quantity_measure(size_t number);
@@ -80,8 +84,9 @@ int contact_quantities_create(struct contact_quantities *out, const struct quant
 void contact_quantities_clear(struct contact_quantities *quantities);
 double contact_quantities_bytes(const struct quantity_scene *scene);
 double contact_quantities_seconds(const struct quantity_scene *scene);
-/* Fills values[QUANTITY_MEASURES_MOST]; NaN where not asked for. */
-int contact_quantities_measure(const struct measure_context *context,
+/* Fills values[QUANTITY_MEASURES_MOST]; NaN where not asked for. quantities may be NULL. */
+int contact_quantities_measure(const struct contact_quantities *quantities,
+                               const struct measure_context *context,
                                const struct contact_pressed *pressed, double *values,
                                struct error *err);
 

@@ -3,6 +3,7 @@
  * conduct through the same nodes, which takes a solution of its own. */
 #include "core/cost.h"
 #include "core/quantity/conductance.h"
+#include "jobs/contact/contact_measure.h"
 #include "jobs/contact/quantity/quantity.h"
 #include <math.h>
 #include <stdlib.h>
@@ -45,21 +46,15 @@ static const struct parameter ROWS[] = {
 };
 const struct parameter_table CONDUCTANCE_PARAMETERS = {"contact", ROWS, sizeof ROWS / sizeof *ROWS};
 
-/* The units need them alone (jobs/units.h), so that cases do not hold them. */
-static bool is_given(struct values *values, const char *path) {
-    size_t index = 0;
-    return parameter_find(CONTACT_TABLES, path, &index) != NULL &&
-           values_json(values, index) != NULL;
-}
-
+/* The units need resistivities alone (jobs/units.h), so that cases do not hold them. */
 static bool asked(const struct contact_case *one_case, struct values *values) {
     static const char *const UNITS[] = {"/contact/resistivity", "/contact/conductivity"};
     bool conducts = values_flag(values, "/contact/conductance");
     (void)one_case;
     for (size_t u = 0; u < 2; u++)
-        if (!conducts && is_given(values, UNITS[u]))
+        if (!conducts && values_is_given(values, UNITS[u]))
             values_fault(values, UNITS[u], "nothing conducts unless /contact/conductance is true");
-    if (is_given(values, UNITS[0]) && is_given(values, UNITS[1]))
+    if (values_is_given(values, UNITS[0]) && values_is_given(values, UNITS[1]))
         values_fault(values, UNITS[1], "give it or /contact/resistivity, not both");
     return conducts;
 }
@@ -117,7 +112,7 @@ static int measure(struct quantity_state *state, const struct measure_context *c
 }
 
 static bool is_asked(const struct contact_case *one_case) {
-    return quantity_is_asked(one_case, CONDUCTANCE_MEASURE - MEASURE_QUANTITIES);
+    return one_case->asked.of[CONDUCTANCE_AT];
 }
 
 static bool is_shown(const struct contact_case *one_case, size_t model) {
