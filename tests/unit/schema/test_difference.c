@@ -191,9 +191,11 @@ static void models_find_their_partners(void **state) {
 
 static void parameters_tell_what_differs(void **state) {
     (void)state;
-    struct result_parameter one[] = {
-        {"/hurst", NULL, 0.8, false}, {"/type", "a", NAN, false}, {"/own", NULL, 2, false}};
-    struct result_parameter other[] = {{"/type", "a", NAN, false}, {"/hurst", NULL, 0.25, false}};
+    struct result_parameter one[] = {{.pointer = "/hurst", .number = 0.8},
+                                     {.pointer = "/type", .text = "a", .number = NAN},
+                                     {.pointer = "/own", .number = 2}};
+    struct result_parameter other[] = {{.pointer = "/type", .text = "a", .number = NAN},
+                                       {.pointer = "/hurst", .number = 0.25}};
     struct case_result a = {.parameter_count = 3, .parameters = one};
     struct case_result b = {.parameter_count = 2, .parameters = other};
     struct case_result out = subtract(&a, &b, NULL);
