@@ -13,6 +13,52 @@ double persson_pressure_pdf(double x, double load) {
     return -sqrt(2 / M_PI) * exp(-2 * apart * apart) * expm1(-8 * x * load);
 }
 
+/* Up to this hardness the waves between the two ends are summed, above it the mirror images of the
+ * load; either takes few terms there. */
+static const double HARDNESS_OF_WAVES = 1;
+
+/* Returns the term n of the sums over waves without its factor: V/H^2 = 1/(4 H^2). */
+static double persson_wave(double n, double load, double hardness) {
+    double decay = M_PI * n / hardness;
+    return M_2_PI / n * sin(M_PI * n * load / hardness) * exp(-decay * decay / 8);
+}
+
+/* Returns the share absorbed at an end that is `first` away, the other end beyond the load: images
+ * are mirrored at both ends, 2 H apart. */
+static double persson_images(double first, double hardness) {
+    double share = 0, last = 1;
+    for (double n = 0; last > 0; n++) {
+        last = erfc(M_SQRT2 * (2 * n * hardness + first));
+        share += last - erfc(M_SQRT2 * (2 * (n + 1) * hardness - first));
+    }
+    return share;
+}
+
+double persson_plastic_area(double load, double hardness) {
+    if (!(load >= 0 && load <= hardness && hardness > 0))
+        return NAN;
+    if (hardness > HARDNESS_OF_WAVES)
+        return isinf(hardness) ? 0 : persson_images(hardness - load, hardness);
+    double share = load / hardness;
+    for (double n = 1; n <= 4 + 6 * hardness; n++)
+        share += (fmod(n, 2) > 0 ? -1 : 1) * persson_wave(n, load, hardness);
+    return fmax(0, share);
+}
+
+double persson_elastic_area(double load, double hardness) {
+    if (!(load >= 0 && load <= hardness && hardness > 0))
+        return NAN;
+    if (isinf(hardness))
+        return persson_area(load);
+    if (hardness > HARDNESS_OF_WAVES)
+        return fmax(0,
+                    1 - persson_images(load, hardness) - persson_images(hardness - load, hardness));
+    double share = 0;
+    for (double n = 1; n <= 4 + 6 * hardness; n += 2)
+        share += 2 * persson_wave(n, load, hardness);
+    return fmax(0, share);
+}
+
 double persson_light_load(void) {
     return sqrt(8 / M_PI);
 }

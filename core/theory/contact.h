@@ -13,6 +13,11 @@ double persson_area(double load);
 /* Returns the density of the pressure x = p/(E* h') over the nominal area, x >= 0 (its integral
  * over x > 0 is the contact fraction). */
 double persson_pressure_pdf(double x, double load);
+/* Return the fractions of the cell that bear the hardness, and less than it, of an elastic, ideally
+ * plastic block: Persson's theory with a second absorbing end at that pressure. 0 <= load <=
+ * hardness; hardness is in E* h', may be INFINITY, and is above 0. */
+double persson_plastic_area(double load, double hardness);
+double persson_elastic_area(double load, double hardness);
 
 /* Returns the slope kappa of the fraction over the load as the load tends to 0. */
 double persson_light_load(void); /* sqrt(8/pi) */

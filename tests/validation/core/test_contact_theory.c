@@ -43,6 +43,42 @@ static void persson_pressures_carry_the_load(void **state) {
     check_close(bgt_light_load(), 2.506628274631, 1e-15);
 }
 
+/* Shares between two absorbing ends: the sum over waves, which takes as many terms as the hardness
+ * is high. 1e-14: rounding of sums of alternating terms. */
+static double share_by_waves(double load, double hardness, bool plastic) {
+    double share = plastic ? load / hardness : 0;
+    for (int n = 1; n <= 20 + 10 * hardness; n++) {
+        double sign = n % 2 == 0 ? 1 : -1, decay = exp(-pow(n * M_PI / hardness, 2) / 8);
+        double factor = plastic ? 2 * sign : 2 * (1 - sign);
+        share += factor / (n * M_PI) * sin(n * M_PI * load / hardness) * decay;
+    }
+    return share;
+}
+
+static void hardness_bounds_the_pressures(void **state) {
+    (void)state;
+    static const double HARDNESS[] = {0.003, 0.1, 0.7, 0.999, 1.001, 1.5, 3, 10, 40};
+    for (size_t h = 0; h < sizeof HARDNESS / sizeof *HARDNESS; h++)
+        for (double x = 0; x <= 1; x += 0.0625) {
+            double load = x * HARDNESS[h], hardness = HARDNESS[h];
+            double plastic = persson_plastic_area(load, hardness);
+            double elastic = persson_elastic_area(load, hardness);
+            check_close(plastic, share_by_waves(load, hardness, true), 1e-14);
+            check_close(elastic, share_by_waves(load, hardness, false), 1e-14);
+            assert_true(plastic >= 0 && elastic >= 0 && plastic + elastic <= 1 + 1e-14);
+            assert_true(hardness * (plastic + elastic) >= load * (1 - 1e-14));
+        }
+    /* Soft faces bear all at the hardness; hard ones are elastic. */
+    check_relative(persson_plastic_area(0.003, 0.01), 0.3, 1e-14);
+    assert_true(persson_elastic_area(0.003, 0.01) < 1e-14);
+    for (double load = 1e-3; load < 1e3; load *= 10) {
+        assert_true(persson_elastic_area(load, INFINITY) == persson_area(load));
+        check_close(persson_elastic_area(load, 1e12), persson_area(load), 1e-14);
+        assert_true(persson_plastic_area(load, INFINITY) == 0);
+        assert_true(persson_plastic_area(load, 1e300) == 0);
+    }
+}
+
 /* Pressures' Fourier coefficients over their mean, m = 0 to modes - 1: over t in
  * sin(psi) = sqrt(ratio) sin(t) the integrand is smooth and periodic, so equal steps are exact once
  * they resolve the mode. */
@@ -287,6 +323,9 @@ static void out_of_domain_is_no_number(void **state) {
             assert_true(isnan(load[i]) && isnan(area[i]));
     }
     assert_true(isnan(persson_area(-1e-9)) && isnan(persson_area(NAN)));
+    assert_true(isnan(persson_plastic_area(-1e-9, 1)) && isnan(persson_elastic_area(-1e-9, 1)));
+    assert_true(isnan(persson_plastic_area(1.001, 1)) && isnan(persson_elastic_area(1.001, 1)));
+    assert_true(isnan(persson_plastic_area(0, 0)) && isnan(persson_elastic_area(NAN, NAN)));
     assert_true(isnan(persson_pressure_pdf(-1, 1)) && isnan(persson_pressure_pdf(1, -1)));
     assert_true(isnan(westergaard_area(1.001)) && isnan(westergaard_area(-0.001)));
     assert_true(isnan(westergaard_gap(NAN)) && isnan(westergaard_gap(1.001)));
@@ -296,6 +335,7 @@ static void out_of_domain_is_no_number(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(persson_pressures_carry_the_load),
+        cmocka_unit_test(hardness_bounds_the_pressures),
         cmocka_unit_test(westergaard_is_a_contact),
         cmocka_unit_test(westergaard_has_its_limits),
         cmocka_unit_test(spheres_agree_with_units),
