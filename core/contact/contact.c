@@ -1,7 +1,9 @@
 #include "core/contact/contact.h"
+#include "core/contact/flattening.h"
 #include "core/contact/solver/conjugate_gradient.h"
 #include "core/statistics/heights/roughness.h"
 #include "core/sum.h"
+#include "core/theory/contact.h"
 #include <fftw3.h>
 #include <float.h>
 #include <gsl/gsl_statistics_double.h>
@@ -10,7 +12,7 @@
 #include <string.h>
 
 const struct contact_options CONTACT_DEFAULTS = {
-    .tolerance = 1e-8, .max_iterations = 5000, .stall_iterations = 400};
+    .tolerance = 1e-8, .max_iterations = 5000, .stall_iterations = 400, .hardness = INFINITY};
 
 /* Sides up to this number of nodes take the max_iterations of the options. */
 static const double SIDE_USUAL = 4096;
@@ -18,6 +20,10 @@ static const double SIDE_USUAL = 4096;
 /* The first set is so many times what Persson's theory expects in contact. Of 1, 1.6 and 2 this
  * took the fewest steps. */
 static const double FIRST_SET = 2;
+
+/* Below this hardness, in E* h', the first set is not that of the load without a hardness. With a
+ * hardness it is so many times what Persson's theory expects in contact. */
+static const double LOW_HARDNESS = 0.5, LIMITED_SET = 1.5;
 
 /* Largest residual of a tangent over its approach: times the root of the tolerance, and at most.
  * The error of the stiffness is the square of that residual, times 0.1 on white noise and 0.001 on
@@ -36,11 +42,13 @@ struct contact {
     double unit;     /* RMS height, the grid's length; for a flat surface 0, where open lx */
     double highest;  /* of the solver's heights */
     double full;     /* smallest mean pressure of full contact */
+    double peak;     /* by which the largest pressure of full contact exceeds the mean */
     double flatten;  /* RMS of the pressures that flatten the surface, but for their mean; where
                         open about that, by the slope */
     double mean;     /* mean of the solver's p, the load that it solves; 0 before the first load */
     bool tangent;    /* the solver's q is the tangent at the last load, else the secant to it */
-    double *last;    /* without tangent: the solver's p at the load before; NULL with it */
+    struct flattening flattening; /* without arrays where the hardness is INFINITY */
+    double *last; /* without tangent: the solver's p at the load before; NULL with it */
 };
 
 double contact_bytes(const struct grid *grid, const struct block *block) {
@@ -48,17 +56,31 @@ double contact_bytes(const struct grid *grid, const struct block *block) {
     return sizeof(double) * weighted + conjugate_gradient_bytes(grid, block);
 }
 
-int contact_create(struct contact **out, const struct compliance *compliance,
-                   const struct contact_options *options, struct error *err) {
+double contact_hardness_bytes(const struct grid *grid) {
+    return flattening_bytes(grid);
+}
+
+static int options_check(const struct contact_options *options, struct error *err) {
     if (!(options->tolerance > 0 && options->tolerance < 1))
         return error_set(err, ERROR_INPUT, "contact tolerance = %g; allowed: above 0, below 1",
                          options->tolerance);
+    if (!(options->hardness > 0))
+        return error_set(err, ERROR_INPUT, "hardness = %g E*; allowed: above 0, or infinite",
+                         options->hardness);
+    return 0;
+}
+
+int contact_create(struct contact **out, const struct compliance *compliance,
+                   const struct contact_options *options, struct error *err) {
+    if (options_check(options, err) != 0)
+        return ERROR_INPUT;
     struct contact *c = array_create(1, sizeof *c);
     if (c == NULL)
         return error_memory(err, sizeof *c, "a contact");
     c->compliance = compliance;
     c->options = *options;
     c->tangent = !options->without_tangent || compliance->block.model == MODEL_LAYERED;
+    c->flattening.hardness = INFINITY;
     int status = conjugate_gradient_create(&c->solver, compliance, err);
     size_t n = c->solver.n;
     c->z = c->solver.z;
@@ -75,6 +97,8 @@ int contact_create(struct contact **out, const struct compliance *compliance,
         if (c->last == NULL)
             status = error_memory(err, n * sizeof(double), "a contact");
     }
+    if (status == 0 && isfinite(options->hardness))
+        status = flattening_create(&c->flattening, &c->solver, err);
     if (status != 0)
         contact_destroy(&c);
     *out = c;
@@ -90,6 +114,7 @@ void contact_destroy(struct contact **contact) {
         free(c->opening);
     }
     conjugate_gradient_clear(&c->solver);
+    flattening_clear(&c->flattening);
     free(c->last);
     free(c);
     *contact = NULL;
@@ -138,6 +163,28 @@ static int take_heights(struct contact *c, const double *z, struct error *err) {
     return 0;
 }
 
+/* Measures the pressures that flatten the face. */
+static void measure_flat(struct contact *c) {
+    struct conjugate_gradient *d = &c->solver;
+    struct sum square = {0};
+    c->full = INFINITY;
+    if (c->compliance->open) {
+        const struct measured_map map = {&c->compliance->grid, d->z, BOUNDARY_OPEN};
+        struct roughness roughness;
+        open_roughness_measure(&map, &roughness);
+        c->flatten = roughness.rms_slope * d->largest / 2;
+        return;
+    }
+    transform_filter(d->transform, d->inverse, 1, d->z, d->w);
+    c->full = c->peak = 0;
+    for (size_t i = 0; i < d->n; i++) {
+        c->full = fmax(c->full, -d->w[i]);
+        c->peak = fmax(c->peak, d->w[i]);
+        sum_add(&square, d->w[i] * d->w[i]);
+    }
+    c->flatten = sqrt(sum_value(&square) / (double)d->n);
+}
+
 int contact_begin(struct contact *c, const double *z, struct error *err) {
     struct conjugate_gradient *d = &c->solver;
     c->mean = 0;
@@ -151,22 +198,9 @@ int contact_begin(struct contact *c, const double *z, struct error *err) {
     c->highest = 0;
     for (size_t i = 0; i < d->n; i++)
         c->highest = fmax(c->highest, d->z[i]);
-    c->full = INFINITY;
-    if (c->compliance->open) {
-        const struct measured_map map = {&c->compliance->grid, d->z, BOUNDARY_OPEN};
-        struct roughness roughness;
-        open_roughness_measure(&map, &roughness);
-        c->flatten = roughness.rms_slope * d->largest / 2;
-        return 0;
-    }
-    transform_filter(d->transform, d->inverse, 1, d->z, d->w);
-    struct sum square = {0};
-    c->full = 0;
-    for (size_t i = 0; i < d->n; i++) {
-        c->full = fmax(c->full, -d->w[i]);
-        sum_add(&square, d->w[i] * d->w[i]);
-    }
-    c->flatten = sqrt(sum_value(&square) / (double)d->n);
+    measure_flat(c);
+    if (isfinite(c->options.hardness))
+        flattening_begin(&c->flattening, d, c->options.hardness / pressure_unit(c));
     return 0;
 }
 
@@ -190,15 +224,38 @@ double contact_held_stiffness(struct contact *c, const double *p, double residua
     return 1 / (conjugate_gradient_tangent(d, residual) * d->largest);
 }
 
+/* Lowers the face in gaps that were computed from heights as they were: the solver's (weighted)
+ * ones are, unless it has the lowered face, and without weighting c->z is the same array. */
+static void lower_gaps(struct contact *c) {
+    const struct flattening *f = &c->flattening;
+    const bool weighted = c->compliance->weight != NULL;
+    for (size_t i = 0; f->volume > 0 && i < c->solver.n; i++) {
+        if (weighted || !f->lowered)
+            c->gap[i] += f->depth[i];
+        if (weighted && !f->lowered)
+            c->opening[i] += f->depth[i];
+    }
+}
+
 /* The state without contact: the highest point touches the flat without force. */
 static void fill_open(struct contact *c, struct contact_state *out) {
-    const struct conjugate_gradient *d = &c->solver;
+    struct conjugate_gradient *d = &c->solver;
+    double highest = c->highest;
+    if (c->flattening.volume > 0) {
+        flattening_turn(&c->flattening, d, 0, c->unit);
+        highest = -INFINITY;
+        for (size_t i = 0; i < d->n; i++)
+            highest = fmax(highest, d->z[i]);
+    }
     for (size_t i = 0; i < d->n; i++) {
         c->pressure[i] = 0;
-        c->gap[i] = (c->highest - c->z[i]) * c->unit;
-        c->opening[i] = (c->highest - d->z[i]) * c->unit;
+        c->gap[i] = (highest - c->z[i]) * c->unit;
+        c->opening[i] = (highest - d->z[i]) * c->unit;
     }
-    out->mean_gap = c->highest * c->unit;
+    out->approach = (c->highest - highest) * c->unit;
+    out->mean_gap = highest * c->unit + c->flattening.volume;
+    out->unload_stiffness = isfinite(c->options.hardness) ? 0 : (double)NAN;
+    lower_gaps(c);
 }
 
 /* The state of full contact: the pressures are those that flatten the surface (F9.3). */
@@ -211,6 +268,7 @@ static void fill_full(struct contact *c, double pressure, struct contact_state *
     }
     out->approach = c->highest * c->unit;
     out->stiffness = INFINITY;
+    out->unload_stiffness = isfinite(c->options.hardness) ? INFINITY : (double)NAN;
     out->nodes = d->n;
     out->work = 2 * (double)d->n;
 }
@@ -219,6 +277,56 @@ static double tangent_residual(const struct contact *c) {
     bool elements = c->compliance->block.model == MODEL_LAYERED;
     double part = elements ? TANGENT_PART_ELEMENTS : TANGENT_PART;
     return fmin(TANGENT_MOST, part * sqrt(c->options.tolerance));
+}
+
+static double stiffness_of(struct contact *c, const double *set) {
+    struct conjugate_gradient *d = &c->solver;
+    return 1 / (conjugate_gradient_tangent(d, set, tangent_residual(c)) * d->largest);
+}
+
+/* Fills the stiffness of unloading, under which all nodes resist, and returns the nodes that do
+ * under a rising load. */
+static const double *fill_unloading(struct contact *c, bool full, struct contact_state *out) {
+    struct conjugate_gradient *d = &c->solver;
+    struct flattening *f = &c->flattening;
+    out->unload_stiffness = full ? INFINITY : (double)NAN;
+    if (c->tangent && !full) {
+        flattening_swap(f, d);
+        out->unload_stiffness = stiffness_of(c, d->p);
+        flattening_swap(f, d);
+    }
+    for (size_t i = 0; i < d->padded; i++)
+        f->kept[i] = d->p[i] < f->hardness ? d->p[i] : 0;
+    return f->kept;
+}
+
+/* Fills stiffnesses, and the tangent by the load. */
+static void fill_tangent(struct contact *c, struct contact_state *out) {
+    struct conjugate_gradient *d = &c->solver;
+    const double *set = d->p;
+    bool full = out->nodes == d->n && !c->compliance->open;
+    if (out->yielded > 0) {
+        set = fill_unloading(c, full, out);
+        full = false;
+    }
+    out->stiffness = full ? INFINITY : c->tangent && out->yielded == out->nodes ? 0 : (double)NAN;
+    if (c->tangent && !full && out->yielded < out->nodes) {
+        out->stiffness = stiffness_of(c, set);
+        out->tangent = d->q;
+    }
+    if (isfinite(c->options.hardness) && out->yielded == 0)
+        out->unload_stiffness = out->stiffness;
+}
+
+/* Fills what the hardness does to a solution on the face as it was. */
+static void fill_yielded(struct contact *c, double approach, double mean,
+                         struct contact_state *out) {
+    struct flattening *f = &c->flattening;
+    if (isfinite(c->solver.hardness))
+        out->yielded = flattening_take(f, &c->solver, approach, mean, c->unit);
+    out->plastic_load =
+        out->yielded > 0 ? (double)out->yielded * f->hardness / (mean * (double)c->solver.n) : 0;
+    out->plastic_volume = f->volume;
 }
 
 static void fill_partial(struct contact *c, const struct conjugate_gradient_end *end,
@@ -237,21 +345,19 @@ static void fill_partial(struct contact *c, const struct conjugate_gradient_end 
         out->nodes += d->p[i] * pressure_unit(c) > 0;
     }
     out->mean_gap = sum_value(&gap) / (double)d->n * c->unit;
+    lower_gaps(c);
+    if (c->compliance->weight != NULL || !c->flattening.lowered)
+        out->mean_gap += c->flattening.volume;
     out->approach = (c->highest - end->approach) * c->unit;
     out->iterations = end->iterations;
-    out->violation = fmax(end->inside, end->penetration);
+    out->violation = fmax(end->inside, fmax(end->penetration, end->lifted));
     out->penetration = end->penetration;
     /* All nodes can be in contact when the load is a rounding error below that of full contact. */
-    bool full = out->nodes == d->n && !c->compliance->open;
     if (out->nodes == d->n && c->compliance->open)
         out->mean_gap = 0; /* without rounding errors */
-    out->stiffness = full ? INFINITY : (double)NAN;
-    if (c->tangent && !full) {
-        out->stiffness = 1 / (conjugate_gradient_tangent(d, tangent_residual(c)) * d->largest);
-        out->tangent = d->q;
-    }
+    fill_tangent(c, out);
     for (size_t i = 0; i < d->n; i++)
-        c->pressure[i] = d->p[i] * pressure_unit(c);
+        c->pressure[i] = d->p[i] < d->hardness ? d->p[i] * pressure_unit(c) : c->options.hardness;
 }
 
 /* Without a tangent the next load is predicted by the secant from the last one. */
@@ -261,11 +367,11 @@ static void take_secant(struct contact *c, double change) {
         d->q[i] = (d->p[i] - c->last[i]) / change;
 }
 
-/* Guesses pressures for a first load, in proportion to how far the highest nodes stand out; their
- * number is that of FIRST_SET. Returns their sum. */
-static double guess(struct contact *c, double mean) {
+/* Guesses pressures for a first load, in proportion to how far the highest nodes stand out, of
+ * which part is in contact. Returns their sum. */
+static double guess(struct contact *c, double part) {
     struct conjugate_gradient *d = &c->solver;
-    double part = FIRST_SET * erf(mean / (M_SQRT2 * c->flatten)), sum = 0;
+    double sum = 0;
     size_t highest = (size_t)fmin(fmax(1, (double)d->n * part), (double)d->n - 1);
     memcpy(d->w, d->z, d->n * sizeof *d->w);
     double above = gsl_stats_select(d->w, 1, d->n, d->n - 1 - highest);
@@ -285,7 +391,7 @@ static void predict(struct contact *c, double mean) {
         for (size_t i = 0; i < d->n; i++)
             sum += d->p[i] = fmax(0, d->p[i] + (mean - c->mean) * d->q[i]);
     else if (!grid_is_profile(&c->compliance->grid))
-        sum = guess(c, mean);
+        sum = guess(c, FIRST_SET * erf(mean / (M_SQRT2 * c->flatten)));
     /* When the load falls by many orders, it may be below the rounding of the last pressures. */
     double factor = mean * (double)d->n / sum;
     for (size_t i = 0; i < d->n; i++)
@@ -300,15 +406,61 @@ static size_t iterations_most(const struct contact *c) {
     return (size_t)((double)c->options.max_iterations * fmax(1, sqrt(side / SIDE_USUAL)));
 }
 
+static void solve(struct contact *c, double mean, struct conjugate_gradient_end *end) {
+    conjugate_gradient_run(&c->solver, mean, c->options.tolerance, c->options.stall_iterations,
+                           iterations_most(c), end);
+}
+
+/* Guesses pressures for a first load that the hardness limits: those of the highest nodes, in
+ * proportion to how far they stand out, and at the hardness where that is more. */
+static void guess_limited(struct contact *c, double mean) {
+    struct conjugate_gradient *d = &c->solver;
+    const double unit = 2 * c->flatten, load = mean / unit, hardness = d->hardness / unit;
+    double part = persson_plastic_area(load, hardness) + persson_elastic_area(load, hardness);
+    double sum = guess(c, LIMITED_SET * part);
+    for (size_t i = 0; i < d->n; i++)
+        d->p[i] *= mean * (double)d->n / sum;
+    flattening_limit(&c->flattening, d, mean);
+}
+
+/* Solves on the face as it was. Where no node ends at the hardness, the digits are those without
+ * one. */
+static void solve_limited(struct contact *c, double mean, struct conjugate_gradient_end *end) {
+    struct conjugate_gradient *d = &c->solver;
+    struct flattening *f = &c->flattening;
+    memcpy(f->kept, d->p, d->n * sizeof *d->p);
+    predict(c, mean);
+    bool limited = flattening_limit(f, d, mean);
+    if (c->mean == 0 && (limited || d->hardness < LOW_HARDNESS * 2 * c->flatten)) {
+        guess_limited(c, mean);
+        limited = true;
+    }
+    solve(c, mean, end);
+    if (!(limited || end->bounded) || !end->converged)
+        return;
+    for (size_t i = 0; i < d->n; i++)
+        if (d->p[i] >= d->hardness)
+            return;
+    memcpy(d->p, f->kept, d->n * sizeof *d->p);
+    d->hardness = INFINITY;
+    predict(c, mean);
+    solve(c, mean, end);
+    d->hardness = f->hardness;
+}
+
 static int press_partial(struct contact *c, double pressure, struct contact_state *out,
                          struct error *err) {
     struct conjugate_gradient *d = &c->solver;
     struct conjugate_gradient_end end;
     double mean = pressure / pressure_unit(c);
     d->transforms = 0;
-    predict(c, mean);
-    conjugate_gradient_run(d, mean, c->options.tolerance, c->options.stall_iterations,
-                           iterations_most(c), &end);
+    flattening_turn(&c->flattening, d, mean, c->unit);
+    if (isfinite(d->hardness))
+        solve_limited(c, mean, &end);
+    else {
+        predict(c, mean);
+        solve(c, mean, &end);
+    }
     if (!end.converged)
         c->mean = 0;
     if (end.stopped)
@@ -322,9 +474,16 @@ static int press_partial(struct contact *c, double pressure, struct contact_stat
     if (!c->tangent && mean != c->mean)
         take_secant(c, mean - c->mean);
     c->mean = mean;
+    fill_yielded(c, end.approach, mean, out);
     fill_partial(c, &end, out);
     out->work = d->transforms * (double)d->n;
     return 0;
+}
+
+/* Returns whether all of the face touches without yielding, at a load of full contact. */
+static bool is_full(const struct contact *c, double pressure) {
+    return pressure >= contact_full_pressure(c) && !(c->flattening.volume > 0) &&
+           !(pressure + c->peak * pressure_unit(c) > c->options.hardness);
 }
 
 int contact_press(struct contact *c, double pressure, struct contact_state *out,
@@ -332,14 +491,22 @@ int contact_press(struct contact *c, double pressure, struct contact_state *out,
     if (!(pressure >= 0 && isfinite(pressure)))
         return error_set(err, ERROR_INPUT, "mean pressure = %g; allowed: 0 or more, finite",
                          pressure);
+    if (pressure >= c->options.hardness)
+        return error_set(err, ERROR_INPUT,
+                         "mean pressure = %g E* on a face of hardness %g E*; allowed: below the "
+                         "hardness",
+                         pressure, c->options.hardness);
     struct contact_state state = {.pressure = pressure,
+                                  .unload_stiffness = NAN,
+                                  .plastic_volume = c->flattening.volume,
+                                  .depth = c->flattening.depth,
                                   .p = c->pressure,
                                   .gap = c->gap,
                                   .opening = c->opening,
                                   .scratch = c->solver.w};
     if (pressure == 0)
         fill_open(c, &state);
-    else if (pressure >= contact_full_pressure(c))
+    else if (is_full(c, pressure))
         fill_full(c, pressure, &state);
     else {
         int status = press_partial(c, pressure, &state, err);

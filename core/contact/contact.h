@@ -8,7 +8,12 @@
  * touches.
  *
  * A solver belongs to one thread and one grid. It keeps the surface and the last state, from which
- * the next load starts. Loads may rise and fall: the contact is elastic. */
+ * the next load starts. Loads may rise and fall. Without a hardness the contact is elastic.
+ *
+ * With a hardness p <= hardness, and nodes that reach it are lowered for good: their gap is 0, and
+ * their depth is what the flat pushed out of the face as it was (F21.2). States depend on the load
+ * and on the highest load since contact_begin. From that on the face yields; below it the lowered
+ * face is elastic. */
 #ifndef RUGO_CORE_CONTACT_CONTACT_H
 #define RUGO_CORE_CONTACT_CONTACT_H
 
@@ -25,6 +30,7 @@ struct contact_options {
     bool without_tangent; /* neither stiffness nor tangent is computed, which saves up to a quarter
                              of the work; without effect on meshes of elements, whose areas need
                              them */
+    double hardness; /* the largest pressure, in E*, at which a node yields; default INFINITY */
 };
 extern const struct contact_options CONTACT_DEFAULTS;
 
@@ -37,19 +43,26 @@ struct contact_state {
                           in core/full over the face as pressed */
     const double *opening; /* grid_points: the weighted gap, which is 0 in contact */
     const double *tangent; /* grid_points, d p/d pressure with the contact held: mean 1, 0 where
-                              open; NULL where nothing or (periodic) all touches, or
-                              without_tangent */
+                              open or yielded; NULL where nothing or (periodic) all touches, or
+                              without_tangent, or no node is between open and yielded */
+    const double *depth;   /* grid_points: by how much nodes were lowered for good, the grid's
+                              length; NULL without a hardness */
     double *scratch;       /* grid_points: of no use to the solver until its next call; NULL from
                               core/full */
     double mean_gap;       /* the grid's length */
-    double approach;    /* of the flat, from where it touches first, the grid's length: towards the
-                           mean plane of the face, in free space towards far points (free_space.h);
-                           NaN from core/full */
-    double stiffness;   /* d pressure/d approach, E* per length: periodic, -d pressure/d mean_gap.
-                           INFINITY in full contact of a periodic face, 0 when nothing touches; NaN
-                           without_tangent */
-    size_t nodes;       /* in contact (p > 0) */
-    size_t iterations;  /* of the conjugate gradients on this grid, 0 in full contact */
+    double approach;  /* of the flat, from where it touches first, the grid's length: towards the
+                         mean plane of the face, in free space towards far points (free_space.h);
+                         NaN from core/full */
+    double stiffness; /* d pressure/d approach, E* per length: periodic, without a hardness, -d
+                         pressure/d mean_gap. Yielded nodes do not resist. INFINITY in full contact
+                         of a periodic face, 0 when nothing touches; NaN without_tangent */
+    double unload_stiffness; /* the same for a falling load, under which all nodes in contact
+                                resist; NaN without a hardness or without_tangent */
+    double plastic_load;     /* share of the load that yielded nodes bear */
+    double plastic_volume;   /* mean depth, the grid's length */
+    size_t yielded;          /* nodes with p = hardness */
+    size_t nodes;            /* in contact (p > 0) */
+    size_t iterations;       /* of the conjugate gradients on this grid, 0 in full contact */
     double work;        /* points x transforms over all grids, to which the time is proportional */
     double violation;   /* largest |g| inside or penetration outside, over the RMS height */
     double penetration; /* largest -g outside of the contact, over the RMS height; >= 0 */
@@ -64,6 +77,8 @@ void contact_destroy(struct contact **contact);
 /* Returns the bytes of a solver with its tangent, but for its compliance: of a periodic grid; in
  * free space free_space_bytes are added. */
 double contact_bytes(const struct grid *grid, const struct block *block);
+/* Returns the bytes that a finite hardness adds. */
+double contact_hardness_bytes(const struct grid *grid);
 /* Sets stop, which is called every few iterations. When it returns non-zero, contact_press fails
  * with ERROR_STOPPED, as it fails where it does not converge. NULL, the initial value, never
  * stops. */
@@ -72,11 +87,12 @@ void contact_set_stop(struct contact *contact, int (*stop)(void *context), void 
  * contact_destroy. NULL, the initial value: the caller alone. ERROR_MEMORY. */
 int contact_set_team(struct contact *contact, struct team *team, struct error *err);
 
-/* Copies a surface (any mean height) and removes the load: the next load starts anew. ERROR_INPUT
- * for a height that is not finite. */
+/* Copies a surface (any mean height) and removes the load and all depths: the next load starts
+ * anew. ERROR_INPUT for a height that is not finite. */
 int contact_begin(struct contact *contact, const double *z, struct error *err);
-/* Presses to a mean pressure >= 0. ERROR_NUMERIC, with the load and what was reached, when the
- * tolerance is not met; the state before is lost then, and the next load starts anew. */
+/* Presses to a mean pressure >= 0 and below the hardness, in free space over the rectangle.
+ * ERROR_INPUT with both where it is not. ERROR_NUMERIC, with the load and what was reached, when
+ * the tolerance is not met; the state before is lost then, and the next load starts anew. */
 int contact_press(struct contact *contact, double pressure, struct contact_state *out,
                   struct error *err);
 /* Returns the stiffness d pressure/d approach, E* per length, with the nodes p[grid_points] > 0
@@ -84,8 +100,8 @@ int contact_press(struct contact *contact, double pressure, struct contact_state
  * one, over the approach; the error of the value is about its square. 0 without such nodes,
  * INFINITY where all of a periodic face are. */
 double contact_held_stiffness(struct contact *contact, const double *p, double residual);
-/* Returns the smallest mean pressure of full contact, in E*; it is known from contact_begin on.
- * INFINITY in free space, where it is not known. */
+/* Returns the smallest mean pressure of full contact of the elastic face, in E*; it is known from
+ * contact_begin on. INFINITY in free space, where it is not known. */
 double contact_full_pressure(const struct contact *contact);
 
 #endif

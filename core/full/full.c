@@ -352,7 +352,7 @@ static int fill_state(struct full *f, const struct newton_end *end, struct conta
     }
     double compliance = 0;
     out->mean_gap = newton_mean_gap(n) * f->mesh->unit;
-    out->approach = NAN;
+    out->approach = out->unload_stiffness = NAN;
     out->penetration = end->penetration / height_scale(f);
     out->violation = fmax(end->inside, end->penetration) / height_scale(f);
     out->stiffness = out->nodes == face ? INFINITY : 0;

@@ -74,6 +74,18 @@ static inline void scene_begin_wave(struct scene *scene, double shift) {
     scene_begin(scene);
 }
 
+/* Gives the face a hardness, and begins anew. */
+static inline void scene_harden(struct scene *scene, double hardness) {
+    struct error err = {0};
+    struct contact_options options = CONTACT_DEFAULTS;
+    options.tolerance = scene->tolerance;
+    options.hardness = hardness;
+    contact_destroy(&scene->contact);
+    if (contact_create(&scene->contact, scene->compliance, &options, &err) != 0)
+        fail_msg("%s", err.text);
+    scene_begin(scene);
+}
+
 static inline void scene_press(struct scene *scene, double pressure) {
     struct error err = {0};
     if (contact_press(scene->contact, pressure, &scene->state, &err) != 0)

@@ -134,9 +134,7 @@ static void follow_block(const struct pass *pass, size_t first, size_t n, struct
     follow(n, s->u + first, s->z + first, pass->approach, s->p + first, s->r + first, out);
 }
 
-/* Reduces the gap in the set r != 0 to a share of what it was, or to `enough`. Fills approach and
- * inside, and counts the steps, max_iterations at most. */
-static void close_set(struct conjugate_gradient *solver, double enough, double share,
+void active_set_close(struct conjugate_gradient *solver, double enough, double share,
                       size_t max_iterations, struct conjugate_gradient_end *end) {
     struct step_memory memory = {.continued = true};
     struct pass pass = {.solver = solver};
@@ -161,16 +159,19 @@ static void close_set(struct conjugate_gradient *solver, double enough, double s
     }
 }
 
+double active_set_share(const struct conjugate_gradient *solver, int stalled) {
+    return (grid_is_profile(&solver->grid) ? PROFILE_PART : SURFACE_PART) * pow(CLOSER, stalled);
+}
+
 void active_set_run(struct conjugate_gradient *solver, double mean, double tolerance,
                     size_t max_iterations, struct conjugate_gradient_end *end) {
     const double rounding = CONJUGATE_ROUNDING * conjugate_step_highest(solver);
-    const double part = grid_is_profile(&solver->grid) ? PROFILE_PART : SURFACE_PART;
     double least = INFINITY, best = INFINITY; /* changes of the set, violations */
     size_t asked = end->iterations;
     int stalled = 0;
     while (stalled < SETS_STALLED && end->iterations < max_iterations) {
-        close_set(solver, fmax(tolerance * end->deepest, rounding), part * pow(CLOSER, stalled),
-                  max_iterations, end);
+        active_set_close(solver, fmax(tolerance * end->deepest, rounding),
+                         active_set_share(solver, stalled), max_iterations, end);
         const struct pass pass = {.solver = solver, .approach = end->approach};
         struct pass_result next = pass_run(&solver->board, &pass, follow_block);
         end->penetration = next.most[PENETRATION];

@@ -22,4 +22,11 @@
 void active_set_run(struct conjugate_gradient *solver, double mean, double tolerance,
                     size_t max_iterations, struct conjugate_gradient_end *end);
 
+/* Closes the gap in the set r != 0, which is not empty, to a share of what it was, or to `enough`.
+ * Fills approach and inside, and counts the steps, max_iterations at most. u keeps to p. */
+void active_set_close(struct conjugate_gradient *solver, double enough, double share,
+                      size_t max_iterations, struct conjugate_gradient_end *end);
+/* Returns the share to which a set is closed that follows so many that were no better. */
+double active_set_share(const struct conjugate_gradient *solver, int stalled);
+
 #endif

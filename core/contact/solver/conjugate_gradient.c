@@ -11,9 +11,12 @@
  * conjugate gradients in the set that stop where a pressure becomes 0, and projected gradients
  * where that happened or where penetrations exceed the gaps inside. Each of them lowers the energy,
  * and a projected step by at least a fixed part of the square of the change. So they converge from
- * any start. */
+ * any start.
+ *
+ * Pressures up to a hardness are solved by sets (bounded_set.h) and careful steps, in turn. */
 #include "core/contact/solver/conjugate_gradient.h"
 #include "core/contact/solver/active_set.h"
+#include "core/contact/solver/bounded_set.h"
 #include "core/vectors.h"
 #include <float.h>
 #include <math.h>
@@ -23,39 +26,49 @@ enum {
     LANES = CONJUGATE_GRADIENT_LANES,
     REFRESH = 50, /* iterations after which u is computed anew from p */
     SLOW = 30, /* iterations that have not halved the violation, after which steps are shortened */
+    CAREFUL_FIRST =
+        16, /* careful steps after the first sets under a hardness, then twice as many */
 };
 /* Length of a projected step over the inverse of the largest compliance, which is 1 here; below
  * 2. */
 static const double STRIDE = 1.8;
-/* The approach at which nodes under pressure touch on average: minus the mean of u - z over them.
- */
-WIDE_VECTORS static double mean_approach(size_t n, const double *p, const double *u,
-                                         const double *z) {
+/* The approach at which nodes under pressure, but for those at the hardness, touch on average:
+ * minus the mean of u - z over them. */
+WIDE_VECTORS static double mean_approach(size_t n, double hardness, const double *p,
+                                         const double *u, const double *z) {
     double sum[LANES] = {0}, count[LANES] = {0};
     for (size_t i = 0; i < n; i += LANES)
         for (size_t a = 0; a < LANES; a++) {
-            double in = p[i + a] > 0 ? 1 : 0;
+            double in = p[i + a] > 0 && p[i + a] < hardness ? 1 : 0;
             sum[a] += in * (u[i + a] - z[i + a]);
             count[a] += in;
         }
     return -conjugate_lanes_sum(sum) / conjugate_lanes_sum(count);
 }
 
-/* r is the gap in the set {p > 0, or gap < 0 where released}, where it is never exactly 0, and 0
- * outside, so that r != 0 marks the set. Returns the size of the set. end->approach is an input;
- * all other fields of end are filled. */
-WIDE_VECTORS static double residual(size_t n, const double *p, const double *u, const double *z,
-                                    double released, double *r,
+static double approach_of(const struct conjugate_gradient *solver) {
+    double approach =
+        mean_approach(solver->padded, solver->hardness, solver->p, solver->u, solver->z);
+    return isnan(approach) ? bounded_approach(solver) : approach;
+}
+
+/* r is the gap in the set {0 < p < hardness, or where released gap < 0 with no pressure or > 0 with
+ * the hardness}, where it is never exactly 0, and 0 outside, so that r != 0 marks the set. Returns
+ * the size of the set. end->approach is an input; all lengths of end are filled. */
+WIDE_VECTORS static double residual(size_t n, double hardness, const double *p, const double *u,
+                                    const double *z, double released, double *r,
                                     struct conjugate_gradient_end *end) {
     double inside[LANES] = {0}, outside[LANES] = {0}, deep[LANES] = {0}, members[LANES] = {0};
+    double lifted[LANES] = {0};
     double approach = end->approach;
     for (size_t i = 0; i < n; i += LANES)
         for (size_t a = 0; a < LANES; a++) {
             double gap = u[i + a] - z[i + a] + approach;
-            double in = p[i + a] > 0 ? 1 : 0;
+            double held = p[i + a] >= hardness ? 1 : 0, in = p[i + a] > 0 ? 1 - held : 0;
             double within = in * fabs(gap), depth = fabs(u[i + a]);
-            double through = gap < 0 ? (in - 1) * gap : 0;
-            double member = in + through * released > 0 ? 1 : 0;
+            double through = gap < 0 ? (in + held - 1) * gap : 0, above = gap > 0 ? held * gap : 0;
+            double member = in + (through + above) * released > 0 ? 1 : 0;
+            lifted[a] = above > lifted[a] ? above : lifted[a];
             inside[a] = within > inside[a] ? within : inside[a];
             outside[a] = through > outside[a] ? through : outside[a];
             deep[a] = depth > deep[a] ? depth : deep[a];
@@ -65,18 +78,21 @@ WIDE_VECTORS static double residual(size_t n, const double *p, const double *u, 
     end->inside = conjugate_lanes_most(inside);
     end->penetration = conjugate_lanes_most(outside);
     end->deepest = conjugate_lanes_most(deep);
+    end->lifted = conjugate_lanes_most(lifted);
     return conjugate_lanes_sum(members);
 }
 
-/* p -= step t, cut at 0, and u -= step w. Returns the sum of p; *cut: whether any was. */
-WIDE_VECTORS static double advance(size_t n, double step, const double *t, const double *w,
-                                   double *p, double *u, bool *cut) {
+/* p -= step t, cut at 0 and the hardness, and u -= step w. Returns the sum of p; *cut: whether any
+ * was. */
+WIDE_VECTORS static double advance(size_t n, double hardness, double step, const double *t,
+                                   const double *w, double *p, double *u, bool *cut) {
     double sum[LANES] = {0}, below[LANES] = {0};
     for (size_t i = 0; i < n; i += LANES)
         for (size_t a = 0; a < LANES; a++) {
             double next = p[i + a] - step * t[i + a];
-            below[a] += next < 0 ? 1 : 0;
+            below[a] += next < 0 || next > hardness ? 1 : 0;
             next = next < 0 ? 0 : next;
+            next = next > hardness ? hardness : next;
             p[i + a] = next;
             u[i + a] -= step * w[i + a];
             sum[a] += next;
@@ -113,12 +129,24 @@ static void project(struct conjugate_gradient *solver, double mean) {
     conjugate_step_scale(solver, mean, sum, solver->p);
 }
 
-/* Returns the longest step along t that leaves no pressure negative. */
+/* Returns the longest step along t that leaves no pressure negative or above the hardness. */
 static double feasible_step(const struct conjugate_gradient *solver, double step) {
-    for (size_t i = 0; i < solver->n; i++)
+    for (size_t i = 0; i < solver->n; i++) {
         if (solver->t[i] > 0 && solver->p[i] > 0 && solver->p[i] < step * solver->t[i])
             step = solver->p[i] / solver->t[i];
+        double room = solver->hardness - solver->p[i];
+        if (solver->t[i] < 0 && room > 0 && room < -step * solver->t[i])
+            step = -room / solver->t[i];
+    }
     return step;
+}
+
+/* Gives pressures that were cut the load again. */
+static void restore_load(struct conjugate_gradient *solver, double mean, double sum) {
+    if (isinf(solver->hardness))
+        conjugate_step_scale(solver, mean, sum, solver->p);
+    else
+        bounded_balance(solver, mean);
 }
 
 /* Watches whether the violation has halved within a number of iterations. */
@@ -143,15 +171,19 @@ static void iterate(struct conjugate_gradient *solver, double mean, bool careful
         memory->blocked = longest < step;
         step = memory->blocked ? longest * (1 + 4 * DBL_EPSILON) : step; /* that pressure: 0 */
     }
-    double sum = advance(solver->padded, step, solver->t, solver->w, solver->p, solver->u, stale);
+    double sum = advance(solver->padded, solver->hardness, step, solver->t, solver->w, solver->p,
+                         solver->u, stale);
     if (*stale)
-        conjugate_step_scale(solver, mean, sum, solver->p);
+        restore_load(solver, mean, sum);
 }
 
 /* Makes a projected step, after which the last search direction is no longer used. */
 static void step_projected(struct conjugate_gradient *solver, double mean,
                            struct step_memory *memory, bool *stale) {
-    project(solver, mean);
+    if (isinf(solver->hardness))
+        project(solver, mean);
+    else
+        bounded_project(solver, mean, STRIDE);
     *memory = (struct step_memory){0};
     *stale = true;
 }
@@ -193,9 +225,12 @@ static void iterate_shortened(struct conjugate_gradient *solver, double mean,
 static bool solve_by_sets(struct conjugate_gradient *solver, double mean, double tolerance,
                           size_t max_iterations, struct conjugate_gradient_end *end) {
     conjugate_step_apply_compliance(solver, solver->p, solver->u);
-    end->approach = mean_approach(solver->padded, solver->p, solver->u, solver->z);
-    residual(solver->padded, solver->p, solver->u, solver->z, 1, solver->r, end);
-    active_set_run(solver, mean, tolerance, max_iterations, end);
+    end->approach = approach_of(solver);
+    residual(solver->padded, solver->hardness, solver->p, solver->u, solver->z, 1, solver->r, end);
+    if (isinf(solver->hardness))
+        active_set_run(solver, mean, tolerance, max_iterations, end);
+    else
+        bounded_set_run(solver, mean, tolerance, max_iterations, end);
     return end->converged || end->stopped;
 }
 
@@ -210,9 +245,11 @@ static void solve_by_steps(struct conjugate_gradient *solver, double mean, doubl
     for (;; end->iterations++) {
         if (stale || end->iterations % REFRESH == 0)
             conjugate_step_apply_compliance(solver, solver->p, solver->u);
-        end->approach = mean_approach(solver->padded, solver->p, solver->u, solver->z);
-        residual(solver->padded, solver->p, solver->u, solver->z, careful ? 0 : 1, solver->r, end);
-        double violation = fmax(end->inside, end->penetration);
+        end->approach = approach_of(solver);
+        residual(solver->padded, solver->hardness, solver->p, solver->u, solver->z, careful ? 0 : 1,
+                 solver->r, end);
+        double outside = fmax(end->penetration, end->lifted);
+        double violation = fmax(end->inside, outside);
         bool number =
             isfinite(end->approach); /* fmax ignores NaN, so that a violation may look finite */
         end->converged =
@@ -228,7 +265,7 @@ static void solve_by_steps(struct conjugate_gradient *solver, double mean, doubl
             careful = memory.blocked = true;
             memory.energy = 0;
         }
-        if (careful && (memory.blocked || end->penetration >= end->inside)) {
+        if (careful && (memory.blocked || outside >= end->inside)) {
             step_projected(solver, mean, &memory, &stale);
             continue;
         }
@@ -240,10 +277,27 @@ static void solve_by_steps(struct conjugate_gradient *solver, double mean, doubl
     }
 }
 
+/* Sets and careful steps in turn. */
+static void solve_bounded(struct conjugate_gradient *solver, double mean, double tolerance,
+                          size_t max_iterations, struct conjugate_gradient_end *end) {
+    for (size_t careful = CAREFUL_FIRST; end->iterations < max_iterations; careful *= 2) {
+        if (solve_by_sets(solver, mean, tolerance, max_iterations, end))
+            return;
+        end->bounded = true;
+        size_t most =
+            end->iterations + careful < max_iterations ? end->iterations + careful : max_iterations;
+        solve_by_steps(solver, mean, tolerance, 0, most, end);
+        if (end->converged || end->stopped)
+            return;
+    }
+}
+
 void conjugate_gradient_run(struct conjugate_gradient *solver, double mean, double tolerance,
                             size_t stall_iterations, size_t max_iterations,
                             struct conjugate_gradient_end *end) {
     *end = (struct conjugate_gradient_end){0};
-    if (!solve_by_sets(solver, mean, tolerance, max_iterations, end))
+    if (isfinite(solver->hardness))
+        solve_bounded(solver, mean, tolerance, max_iterations, end);
+    else if (!solve_by_sets(solver, mean, tolerance, max_iterations, end))
         solve_by_steps(solver, mean, tolerance, stall_iterations, max_iterations, end);
 }

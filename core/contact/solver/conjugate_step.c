@@ -55,6 +55,15 @@ static void fill_periodic_inverse(struct conjugate_gradient *solver) {
         }
 }
 
+/* Returns the mean over all waves of a symbol that has half of them. */
+static double mean_of_waves(const struct grid *waved, const double *symbol) {
+    double sum = 0;
+    for (size_t mx = 0; mx <= waved->nx / 2; mx++)
+        for (size_t row = 0; row < waved->ny; row++)
+            sum += (mx == 0 || 2 * mx == waved->nx ? 1 : 2) * symbol[mx * waved->ny + row];
+    return sum / (double)grid_points(waved);
+}
+
 static int symbols_create(struct conjugate_gradient *solver, const struct compliance *compliance,
                           struct error *err) {
     size_t waves = (solver->around.nx / 2 + 1) * solver->around.ny;
@@ -72,6 +81,7 @@ static int symbols_create(struct conjugate_gradient *solver, const struct compli
             solver->product[k] = compliance->length[k] * compliance->weight[k];
         solver->compliance = solver->product;
     }
+    solver->local = solver->factor * mean_of_waves(&compliance->waved, solver->compliance);
     if (compliance->open) {
         fill_periodic_inverse(solver);
         return 0;
@@ -89,6 +99,7 @@ int conjugate_gradient_create(struct conjugate_gradient *out, const struct compl
     *out = (struct conjugate_gradient){.grid = *grid,
                                        .around = *grid,
                                        .n = grid_points(grid),
+                                       .hardness = INFINITY,
                                        .padded = padded(grid_points(grid))};
     if (compliance->open)
         free_space_around(grid, &out->around);

@@ -27,11 +27,13 @@ struct conjugate_gradient {
     const double *compliance; /* by wave: factor times this is the weighted compliance over largest;
                                  0 for the mean; where open, that of the padded grid */
     double factor;
+    double local;    /* displacement of a node under a pressure of 1 on it alone */
     double *product; /* owns `compliance` where that is weighted; else NULL */
     double *inverse; /* inverse of the compliance over largest, 0 for the mean. Where open, that of
                         the half-space which repeats `around`: a preconditioner alone */
     double *z;       /* heights of mean 0, filled by the caller */
     double *p, *u;   /* pressures, and the displacements that they make */
+    double hardness; /* largest pressure, held where it is reached; INFINITY: none */
     double *q;       /* tangent dp/d(mean p): of mean 1, 0 outside of the contact */
     double *r, *old, *t, *w; /* scratch */
     double *spare[2];        /* points of `around` each: scratch of preconditioning where open, and
@@ -59,6 +61,8 @@ struct conjugate_gradient_end {
     double approach;    /* D: the gap is D + u - z */
     double inside;      /* largest |gap| under pressure */
     double penetration; /* largest -gap elsewhere */
+    double lifted;      /* largest gap at the hardness */
+    bool bounded;       /* the hardness has changed a step */
     double deepest;     /* largest |u|, to which the tolerance refers */
 };
 

@@ -23,7 +23,8 @@ struct pass {
     struct conjugate_gradient *solver;
     double step, mean, approach;
     double w_mean, t_mean, beta;
-    double *scaled; /* of all nodes */
+    double *scaled;    /* of all nodes */
+    const double *set; /* of all nodes: above 0 in a set of them */
 };
 enum { PASS_SUMS = 7, PASS_MOSTS = 3 };
 struct pass_result {

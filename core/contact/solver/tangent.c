@@ -8,7 +8,7 @@ enum { LANES = CONJUGATE_GRADIENT_LANES, STEPS_MOST = 300 };
 enum { TANGENT };                   /* sum of q */
 enum { RESIDUAL, MEMBERS, ENERGY }; /* sums of r in the set, of nodes, and of q r */
 
-/* Drops q outside of the set p > 0. */
+/* Drops q outside of the set where p > 0. */
 WIDE_VECTORS static double restrict_to(size_t n, const double *p, double *q) {
     double sum[LANES] = {0};
     for (size_t i = 0; i < n; i += LANES)
@@ -22,7 +22,7 @@ WIDE_VECTORS static double restrict_to(size_t n, const double *p, double *q) {
 static void restrict_block(const struct pass *pass, size_t first, size_t n,
                            struct pass_result *out) {
     const struct conjugate_gradient *s = pass->solver;
-    out->sum[TANGENT] = restrict_to(n, s->p + first, s->q + first);
+    out->sum[TANGENT] = restrict_to(n, pass->set + first, s->q + first);
 }
 
 WIDE_VECTORS static void measure(size_t n, const double *p, const double *q, const double *r,
@@ -43,7 +43,7 @@ WIDE_VECTORS static void measure(size_t n, const double *p, const double *q, con
 static void measure_block(const struct pass *pass, size_t first, size_t n,
                           struct pass_result *out) {
     const struct conjugate_gradient *s = pass->solver;
-    measure(n, s->p + first, s->q + first, s->r + first, out);
+    measure(n, pass->set + first, s->q + first, s->r + first, out);
 }
 
 /* Takes the mean off r in the set p > 0, where it is never 0. Returns the largest |r|. */
@@ -61,7 +61,7 @@ WIDE_VECTORS static double centre(size_t n, const double *p, double mean, double
 
 static void centre_block(const struct pass *pass, size_t first, size_t n, struct pass_result *out) {
     const struct conjugate_gradient *s = pass->solver;
-    out->most[0] = centre(n, s->p + first, pass->mean, s->r + first);
+    out->most[0] = centre(n, pass->set + first, pass->mean, s->r + first);
 }
 
 WIDE_VECTORS static void advance(size_t n, double step, const double *t, const double *w,
@@ -80,24 +80,25 @@ static void advance_block(const struct pass *pass, size_t first, size_t n,
 }
 
 /* Fills r with the displacements under q. */
-static void begin(struct conjugate_gradient *solver) {
-    const struct pass pass = {.solver = solver};
+static void begin(struct conjugate_gradient *solver, const double *set) {
+    const struct pass pass = {.solver = solver, .set = set};
     double sum = pass_run(&solver->board, &pass, restrict_block).sum[TANGENT];
-    conjugate_step_take_set(solver, solver->p);
+    conjugate_step_take_set(solver, set);
     if (!(sum > 0)) {
         sum = 0;
         for (size_t i = 0; i < solver->padded; i++)
-            sum += solver->q[i] = solver->p[i];
+            sum += solver->q[i] = set[i];
     }
     conjugate_step_scale(solver, 1, sum, solver->q);
     conjugate_step_apply_compliance(solver, solver->q, solver->r);
 }
 
-double conjugate_gradient_tangent(struct conjugate_gradient *solver, double enough) {
+double conjugate_gradient_tangent(struct conjugate_gradient *solver, const double *set,
+                                  double enough) {
     struct step_memory memory = {.continued = true};
-    struct pass pass = {.solver = solver};
+    struct pass pass = {.solver = solver, .set = set};
     double mean = 0; /* of the displacements in the set: minus the approach */
-    begin(solver);
+    begin(solver, set);
     for (size_t iteration = 0;; iteration++) {
         struct pass_result sums = pass_run(&solver->board, &pass, measure_block);
         /* Of q the mean is 1, so that the energy of the mean displacement is this mean. */

@@ -186,7 +186,7 @@ static void too_few_iterations(void **state) {
     noisy_scene(&scene, square(16), DEEP, 1e-10);
     noisy_scene(&sound, square(16), DEEP, 1e-10);
     struct contact_options options = {
-        .tolerance = 1e-10, .max_iterations = 6, .stall_iterations = 60};
+        .tolerance = 1e-10, .max_iterations = 6, .stall_iterations = 60, .hardness = INFINITY};
     struct error err = {0};
     contact_destroy(&scene.contact);
     assert_int_equal(contact_create(&scene.contact, scene.compliance, &options, &err), 0);

@@ -378,8 +378,10 @@ static void careful_steps_converge(void **state) {
         random_scene(&draw, &scene, grid);
         size_t n = scene_points(&scene);
         double full = contact_full_pressure(scene.contact);
-        struct contact_options options = {
-            .tolerance = scene.tolerance, .max_iterations = 5000, .stall_iterations = 0};
+        struct contact_options options = {.tolerance = scene.tolerance,
+                                          .max_iterations = 5000,
+                                          .stall_iterations = 0,
+                                          .hardness = INFINITY};
         struct contact *careful = NULL;
         struct error err = {0};
         if (contact_create(&careful, scene.compliance, &options, &err) != 0 ||

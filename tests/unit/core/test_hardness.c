@@ -1,0 +1,259 @@
+/* Protects contact under a hardness: what is refused; digits without a hardness where no node
+ * reaches it; faces so soft that their heights alone decide; conditions of every solution in all
+ * models; unloading, which is elastic, and loads that rise again; both stiffnesses. */
+#include "tests/support/check.h"
+
+#include "tests/support/effort.h"
+#include "tests/support/hard_scene.h"
+#include <stdio.h>
+
+static const struct block LAYERED = {
+    .model = MODEL_LAYERED, .poisson = 0.3, .height = 1.5, .layer_growth = 1.2};
+
+static double next_uniform(void *context) {
+    size_t *i = context;
+    double x = sin(12.9898 * (double)++*i) * 43758.5453;
+    return x - floor(x);
+}
+
+/* A face whose hardness is so many RMS slopes. Returns that hardness. */
+static double hard_scene(struct scene *scene, struct grid grid, struct block block, double hardness,
+                         size_t seed) {
+    scene_open(scene, grid, block, 1e-11);
+    double slope = fill_waves(&grid, 0.5, 0.05, next_uniform, &seed, scene->z);
+    scene_harden(scene, hardness * slope);
+    return hardness * slope;
+}
+
+static struct block block_of(size_t kind) {
+    struct block block = kind == 0 ? DEEP : LAYERED;
+    block.weighting = kind == 1 ? GAP_STANDARD : GAP_DUAL;
+    return block;
+}
+
+static const struct grid GRIDS[] = {{20, 17, 1, 1}, {40, 1, 1, 1}, {9, 12, 1, 1}, {65, 1, 1, 1}};
+
+static void what_is_refused(void **state) {
+    (void)state;
+    struct scene scene;
+    struct error err = {0};
+    struct contact *contact = NULL;
+    double hardness = hard_scene(&scene, GRIDS[0], DEEP, 0.3, 1);
+    static const double BAD[] = {0, -1, NAN, -INFINITY};
+    for (size_t a = 0; a < sizeof BAD / sizeof *BAD; a++) {
+        struct contact_options options = CONTACT_DEFAULTS;
+        options.hardness = BAD[a];
+        assert_int_equal(contact_create(&contact, scene.compliance, &options, &err), ERROR_INPUT);
+        assert_null(contact);
+        assert_non_null(strstr(err.text, "hardness = "));
+        assert_non_null(strstr(err.text, "allowed: above 0, or infinite"));
+    }
+    scene_press(&scene, 0.5 * hardness);
+    struct contact_state before = scene.state, after = before;
+    static const double LOADS[] = {1, 1 + 1e-15, 7};
+    for (size_t a = 0; a < sizeof LOADS / sizeof *LOADS; a++) {
+        char text[80];
+        assert_int_equal(contact_press(scene.contact, LOADS[a] * hardness, &after, &err),
+                         ERROR_INPUT);
+        snprintf(text, sizeof text, "mean pressure = %g E* on a face of hardness %g E*",
+                 LOADS[a] * hardness, hardness);
+        assert_non_null(strstr(err.text, text));
+        assert_non_null(strstr(err.text, "allowed: below the hardness"));
+        assert_memory_equal(&after, &before, sizeof after);
+    }
+    scene_press(&scene, 0.999 * hardness);
+    check_hard_contact(&scene, hardness, true);
+    scene_close(&scene);
+}
+
+/* A hardness above all pressures changes no digit, even by a rounding error. */
+static void no_node_yields(void **state) {
+    (void)state;
+    static const double LOADS[] = {1e-4, 0.01, 0.05, 0.2, 0.1, 0.6, 1.2},
+                        ABOVE[] = {1e-9, 0.1, 1e9};
+    enum { COUNT = sizeof LOADS / sizeof *LOADS };
+    for (size_t a = 0; a < 12; a++) {
+        struct scene plain, hard;
+        struct grid grid = GRIDS[a % 4];
+        size_t n = grid_points(&grid);
+        hard_scene(&plain, grid, block_of(a / 4), INFINITY, a);
+        hard_scene(&hard, grid, block_of(a / 4), INFINITY, a);
+        double full = contact_full_pressure(plain.contact), peak = 0;
+        for (size_t l = 0; l < COUNT; l++) {
+            scene_press(&plain, LOADS[l] * full);
+            peak = fmax(peak, largest(n, plain.state.p));
+        }
+        scene_begin(&plain);
+        scene_harden(&hard, peak * (1 + ABOVE[a % 3]));
+        for (size_t l = 0; l < COUNT; l++) {
+            scene_press(&plain, LOADS[l] * full);
+            scene_press(&hard, LOADS[l] * full);
+            assert_memory_equal(hard.state.p, plain.state.p, n * sizeof(double));
+            assert_memory_equal(hard.state.gap, plain.state.gap, n * sizeof(double));
+            assert_memory_equal(hard.state.opening, plain.state.opening, n * sizeof(double));
+            assert_true((hard.state.tangent == NULL) == (plain.state.tangent == NULL));
+            if (plain.state.tangent != NULL)
+                assert_memory_equal(hard.state.tangent, plain.state.tangent, n * sizeof(double));
+            assert_true(hard.state.stiffness == plain.state.stiffness);
+            assert_true(hard.state.unload_stiffness == plain.state.stiffness);
+            assert_true(isnan(plain.state.unload_stiffness) && plain.state.depth == NULL);
+            assert_true(hard.state.mean_gap == plain.state.mean_gap);
+            assert_true(hard.state.approach == plain.state.approach);
+            assert_true(hard.state.yielded == 0 && hard.state.plastic_volume == 0);
+        }
+        scene_close(&plain);
+        scene_close(&hard);
+    }
+}
+
+/* The softer the face, the more its heights alone decide: the highest nodes bear the hardness, and
+ * one what is left. */
+static void soft_faces(void **state) {
+    (void)state;
+    static const double PARTS[] = {0.003, 0.1, 0.25, 0.5, 0.9, 0.99};
+    for (size_t a = 0; a < 12; a++) {
+        struct scene scene;
+        struct grid grid = GRIDS[a % 4];
+        double hardness = hard_scene(&scene, grid, block_of(a / 4), 1e-7, a);
+        for (size_t l = 0; l < sizeof PARTS / sizeof *PARTS; l++) {
+            scene_press(&scene, PARTS[l] * hardness);
+            double expected = PARTS[l] * (double)grid_points(&grid);
+            assert_true(fabs((double)scene.state.nodes - expected) < 1);
+            assert_true(scene.state.nodes - scene.state.yielded <= 1);
+            check_hard_state(&scene, hardness, 1e-7);
+        }
+        scene_close(&scene);
+    }
+}
+
+static void every_solution_meets_its_conditions(void **state) {
+    (void)state;
+    static const double HARDNESS[] = {0.01, 0.03, 0.1, 0.3, 1, 3, 10};
+    static const double PARTS[] = {0.003, 0.03, 0.2, 0.5, 0.9};
+    for (size_t a = 0; a < 12; a += case_step())
+        for (size_t h = 0; h < sizeof HARDNESS / sizeof *HARDNESS; h++) {
+            struct scene scene;
+            double hardness = hard_scene(&scene, GRIDS[a % 4], block_of(a / 4), HARDNESS[h], a);
+            for (size_t l = 0; l < sizeof PARTS / sizeof *PARTS; l++) {
+                scene_press(&scene, PARTS[l] * hardness);
+                check_hard_contact(&scene, hardness, true);
+            }
+            scene_close(&scene);
+        }
+}
+
+/* --- loads that fall and rise again --- */
+
+static double *copy(size_t n, const double *x) {
+    double *y = zeros(n);
+    memcpy(y, x, n * sizeof *y);
+    return y;
+}
+
+/* Unloading is elastic: pressures fall everywhere, the face keeps its depths, and the same loads
+ * make the same states again, whatever was between. */
+static void loads_fall_and_rise(void **state) {
+    (void)state;
+    static const double DOWN[] = {0.4, 0.1, 1e-3, 0.2, 0, 0.45};
+    for (size_t a = 0; a < 12; a += case_step()) {
+        struct scene scene, fresh;
+        size_t n = grid_points(&GRIDS[a % 4]);
+        double hardness = hard_scene(&scene, GRIDS[a % 4], block_of(a / 4), 0.3, a);
+        hard_scene(&fresh, GRIDS[a % 4], block_of(a / 4), 0.3, a);
+        scene_press(&scene, 0.2 * hardness);
+        scene_press(&scene, 0.5 * hardness);
+        const struct contact_state highest = scene.state;
+        double *p = copy(n, highest.p), *depth = copy(n, highest.depth);
+        assert_true(highest.yielded > 0 && highest.plastic_volume > 0);
+        for (size_t l = 0; l < sizeof DOWN / sizeof *DOWN; l++) {
+            scene_press(&scene, DOWN[l] * hardness);
+            assert_memory_equal(scene.state.depth, depth, n * sizeof *depth);
+            assert_true(scene.state.plastic_volume == highest.plastic_volume);
+            assert_true(scene.state.yielded == 0 && scene.state.plastic_load == 0);
+            assert_true(scene.state.approach < highest.approach);
+            for (size_t i = 0; i < n; i++)
+                assert_true(scene.state.p[i] <= p[i] * (1 + 1e-9) + 1e-9 * hardness);
+            if (DOWN[l] > 0)
+                check_hard_contact(&scene, hardness, false);
+        }
+        scene_press(&scene, 0.5 * hardness);
+        assert_int_equal(scene.state.yielded, highest.yielded);
+        check_relative(scene.state.approach, highest.approach, 1e-9);
+        check_relative(scene.state.mean_gap, highest.mean_gap, 1e-8);
+        for (size_t i = 0; i < n; i++)
+            check_close(scene.state.p[i], p[i], 1e-7 * hardness);
+        scene_press(&scene, 0.7 * hardness); /* as if it had never been unloaded */
+        scene_press(&fresh, 0.7 * hardness);
+        check_hard_contact(&scene, hardness, true);
+        assert_int_equal(scene.state.yielded, fresh.state.yielded);
+        check_relative(scene.state.plastic_volume, fresh.state.plastic_volume, 1e-8);
+        scene_begin(&scene); /* forgets */
+        scene_press(&scene, 0.7 * hardness);
+        assert_memory_equal(scene.state.p, fresh.state.p, n * sizeof *p);
+        assert_true(scene.state.stiffness == fresh.state.stiffness);
+        assert_true(scene.state.unload_stiffness == fresh.state.unload_stiffness);
+        free(p);
+        free(depth);
+        scene_close(&scene);
+        scene_close(&fresh);
+    }
+}
+
+/* The depth of a node never falls as the load rises, so that a face flattened by one load leads to
+ * the same next one. */
+static void depths_rise(void **state) {
+    (void)state;
+    for (size_t a = 0; a < 12; a += case_step()) {
+        struct scene scene;
+        size_t n = grid_points(&GRIDS[a % 4]);
+        double hardness = hard_scene(&scene, GRIDS[a % 4], block_of(a / 4), 0.2, 7 * a), worst = 0;
+        double *depth = zeros(n);
+        for (double part = 0.05; part < 1; part += 0.05) {
+            scene_press(&scene, part * hardness);
+            double highest = largest(n, scene.state.depth);
+            for (size_t i = 0; i < n; i++)
+                worst = fmax(worst, (depth[i] - scene.state.depth[i]) / highest);
+            memcpy(depth, scene.state.depth, n * sizeof *depth);
+        }
+        assert_true(worst <= 1e-9); /* the solution from the flattened face is the same */
+        free(depth);
+        scene_close(&scene);
+    }
+}
+
+/* Both stiffnesses are differences of solutions, at loads so near that no node changes. */
+static void stiffnesses_are_differences(void **state) {
+    (void)state;
+    for (size_t a = 0; a < 12; a += case_step()) {
+        struct scene scene;
+        size_t n = grid_points(&GRIDS[a % 4]);
+        double hardness = hard_scene(&scene, GRIDS[a % 4], block_of(a / 4), 0.3, a);
+        double load = 0.4 * hardness, change = 1e-5 * load;
+        scene_press(&scene, load);
+        const struct contact_state at = scene.state;
+        double *p = copy(n, at.p), *tangent = copy(n, at.tangent);
+        assert_true(at.unload_stiffness > at.stiffness);
+        scene_press(&scene, load - change);
+        check_relative(change / (at.approach - scene.state.approach), at.unload_stiffness, 1e-4);
+        scene_press(&scene, load + change);
+        check_relative(change / (scene.state.approach - at.approach), at.stiffness, 1e-4);
+        for (size_t i = 0; i < n; i++)
+            check_close((scene.state.p[i] - p[i]) / change, tangent[i], 1e-2);
+        free(p);
+        free(tangent);
+        scene_close(&scene);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_refused),
+        cmocka_unit_test(no_node_yields),
+        cmocka_unit_test(soft_faces),
+        cmocka_unit_test(every_solution_meets_its_conditions),
+        cmocka_unit_test(loads_fall_and_rise),
+        cmocka_unit_test(depths_rise),
+        cmocka_unit_test(stiffnesses_are_differences),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
