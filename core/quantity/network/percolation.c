@@ -1,0 +1,54 @@
+#include "core/quantity/network/percolation.h"
+
+/* Nodes are joined in a tree whose root stands for it (Tarjan 1975, paths halved). A root has a
+ * negative link: minus 1, and minus the ends that its nodes reach. */
+enum { ROOT = 1, FIRST = 2, LAST = 4, BOTH = ROOT + FIRST + LAST };
+
+static size_t root_of(ptrdiff_t *link, size_t a) {
+    while (link[a] >= 0) {
+        ptrdiff_t next = link[link[a]];
+        if (next < 0)
+            return (size_t)link[a];
+        link[a] = next;
+        a = (size_t)next;
+    }
+    return a;
+}
+
+static void join(ptrdiff_t *link, size_t a, size_t b) {
+    size_t m = root_of(link, a), n = root_of(link, b);
+    if (m == n)
+        return;
+    size_t root = m < n ? m : n, other = m < n ? n : m;
+    link[root] = -(-link[root] | -link[other]);
+    link[other] = (ptrdiff_t)root;
+}
+
+bool percolation_keep(size_t nx, size_t ny, size_t stride, double *k, ptrdiff_t *link) {
+    for (size_t j = 0; j < ny; j++)
+        for (size_t i = 0; i < nx; i++) {
+            int ends = (i == 0 ? FIRST : 0) + (i + 1 == nx ? LAST : 0);
+            link[j * nx + i] = -(ROOT + ends);
+        }
+    for (size_t j = 0; j < ny; j++) {
+        const double *row = k + j * stride, *up = k + (j + 1 < ny ? j + 1 : 0) * stride;
+        size_t at = j * nx, above = (j + 1 < ny ? j + 1 : 0) * nx;
+        for (size_t i = 0; i < nx; i++) {
+            if (!(row[i] > 0))
+                continue;
+            if (i + 1 < nx && row[i + 1] > 0)
+                join(link, at + i, at + i + 1);
+            if (up[i] > 0)
+                join(link, at + i, above + i);
+        }
+    }
+    bool any = false;
+    for (size_t j = 0; j < ny; j++)
+        for (size_t i = 0; i < nx; i++) {
+            double *node = k + j * stride + i;
+            bool through = *node > 0 && link[root_of(link, j * nx + i)] == -BOTH;
+            any = any || through;
+            *node = through ? *node : 0;
+        }
+    return any;
+}
