@@ -221,7 +221,7 @@ double contact_held_stiffness(struct contact *c, const double *p, double residua
         return 0;
     if (nodes == d->n && !c->compliance->open)
         return INFINITY;
-    return 1 / (conjugate_gradient_tangent(d, residual) * d->largest);
+    return 1 / (conjugate_gradient_tangent(d, d->p, residual) * d->largest);
 }
 
 /* Lowers the face in gaps that were computed from heights as they were: the solver's (weighted)

@@ -8,6 +8,7 @@
 #include "jobs/contact/contact_scene.h"
 #include "jobs/contact/contact_steps.h"
 #include "jobs/contact/contact_tolerance.h"
+#include "jobs/contact/quantity/quantity_scalars.h"
 #include "jobs/contact/target/contact_target.h"
 #include "schema/json/field.h"
 #include "schema/json/json.h"
@@ -136,6 +137,8 @@ static int result(const void *one_case, const struct surface_basis *basis, const
                   struct error *err) {
     const struct contact_tally *contact = tally;
     int status = contact_scalars(one_case, &basis->moments, contact, realisations, out, err);
+    if (status == 0)
+        status = quantity_scalars(contact, out, err);
     if (status == 0)
         status = contact_curves(one_case, basis->modes, &basis->moments, contact, out, err);
     if (status == 0)
@@ -306,6 +309,12 @@ static const struct shown_name NAMES[] = {
     {"K sqrt(m0)/(E* h'_rms)", "stiffness", "stiffness K sqrt(m0)/(E* h'_rms)"},
     {"G (rho1 + rho2) sqrt(m0)/(2 h'_rms)", "conductance",
      "conductance G (rho1 + rho2) sqrt(m0)/(2 h'_rms)"},
+    {"leak over that of the mean gap", "leak", NULL},
+    {"share of directions that are open", "open share", NULL},
+    {"percolates", "open directions", NULL},
+    {"effective_medium", "effective medium", NULL},
+    {"percolation_load", "load at which the gap closes", NULL},
+    {"percolation_area", "area at which the gap closes", NULL},
     {"mean patch/cell", "mean patch area", "mean patch area/A0"},
     {"mean patch/lambda_l", "mean patch length", "mean patch length/lambda_l"},
     {"mean patch/lambda_l^2", "mean patch area", "mean patch area/lambda_l^2"},

@@ -14,6 +14,8 @@
 #include "schema/study/fault.h"
 #include "schema/study/parameter.h"
 
+/* The most that a hardness may be, over E* h'. */
+#define CONTACT_HARDNESS_MOST 1e6
 enum { CONTACT_LEVELS_MOST = 8, CONTACT_LOADS_MOST = 1000, CONTACT_KEPT_MOST = 1000 };
 
 enum height_unit { HEIGHT_RMS_HEIGHTS, HEIGHT_LENGTHS, HEIGHT_WAVELENGTHS };
@@ -60,6 +62,8 @@ struct contact_case {
     bool stiffness;                /* is shown */
     struct quantities_asked asked; /* beside these (quantity/quantity.h) */
     bool asperities;               /* theories by counted summits are wanted */
+    double hardness;               /* over E* h', above all loads; 0: the contact is elastic */
+    double yield;                  /* the same over E* */
     double tolerance;              /* of solutions (contact_tolerance.h) */
     size_t pdf_count;
     size_t *pdf_loads;    /* owned: loads whose pressures are counted, rising */

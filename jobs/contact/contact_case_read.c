@@ -234,10 +234,10 @@ static int read_alone(struct contact_case *out, struct asked *asked, struct valu
                       struct error *err) {
     out->tolerance = values_number(values, "/contact/tolerance");
     out->stiffness = values_choice(values, "/contact/stiffness") != STIFFNESS_OMITTED;
-    contact_quantities_read(out, values);
     read_estimators(out, values);
     read_asperities(out, values);
     read_block(out, asked, values);
+    contact_quantities_read(out, values);
     read_load_unit(asked, values);
     int status = read_loads(out, asked, values, err);
     if (status == 0)
@@ -288,7 +288,7 @@ static bool scale_fits(const struct contact_case *one_case, const struct asked *
                        struct values *values) {
     const struct grid *grid = &one_case->surface.grid;
     bool needed = isfinite(asked->height) && asked->height_unit != HEIGHT_LENGTHS;
-    needed = needed || asked->modulus > 0;
+    needed = needed || asked->modulus > 0 || one_case->hardness > 0;
     needed = needed || (isfinite(asked->fine) && asked->fine_unit == HEIGHT_RMS_HEIGHTS);
     for (size_t m = 0; m < one_case->model_count; m++)
         needed = needed || one_case->models[m]->check != NULL;
@@ -296,7 +296,8 @@ static bool scale_fits(const struct contact_case *one_case, const struct asked *
         (double)grid_points(grid) <= SCALE_POINTS_MOST)
         return true;
     values_fault(values, "/surface/points_per_wavelength",
-                 "%zu by %zu points: blocks in rms_heights, loads in Pa, and the model full, need "
+                 "%zu by %zu points: blocks in rms_heights, loads in Pa, a hardness, and the model "
+                 "full, need "
                  "the RMS height and slope of the surface, which are computed of %.0f points at "
                  "most. Give block_height in lengths, or take fewer points",
                  grid->nx, grid->ny, SCALE_POINTS_MOST);
@@ -477,6 +478,25 @@ static void check_pairs(const struct contact_case *one_case, struct values *valu
                      one_case->pressure.count, contact_densities_size(one_case), PAIR_SUMS_MOST);
 }
 
+/* Sets the hardness over E*, which loads must be below. */
+static int set_yield(struct contact_case *out, struct values *values, struct error *err) {
+    struct moments moments;
+    if (!(out->hardness > 0))
+        return 0;
+    for (size_t k = 0; k < out->load_count; k++)
+        if (!(out->loads[k] < out->hardness)) {
+            values_fault(values, LOAD_VALUES,
+                         "number %zu is a load of %g E* h', and nothing bears a load of the "
+                         "hardness, %g E* h', or more",
+                         k, out->loads[k], out->hardness);
+            return 0;
+        }
+    int status = spectrum_moments(&out->surface.spectrum, &out->surface.grid, &moments, err);
+    if (status == 0)
+        out->yield = out->hardness * moments.rms_slope;
+    return status;
+}
+
 /* Sets levels and blocks on the surface of the case, which has no fault. */
 static int set_on_surface(struct contact_case *out, const struct asked *asked,
                           struct values *values, struct error *err) {
@@ -487,6 +507,8 @@ static int set_on_surface(struct contact_case *out, const struct asked *asked,
     if (!asked->block || !faces_fit(out, values) || !scale_fits(out, asked, values))
         return 0;
     int status = convert_loads(out, asked, values, err);
+    if (status == 0)
+        status = set_yield(out, values, err);
     if (status == 0)
         status = set_blocks(out, asked, values, err);
     if (status == 0)

@@ -121,8 +121,17 @@ static int put_summits(struct theory_list *list, const struct modes *modes,
     return status;
 }
 
+static void put_plastic(struct theory_list *list) {
+    const struct contact_case *one_case = list->one_case;
+    for (size_t k = 0; k < one_case->load_count; k++)
+        list->values[k] = persson_plastic_area(one_case->loads[k], one_case->hardness);
+    put(list, THEORIES_PLASTIC, "persson");
+}
+
 static void put_rough(struct theory_list *list, const struct moments *moments) {
     put_area(list, "persson", persson_at, 0);
+    if (list->one_case->hardness > 0)
+        put_plastic(list);
     put_area(list, "persson_light_load", line_at, persson_light_load());
     if (list->one_case->surface.dimension == 2)
         put_area(list, "bgt_light_load", line_at, bgt_light_load());

@@ -152,7 +152,7 @@ int contact_measure(const struct measure_context *context, const struct contact_
     double open_now = area.nodes < 1 ? (1 - now * area.nodes) / (1 - area.nodes) : 1;
 #define VALUE(name, shown, kept, value, ...) values[MEASURE_##name] = value;
     LIST(VALUE)
-    return contact_quantities_measure(context->quantities, context, pressed,
+    return contact_quantities_measure(context->quantities, context, pressed, &area,
                                       values + MEASURE_QUANTITIES, err);
 }
 

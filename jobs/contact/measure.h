@@ -38,7 +38,13 @@ enum contact_measure {
 };
 
 /* The theories of its curve (contact_curves.c). */
-enum measure_theories { THEORIES_NONE, THEORIES_AREA, THEORIES_GAP, THEORIES_KINDS };
+enum measure_theories {
+    THEORIES_NONE,
+    THEORIES_AREA,
+    THEORIES_GAP,
+    THEORIES_PLASTIC,
+    THEORIES_KINDS
+};
 /* How the solver's tolerance changes it: smoothly with the forces; by counted points, one of which
  * may fall on either side; by patches, which such a point may join or divide; or by points in bins
  * of pressure. */

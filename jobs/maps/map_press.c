@@ -45,11 +45,15 @@ const struct press_column PRESS_COLUMNS[PRESS_COLUMN_COUNT] = {
     {"lower", "nodes_lower", MEASURE_NODES_LOWER, false, false},
     {"upper", "nodes_upper", MEASURE_NODES_UPPER, false, false},
     {"perimeter", "perimeter", MEASURE_PERIMETER, false, false},
+    {"plastic", "plastic_area", PLASTIC_AREA, false, true},
+    {"plastic load", "plastic_load", PLASTIC_LOAD, false, true},
     {"peak", "peak", PRESS_PEAK, true, true},
     {"approach/rms", "approach", PRESS_APPROACH, false, true},
     {"gap/rms", "mean_gap", MEASURE_GAP, false, true},
     {"stiffness", "stiffness", MEASURE_STIFFNESS, false, false},
     {"conductance", "conductance", CONDUCTANCE_MEASURE, false, true},
+    {"leak x", "leak_x", LEAK_ALONG_X, false, true},
+    {"leak y", "leak_y", LEAK_ALONG_Y, false, true},
     {"patches", "patch_count", MEASURE_PATCHES, true, false},
     {"contact nodes", "contact_nodes", PRESS_CONTACT_NODES, false, false},
     {"iterations", "iterations", MEASURE_ITERATIONS, false, false},
@@ -139,8 +143,15 @@ static void fill_case(struct map_press *press, const struct press_block *asked) 
                                             .perimeter = true,
                                             .stiffness = true,
                                             .tolerance = tolerance_of(asked)};
+    if (asked->hardness > 0) {
+        press->one_case.yield = asked->hardness;
+        press->one_case.hardness = asked->hardness / press->slope;
+        contact_quantities_ask(&press->one_case, HARDNESS_MEASURE);
+    }
     if (asked->conducts)
         contact_quantities_ask(&press->one_case, CONDUCTANCE_MEASURE);
+    if (asked->leaks)
+        contact_quantities_ask(&press->one_case, LEAK_MEASURE);
 }
 
 static int solver_create(struct map_press *press, struct error *err) {

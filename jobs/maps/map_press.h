@@ -21,8 +21,9 @@ struct press_block {
     const struct contact_model *model;
     double poisson;
     double lengths; /* height of the block in lengths of the map as it is pressed; 0: the model's */
-    double tolerance; /* of a solution, as in studies; 0: the model's */
-    bool conducts;    /* its conductance is asked for */
+    double tolerance;     /* of a solution, as in studies; 0: the model's */
+    double hardness;      /* over E*; 0: it is elastic */
+    bool conducts, leaks; /* these quantities are asked for */
 };
 
 /* Values of a load have the numbers of the measures of studies and of the model's own; these
@@ -48,7 +49,7 @@ struct press_column {
     bool fold;      /* tables for people may start a line here */
     bool uncertain; /* its errors stand in tables for people */
 };
-enum { PRESS_COLUMN_COUNT = 18 };
+enum { PRESS_COLUMN_COUNT = 22 };
 extern const struct press_column PRESS_COLUMNS[PRESS_COLUMN_COUNT];
 
 /* (reported - true) lies within value +- bound; NaN: not known. */

@@ -45,6 +45,8 @@ static int solver_fill(struct coarse_solver *solver, double height, struct error
     struct block block = {.model = MODEL_HALFSPACE, .height = height, .layer_growth = 1};
     struct contact_options options = CONTACT_DEFAULTS;
     options.tolerance = solver->one_case->tolerance;
+    if (solver->one_case->hardness > 0)
+        options.hardness = solver->one_case->hardness * solver->rms_slope;
     options.without_tangent = !contact_case_needs_tangent(solver->one_case);
     int status = compliance_create(&solver->compliance, &solver->grid, &block, err);
     if (status == 0)
@@ -127,7 +129,8 @@ int coarse_solver_press(struct coarse_solver *solver, const double *z, double *s
 double coarse_solver_bytes(const struct contact_case *one_case, const struct grid *grid) {
     const struct block block = {.model = MODEL_HALFSPACE, .height = INFINITY};
     const struct quantity_scene scene = quantity_scene_of(one_case, grid, 1);
-    return contact_quantities_bytes(&scene) + patch_finder_bytes(grid) +
+    return contact_quantities_bytes(&scene) +
+           (one_case->hardness > 0 ? contact_hardness_bytes(grid) : 0) + patch_finder_bytes(grid) +
            contact_bytes(grid, &block) + area_workspace_bytes(grid, &block) +
            compliance_bytes(grid, &block);
 }

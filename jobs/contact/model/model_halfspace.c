@@ -4,6 +4,7 @@
 
 const struct contact_model HALFSPACE_MODEL = {
     .rank = 0,
+    .yields = true,
     .free_space = true,
     .block = MODEL_HALFSPACE,
     .default_height = INFINITY,

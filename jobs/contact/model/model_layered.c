@@ -3,6 +3,7 @@
 
 const struct contact_model LAYERED_MODEL = {
     .rank = 1,
+    .yields = true,
     .block = MODEL_LAYERED,
     .elements = true,
     .default_height = 1.5,

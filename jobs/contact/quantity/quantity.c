@@ -5,6 +5,13 @@ static const struct contact_quantity *const QUANTITIES[] = {CONTACT_QUANTITY_LIS
 #define COUNT(name, count) (count),
 static const size_t COUNTS[] = {CONTACT_QUANTITY_LIST(COUNT)};
 
+const struct contact_quantity *contact_quantity_at(size_t at, size_t *measure) {
+    *measure = MEASURE_QUANTITIES;
+    for (size_t q = 0; q < at; q++)
+        *measure += COUNTS[q];
+    return QUANTITIES[at];
+}
+
 /* Returns the quantity with a measure, and its first number; CONTACT_QUANTITIES: there is none. */
 static size_t quantity_of(size_t number, size_t *first) {
     size_t q = 0;
@@ -55,9 +62,11 @@ int contact_quantities_create(struct contact_quantities *out, const struct quant
                               struct error *err) {
     int status = 0;
     *out = (struct contact_quantities){0};
-    for (size_t q = 0; q < CONTACT_QUANTITIES && status == 0; q++)
-        if (scene->one_case->asked.of[q])
+    for (size_t q = 0; q < CONTACT_QUANTITIES && status == 0; q++) {
+        out->asked[q] = scene->one_case->asked.of[q];
+        if (out->asked[q] && QUANTITIES[q]->create != NULL)
             status = QUANTITIES[q]->create(&out->of[q], scene, err);
+    }
     if (status != 0)
         contact_quantities_clear(out);
     return status;
@@ -69,31 +78,36 @@ void contact_quantities_clear(struct contact_quantities *quantities) {
             QUANTITIES[q]->destroy(&quantities->of[q]);
 }
 
+/* Returns whether a quantity is asked for and has a state. */
+static bool is_heavy(const struct quantity_scene *scene, size_t q) {
+    return scene->one_case->asked.of[q] && QUANTITIES[q]->create != NULL;
+}
+
 double contact_quantities_bytes(const struct quantity_scene *scene) {
     double bytes = 0;
     for (size_t q = 0; q < CONTACT_QUANTITIES; q++)
-        bytes += scene->one_case->asked.of[q] ? QUANTITIES[q]->bytes(scene) : 0;
+        bytes += is_heavy(scene, q) ? QUANTITIES[q]->bytes(scene) : 0;
     return bytes;
 }
 
 double contact_quantities_seconds(const struct quantity_scene *scene) {
     double seconds = 0;
     for (size_t q = 0; q < CONTACT_QUANTITIES; q++)
-        seconds += scene->one_case->asked.of[q] ? QUANTITIES[q]->seconds(scene) : 0;
+        seconds += is_heavy(scene, q) ? QUANTITIES[q]->seconds(scene) : 0;
     return seconds;
 }
 
 int contact_quantities_measure(const struct contact_quantities *quantities,
                                const struct measure_context *context,
-                               const struct contact_pressed *pressed, double *values,
-                               struct error *err) {
+                               const struct contact_pressed *pressed,
+                               const struct contact_area *area, double *values, struct error *err) {
     size_t first = 0;
     int status = 0;
     for (size_t a = 0; a < QUANTITY_MEASURES_MOST; a++)
         values[a] = (double)NAN;
     for (size_t q = 0; q < CONTACT_QUANTITIES && status == 0; first += COUNTS[q++])
-        if (quantities != NULL && quantities->of[q] != NULL)
-            status =
-                QUANTITIES[q]->measure(quantities->of[q], context, pressed, values + first, err);
+        if (quantities != NULL && quantities->asked[q])
+            status = QUANTITIES[q]->measure(quantities->of[q], context, pressed, area,
+                                            values + first, err);
     return status;
 }

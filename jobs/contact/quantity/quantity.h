@@ -12,7 +12,7 @@
 /* All quantities: NAME and how many measures it has. NAME_QUANTITY is its struct, NAME_PARAMETERS
  * its table of parameters. Partial results hold measures in this order, so that an entry comes
  * behind all others. */
-#define CONTACT_QUANTITY_LIST(ENTRY) ENTRY(CONDUCTANCE, 1)
+#define CONTACT_QUANTITY_LIST(ENTRY) ENTRY(CONDUCTANCE, 1) ENTRY(LEAK, 7) ENTRY(HARDNESS, 4)
 
 /* NAME_AT: its position, as in quantities_asked. NAME_MEASURE: the number of its first measure. */
 #define CONTACT_QUANTITY_POSITION(name, count) name##_AT,
@@ -27,6 +27,16 @@ enum {
 _Static_assert((int)CONTACT_QUANTITY_BEHIND <= (int)MEASURE_PAIRED, "too many measures");
 
 struct measure_context; /* contact_measure.h */
+struct contact_area;    /* core/contact/area.h */
+
+/* Measures that have columns of their own in tables of one map. */
+enum {
+    LEAK_ALONG_X = LEAK_MEASURE + 4,
+    LEAK_ALONG_Y,
+    PLASTIC_AREA = HARDNESS_MEASURE,
+    PLASTIC_LOAD,
+    PLASTIC_VOLUME
+};
 
 /* What a quantity is measured on: one grid under one model. */
 struct quantity_scene {
@@ -39,21 +49,38 @@ struct quantity_scene {
 
 struct quantity_state; /* each quantity's own */
 
+/* What scalars of a quantity are made of: one realisation of the first model on the finest level.
+ */
+struct quantity_values {
+    size_t load_count;
+    const double *loads; /* p/(E* h') */
+    const double *areas; /* by edges, a load each */
+    const double *of;    /* of its measures, by measure and load */
+};
+
 struct contact_quantity {
     const struct measure *measures;
-    bool tangent; /* needs that of linear solutions */
-    /* Returns whether a study asks for the quantity, and adds its faults. */
-    bool (*read)(const struct contact_case *one_case, struct values *values);
+    const char *const *scalars; /* of a realisation; ends with NULL; NULL: none */
+    bool tangent;               /* needs that of linear solutions */
+    /* Returns whether a study asks for the quantity, whose models are known; fills what it has in
+     * the case, and adds its faults. */
+    bool (*read)(struct contact_case *one_case, struct values *values);
     /* Return the bytes of a state, and the CPU seconds of all loads on a 3 GHz core. */
     double (*bytes)(const struct quantity_scene *scene);
     double (*seconds)(const struct quantity_scene *scene);
+    /* NULL where it keeps nothing, as the two above and the next. */
     int (*create)(struct quantity_state **out, const struct quantity_scene *scene,
                   struct error *err);
     void (*destroy)(struct quantity_state **state);
     /* Measures a solved load into as many values as the quantity has; NaN: none. */
     int (*measure)(struct quantity_state *state, const struct measure_context *context,
-                   const struct contact_pressed *pressed, double *values, struct error *err);
+                   const struct contact_pressed *pressed, const struct contact_area *area,
+                   double *values, struct error *err);
+    /* Fills the scalars of a realisation; NaN: none. NULL where it has none. */
+    void (*summarise)(const struct quantity_values *values, double *scalars);
 };
+/* Returns a quantity by its position, and the number of its first measure. */
+const struct contact_quantity *contact_quantity_at(size_t at, size_t *measure);
 
 /* The parameters of all, for the tables of the kind. */
 #define CONTACT_QUANTITY_DECLARE(name, count)                                                      \
@@ -77,7 +104,8 @@ bool quantity_is_asked(const struct contact_case *one_case, size_t number);
 
 /* The states of all quantities that a case asks for, of one grid and one thread. */
 struct contact_quantities {
-    struct quantity_state *of[CONTACT_QUANTITIES_MOST]; /* owned; NULL: not asked for */
+    bool asked[CONTACT_QUANTITIES_MOST];
+    struct quantity_state *of[CONTACT_QUANTITIES_MOST]; /* owned; NULL: nothing is kept */
 };
 int contact_quantities_create(struct contact_quantities *out, const struct quantity_scene *scene,
                               struct error *err);
@@ -87,7 +115,7 @@ double contact_quantities_seconds(const struct quantity_scene *scene);
 /* Fills values[QUANTITY_MEASURES_MOST]; NaN where not asked for. quantities may be NULL. */
 int contact_quantities_measure(const struct contact_quantities *quantities,
                                const struct measure_context *context,
-                               const struct contact_pressed *pressed, double *values,
-                               struct error *err);
+                               const struct contact_pressed *pressed,
+                               const struct contact_area *area, double *values, struct error *err);
 
 #endif

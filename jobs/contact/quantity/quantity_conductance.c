@@ -1,5 +1,6 @@
 /* The conductance of the contact by its elastic stiffness (core/quantity/conductance.h). On a
- * half-space without end it is the stiffness of the solution itself. Under other blocks half-spaces
+ * half-space without end it is the stiffness of the solution itself, under a hardness that of
+ * unloading, to which yielded nodes contribute. Under other blocks half-spaces
  * conduct through the same nodes, which takes a solution of its own. */
 #include "core/cost.h"
 #include "core/quantity/conductance.h"
@@ -47,7 +48,7 @@ static const struct parameter ROWS[] = {
 const struct parameter_table CONDUCTANCE_PARAMETERS = {"contact", ROWS, sizeof ROWS / sizeof *ROWS};
 
 /* The units need resistivities alone (jobs/units.h), so that cases do not hold them. */
-static bool asked(const struct contact_case *one_case, struct values *values) {
+static bool asked(struct contact_case *one_case, struct values *values) {
     static const char *const UNITS[] = {"/contact/resistivity", "/contact/conductivity"};
     bool conducts = values_flag(values, "/contact/conductance");
     (void)one_case;
@@ -99,14 +100,16 @@ static int create(struct quantity_state **out, const struct quantity_scene *scen
 
 /* None in full contact, as the stiffness there. */
 static int measure(struct quantity_state *state, const struct measure_context *context,
-                   const struct contact_pressed *pressed, double *values, struct error *err) {
+                   const struct contact_pressed *pressed, const struct contact_area *area,
+                   double *values, struct error *err) {
     static const double VALUE_MOST = 1e6;
     const struct contact_state *contact = &pressed->state;
-    double stiffness = state->conductance == NULL
-                           ? contact->stiffness
-                           : conductance_measure(state->conductance, contact->p);
+    double own = isnan(contact->unload_stiffness) ? contact->stiffness : contact->unload_stiffness;
+    double stiffness =
+        state->conductance == NULL ? own : conductance_measure(state->conductance, contact->p);
     double value = stiffness * context->rms_height / context->rms_slope;
     (void)err;
+    (void)area;
     *values = fabs(value) < VALUE_MOST ? value : (double)NAN;
     return 0;
 }

@@ -153,6 +153,7 @@ struct press_options {
     double lengths;   /* height of the block in lengths of the map, 0: not given */
     double tolerance; /* likewise */
     int boundary, format, without_error;
+    bool leak;
     unsigned threads; /* 0: as many processors as are allotted */
     struct press_words words;
     struct press_paths paths;
@@ -174,10 +175,14 @@ static const struct option_row OPTIONS[] = {
      "Young's modulus of the block, such as 210GPa: results in physical units"},
     {"effective-modulus", 0, OPTION_TEXT, 0, 0, AT(words.effective_modulus), "E*", NULL,
      "in place of it: E* = E/(1 - nu^2), or that of two elastic bodies"},
+    {"hardness", 0, OPTION_TEXT, 0, 0, AT(words.hardness), "H", NULL,
+     "pressure at which the block yields, such as 2GPa; without it, it is elastic"},
     {"resistivity", 0, OPTION_TEXT, 0, 0, AT(words.resistivity), "RHO[,RHO]", NULL,
      "electric resistivity of both bodies, or of each, in ohm m: the conductance of the contact"},
     {"conductivity", 0, OPTION_TEXT, 0, 0, AT(words.conductivity), "K[,K]", NULL,
      "in place of it: thermal conductivity in W/(m K)"},
+    {"leak", 0, OPTION_FLAG, 0, 0, AT(leak), NULL, NULL,
+     "what leaks through the gap along x and y, over that of a uniform gap of the same mean"},
     {"model", 0, OPTION_MODELS, 0, 0, AT(model), "MODEL", "halfspace",
      "what the block is made of; of several, with commas between, the differences to the most "
      "complete one are errors of the others"},
@@ -404,13 +409,29 @@ static int report(const struct press_order *order, const struct pressed *pressed
     return status;
 }
 
+/* Fills the mean pressures of all loads, over E*, which are below the hardness. */
+static int find_pressures(const struct press_order *order, struct pressed *pressed,
+                          struct error *err) {
+    const struct press_loads *loads = &order->loads;
+    const struct map_press *press = &pressed->press;
+    for (size_t l = 0; l < loads->count; l++) {
+        double mean = press_loads_mean(loads, l, press->slope, map_area(press));
+        pressed->pressures[l] = mean;
+        if (loads->hardness > 0 && !(mean < loads->hardness))
+            return error_set(err, ERROR_INPUT,
+                             "%s: load %zu, p/(E* h') = %.4g, is a mean pressure of %.4g Pa, and "
+                             "nothing bears the --hardness, %s, or more",
+                             order->path, l + 1, mean / press->slope, mean * loads->modulus,
+                             order->options->words.hardness);
+    }
+    return 0;
+}
+
 static int press_models(const struct press_order *order, struct pressed *pressed,
                         const struct height_map *map, struct error *err) {
     const struct map_press *press = &pressed->press;
     size_t loads = order->loads.count;
-    int status = 0;
-    for (size_t l = 0; l < loads; l++)
-        pressed->pressures[l] = press_loads_mean(&order->loads, l, press->slope, map_area(press));
+    int status = find_pressures(order, pressed, err);
     for (size_t m = 0; m < order->model_count && status == 0; m++)
         status = m == 0 ? press_first(order, pressed, map, err)
                         : press_loads(order, pressed, map, m, err);
@@ -450,7 +471,14 @@ static int order_models(struct press_order *order, struct error *err) {
                                                 .poisson = options->words.poisson,
                                                 .lengths = options->lengths,
                                                 .tolerance = options->tolerance,
-                                                .conducts = order->loads.resistivity > 0};
+                                                .hardness = order->loads.hardness,
+                                                .conducts = order->loads.resistivity > 0,
+                                                .leaks = options->leak};
+    for (size_t m = 0; m < order->model_count && order->loads.hardness > 0; m++)
+        if (!order->blocks[m].model->yields)
+            return error_set(err, ERROR_INPUT,
+                             "--hardness: the model %s does not yield; leave one of them out",
+                             contact_model_name(order->blocks[m].model));
     return 0;
 }
 

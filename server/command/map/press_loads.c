@@ -24,6 +24,24 @@ static int parse_modulus(struct press_loads *out, const struct press_words *word
     return 0;
 }
 
+static int parse_hardness(struct press_loads *out, const struct press_words *words,
+                          struct error *err) {
+    double hardness;
+    if (words->hardness == NULL)
+        return 0;
+    if (!quantity_parse(words->hardness, strlen(words->hardness), "Pa", &hardness))
+        return error_set(err, ERROR_INPUT,
+                         "--hardness %.40s: allowed is a pressure above 0 with its unit, such as "
+                         "2GPa",
+                         words->hardness);
+    if (!(out->modulus > 0))
+        return error_set(err, ERROR_INPUT,
+                         "--hardness needs the stiffness of the block: --modulus, such as 210GPa, "
+                         "or --effective-modulus");
+    out->hardness = hardness / out->modulus;
+    return 0;
+}
+
 /* Reads one number for both bodies, or two. */
 static bool read_pair(const char *text, double pair[2]) {
     char *end;
@@ -62,6 +80,8 @@ int press_loads_parse(struct press_loads *out, const struct press_words *words, 
     if (given > 1)
         return error_set(err, ERROR_INPUT, "--loads, --pressure, --force: give one of the three");
     int status = parse_modulus(out, words, err);
+    if (status == 0)
+        status = parse_hardness(out, words, err);
     if (status == 0)
         status = parse_conduction(out, words, err);
     if (status != 0)

@@ -12,7 +12,7 @@ enum { PRESS_LOADS_MOST = 1000 };
 /* As options give them; NULL: not given. */
 struct press_words {
     const char *loads, *pressure, *force, *modulus, *effective_modulus;
-    const char *resistivity, *conductivity;
+    const char *hardness, *resistivity, *conductivity;
     double poisson;
 };
 
@@ -21,6 +21,7 @@ struct press_loads {
     size_t count;
     double value[PRESS_LOADS_MOST]; /* rising: p/(E* h'), Pa, or N (of a profile N/m) */
     double modulus;                 /* E* in Pa; 0: not known */
+    double hardness;                /* over E*; 0: it is elastic */
     double resistivity;             /* of both bodies together, ohm m or m K/W; 0: not known */
     bool heat;                      /* to heat, else to current */
     const char *force;              /* the words, read when it is known whether it is a profile's */
