@@ -15,6 +15,10 @@ struct contact_area {
      * boundary of their cells (after Yastrebov, Anciaux & Molinari 2017); profiles: NaN. */
     double perimeter;
     double mean_gap; /* without the mesh's error to first order (mesh_error.h); the grid's length */
+    /* Beside yielded nodes edges, and perimeter, are half a step beyond them. By how much the edge
+     * can be off if it lies anywhere between these nodes and the open ones: edges lies within this
+     * of the true area. 0 where no edge is beside a yielded node. */
+    double edges_yielded;
 };
 
 struct area_law;
@@ -34,7 +38,8 @@ double area_workspace_bytes(const struct grid *grid, const struct block *block);
 const struct grid *area_workspace_grid(const struct area_workspace *workspace);
 const struct area_law *area_workspace_law(const struct area_workspace *workspace);
 
-/* Of a state on the workspace's grid. */
+/* Of a state on the workspace's grid. Where nodes have yielded, nothing is corrected for the mesh's
+ * own compliance and weighting. */
 void contact_area(struct area_workspace *workspace, const struct contact_state *state,
                   struct contact_area *out);
 

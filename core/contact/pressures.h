@@ -14,7 +14,8 @@ double pressures_bytes(const struct grid *grid);
 
 /* Fills shares[bins->count + 2] of a state on the workspace's grid: fractions of the cell where
  * p/unit lies in each of the bins, which begin at 0 or above; the first is underflow, the last
- * overflow. They add up to `area`, and the mean of p over them to the mean pressure. ERROR_MEMORY.
+ * overflow. They add up to `area`, and the mean of p over them to the mean pressure. ERROR_MEMORY;
+ * ERROR_INPUT where nodes have yielded: shares of the load there are known without (contact_state).
  */
 int pressures_share(struct pressures *pressures, const struct contact_state *state, double area,
                     const struct bins *bins, double unit, double *shares, struct error *err);

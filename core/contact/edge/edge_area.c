@@ -4,11 +4,17 @@
 #include <stdlib.h>
 
 /* Adds to the sums, in cells, the area between the edge of a crossing and the cells of the nodes in
- * contact. */
+ * contact. yielded: so is the node inside. */
 static void add_crossing(const struct edge_crossing *x, const struct edge_law *law,
-                         const struct contact_state *state, const double *rise,
+                         const struct contact_state *state, const double *rise, bool yielded,
                          struct edge_area *sums) {
     struct edge_found f = edge_find(x, law, rise);
+    if (yielded) {
+        double part = !isnan(f.lone) ? (x->profile ? 1 : 0.5) : f.part;
+        sums->yielded += 0.5 * part;
+        sums->yielded_sides += 1;
+        return;
+    }
     if (!isnan(f.lone)) { /* met once on each side: twice in a profile, four times in a surface */
         sums->straight += x->profile ? f.lone - 0.5 : (f.lone - 0.5) / 2;
         return;
@@ -35,7 +41,7 @@ struct edge_scan {
     struct part_sums *sums; /* of each part */
     struct team *team;      /* borrowed; NULL: the caller alone */
     const struct contact_state *state;
-    double highest; /* pressure */
+    double highest; /* pressure; where nodes have yielded, theirs */
 };
 
 /* Rows of a part: those of some ten thousand nodes. */
@@ -88,7 +94,8 @@ static void add_between(const struct edge_scan *scan, const struct edge_family *
         return;
     size_t a = f->nodes + node + (first ? 0 : 1), b = f->nodes + node + (first ? 1 : 0);
     struct edge_crossing crossing = edge_crossing_at(f, line, a, b);
-    add_crossing(&crossing, scan->law, scan->state, scan->rise, sums);
+    bool yielded = scan->state->yielded > 0 && scan->state->p[crossing.inside] >= scan->highest;
+    add_crossing(&crossing, scan->law, scan->state, scan->rise, yielded, sums);
 }
 
 /* Counts nodes and corners of a cell. Patches less holes are counted by the turns of their
@@ -164,6 +171,8 @@ void edge_area_measure(struct edge_scan *scan, const struct contact_state *state
         area->lower += sums->lower;
         area->upper += sums->upper;
         area->sides += sums->sides;
+        area->yielded += sums->yielded;
+        area->yielded_sides += sums->yielded_sides;
     }
     /* A profile has neither cells nor sides of them. */
     const bool profile = grid_is_profile(&scan->grid);
@@ -173,5 +182,7 @@ void edge_area_measure(struct edge_scan *scan, const struct contact_state *state
                               .nodes = area->nodes / n,
                               .lower = area->lower / n,
                               .upper = area->upper / n,
-                              .sides = profile ? 0 : area->sides / n};
+                              .sides = profile ? 0 : area->sides / n,
+                              .yielded = area->yielded / n,
+                              .yielded_sides = profile ? 0 : area->yielded_sides / n};
 }
