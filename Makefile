@@ -102,7 +102,7 @@ $(BUILD)/commit.o: $(BUILD)/commit.c $(BUILD)/flags
 	$(Q)$(COMPILE) -c $< -o $@
 
 # What computes reads no input: coverage of its loops guides no fuzzer, and takes a third of the time under sanitizers.
-COMPUTES = core/contact core/full core/statistics core/surface core/theory
+COMPUTES = core/contact core/full core/quantity core/statistics core/surface core/theory
 $(if $(findstring fuzzer-no-link,$(SAN)),$(foreach folder,$(COMPUTES),$(eval \
     $(BUILD)/$(folder)/%.c.o: private UNGUIDED = -fno-sanitize=fuzzer-no-link)))
 

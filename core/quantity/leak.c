@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-const struct leak_options LEAK_DEFAULTS = {.tolerance = 1e-10, .max_iterations = 500};
+const struct leak_options LEAK_DEFAULTS = {.tolerance = 1e-10, .max_iterations = 2000};
 
 /* Cubes of this and of 1 are 15 decades apart: as far as pressures of about 1, in double, resolve
  * the flow between. */

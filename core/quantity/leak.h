@@ -8,8 +8,9 @@
  * is periodic.
  *
  * The leak of a direction is the mean flow for a unit mean gradient of pressure, over that of a
- * uniform gap of the same mean, contact included: Patir & Cheng's flow factor with the mean gap. It
- * is 1 for a uniform gap and 0 where contact closes the cell; along waves a (1 - cos) it is 5/2.
+ * uniform gap of the same mean, contact included (F20.1): Patir & Cheng's flow factor with the mean
+ * gap. It is 1 for a uniform gap and 0 where contact closes the cell; along waves a (1 - cos) it is
+ * 5/2.
  *
  * A node is closed where it is in contact, or without a gap. Free nodes are joined along grid
  * lines; those without a path to both ends carry nothing. A face between two free nodes has
@@ -27,7 +28,7 @@
 
 struct leak_options {
     double tolerance;      /* on each leak by its faces, relative, as estimated; default 1e-10 */
-    size_t max_iterations; /* of each; 1 to 1e6; default 500 */
+    size_t max_iterations; /* of each; 1 to 1e6; default 2000 */
 };
 extern const struct leak_options LEAK_DEFAULTS;
 

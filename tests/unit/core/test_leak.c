@@ -9,8 +9,8 @@
 
 enum { MOST = 128 * 128 };
 
-static const struct grid SHAPES[] = {{2, 2, 1, 1},     {2, 7, 1, 1},       {5, 2, 3, 1},
-                                     {3, 3, 1, 1},     {13, 17, 1, 2},     {101, 67, 1.5, 1},
+static const struct grid SHAPES[] = {{2, 2, 1, 1},      {2, 7, 1, 1},      {5, 2, 3, 1},
+                                     {3, 3, 1, 1},      {13, 17, 1, 2},    {101, 67, 1.5, 1},
                                      {128, 96, 1, 0.3}, {3, 1201, 0.1, 1}, {127, 125, 1, 1}};
 enum { SHAPE_COUNT = sizeof SHAPES / sizeof *SHAPES };
 
