@@ -110,24 +110,32 @@ static int add_loads(struct double_sine *wave, const struct area_law *law, struc
     return status;
 }
 
+static int make_edges(struct area_law *out, const struct grid *grid, const struct block *block,
+                      struct error *err) {
+    int status = edge_law_make(grid, block, &out->edge, err);
+    /* The boundary of cells along a straight edge is 4/pi times as long as the edge, averaged over
+     * angles. */
+    out->overlap = status == 0 ? PI / 4 * edge_overlap(&out->edge) : 0;
+    return status;
+}
+
 int area_law_make(const struct grid *grid, const struct block *block, struct area_law *out,
                   struct error *err) {
     struct double_sine wave = {0};
     struct squares squares = {0};
+    struct block bare = *block;
     bool weighted = block->model == MODEL_LAYERED && block->weighting == GAP_STANDARD;
     int status = compliance_check_spacings(grid, err);
+    bare.coating = (struct coating){0};
     if (status == 0)
-        status = edge_law_make(grid, block, &out->edge, err);
+        status = make_edges(out, grid, &bare, err);
     if (status != 0)
         return status;
-    /* The boundary of cells along a straight edge is 4/pi times as long as the edge, averaged over
-     * angles. */
-    out->overlap = PI / 4 * edge_overlap(&out->edge);
     out->patch = out->patch_of_nodes = 0;
     out->weighting = 1;
     if (grid_is_profile(grid))
-        return 0;
-    status = double_sine_open(&wave, &out->edge, grid, block, err);
+        return block_is_coated(block) ? make_edges(out, grid, block, err) : 0;
+    status = double_sine_open(&wave, &out->edge, grid, &bare, err);
     for (size_t a = 0; status == 0 && a < POSITIONS; a++) {
         wave_shift(&wave, a);
         status = add_loads(&wave, out, &squares, err);
@@ -135,5 +143,7 @@ int area_law_make(const struct grid *grid, const struct block *block, struct are
     if (status == 0)
         squares_solve(&squares, weighted, out);
     double_sine_close(&wave);
+    if (status == 0 && block_is_coated(block))
+        status = make_edges(out, grid, block, err);
     return status != 0 ? error_context(err, "law of contact areas") : 0;
 }

@@ -8,7 +8,7 @@
 /* To second order in the spacing an edge also moves by its curvature, whose integral along a closed
  * edge is 2 pi, and with the mean gap: where contact is averaged about a node, a given gap takes
  * more pressure than where it holds at the node. Both are calibrated on the double sine of Johnson,
- * Greenwood & Higginson (1985), F12.5. */
+ * Greenwood & Higginson (1985), F12.5, on the block without its coating. */
 struct area_law {
     struct edge_law edge;
     double overlap;        /* area by nodes beyond that by edges, over the length of the boundary of

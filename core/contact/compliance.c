@@ -1,4 +1,5 @@
 #include "core/contact/compliance.h"
+#include "core/contact/coating.h"
 #include "core/contact/free_space.h"
 #include "core/contact/layered.h"
 #include <math.h>
@@ -31,6 +32,11 @@ double block_compliance(double k, double height) {
     return 2 / k * e / (1 + q + 2 * q * (x / e));
 }
 
+double block_compliance_exact(double k, const struct block *block) {
+    return block_is_coated(block) ? coating_compliance(k, block)
+                                  : block_compliance(k, block->height);
+}
+
 static void halfspace_lengths(struct compliance *compliance) {
     const struct grid *grid = &compliance->grid;
     for (size_t mx = 0; mx <= grid->nx / 2; mx++)
@@ -40,7 +46,7 @@ static void halfspace_lengths(struct compliance *compliance) {
             compliance->length[mx * grid->ny + row] =
                 mx == 0 && row == 0
                     ? 0
-                    : block_compliance(2 * PI * hypot(qx, qy), compliance->block.height);
+                    : block_compliance_exact(2 * PI * hypot(qx, qy), &compliance->block);
         }
 }
 
@@ -81,7 +87,8 @@ static int compliance_allocate(struct compliance *compliance, struct error *err)
 static int compliance_fill(struct compliance *compliance, struct error *err) {
     int status = 0;
     if (compliance->open)
-        return free_space_symbol(&compliance->grid, &compliance->waved, compliance->length, err);
+        return free_space_symbol(&compliance->grid, &compliance->waved, &compliance->block,
+                                 compliance->length, err);
     if (compliance->block.model == MODEL_LAYERED)
         status = layered_lengths(&compliance->grid, &compliance->block, compliance->length,
                                  &compliance->layers, err);
@@ -131,7 +138,7 @@ static int create(struct compliance **out, const struct grid *grid, const struct
         return error_memory(err, sizeof *compliance, "the compliance");
     *compliance = (struct compliance){.grid = *grid, .block = *block, .open = open, .waved = *grid};
     if (open)
-        free_space_padded(grid, &compliance->waved);
+        free_space_padded(grid, block, &compliance->waved);
     status = grid_check(&compliance->waved, err);
     compliance->waves = wave_count(&compliance->waved);
     if (status == 0)

@@ -6,7 +6,8 @@
  * units of E* = E/(1 - nu^2), so that S is a length; profiles are in plane strain.
  *
  * halfspace: S = 2/|k| (infinite depth), or the exact layer whose far side stays flat and free of
- *   shear, S = (2/k) (cosh 2kH - 1)/(sinh 2kH + 2kH).
+ *   shear, S = (2/k) (cosh 2kH - 1)/(sinh 2kH + 2kH). A bonded layer on either is exact too
+ *   (coating.h); E* is that of what lies below.
  * layered: linear finite elements, a column of bilinear quadrilaterals (trilinear hexahedra) a grid
  *   cell, in layers that grow with depth by a factor. The mean dilatation of each element replaces
  *   the local one (as in B-bar; Hughes 1980), except for a part that makes the error of S of fourth
@@ -34,8 +35,10 @@ struct compliance {
     size_t layers;     /* of the mesh; 0 for a half-space */
 };
 
-/* S E* of the block itself, without a mesh (F10.1, F10.2), under a wave number k > 0. */
+/* S E* of an uncoated block itself, without a mesh (F10.1, F10.2), under a wave number k > 0. */
 double block_compliance(double k, double height);
+/* S E* of any block, without a mesh. */
+double block_compliance_exact(double k, const struct block *block);
 
 /* ERROR_INPUT where one spacing is more than 100 times the other: the memory and the time of free
  * space and of area laws (area_law.h) grow with that ratio, however few the points. */

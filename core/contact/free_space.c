@@ -1,4 +1,5 @@
 #include "core/contact/free_space.h"
+#include "core/contact/coated_space.h"
 #include "core/surface/transform.h"
 #include <gsl/gsl_sf_expint.h>
 #include <math.h>
@@ -45,8 +46,10 @@ static void extend(const struct grid *grid, size_t nx, size_t ny, struct grid *o
     out->ly = grid_dy(grid) * (double)ny;
 }
 
-void free_space_padded(const struct grid *grid, struct grid *padded) {
+void free_space_padded(const struct grid *grid, const struct block *block, struct grid *padded) {
     double reach = NEAR / alpha_of(grid);
+    if (block_is_coated(block))
+        reach = fmax(reach, coated_space_reach(grid));
     extend(grid, padded_count(grid->nx, grid_dx(grid), reach),
            padded_count(grid->ny, grid_dy(grid), reach), padded);
 }
@@ -78,44 +81,57 @@ static double fold(size_t at, size_t count, double step) {
     return (double)(at <= count / 2 ? at : count - at) * step;
 }
 
+/* coated: NULL without a coating. */
 static void transform_far(struct transform *transform, const struct grid *grid,
-                          const struct grid *padded, double *row) {
+                          const struct grid *padded, const struct coated_space *coated,
+                          double *row) {
     for (size_t j = 0; j < padded->ny; j++) {
         double y = grid_is_profile(grid) ? 0 : fold(j, padded->ny, grid_dy(grid));
-        for (size_t i = 0; i < padded->nx; i++)
-            row[i] = far_kernel(grid, alpha_of(grid), hypot(fold(i, padded->nx, grid_dx(grid)), y));
+        for (size_t i = 0; i < padded->nx; i++) {
+            double distance = hypot(fold(i, padded->nx, grid_dx(grid)), y);
+            row[i] = far_kernel(grid, alpha_of(grid), distance);
+            if (coated != NULL)
+                row[i] += coated_space_far(coated, distance);
+        }
         transform_forward_rows(transform, j, 1, row);
     }
     transform_forward_columns(transform);
 }
 
-int free_space_symbol(const struct grid *grid, const struct grid *padded, double *symbol,
-                      struct error *err) {
+int free_space_symbol(const struct grid *grid, const struct grid *padded, const struct block *block,
+                      double *symbol, struct error *err) {
     struct transform *transform = NULL;
+    struct coated_space *coated = NULL;
     double *row = array_create(padded->nx, sizeof *row);
     int status = row == NULL
                      ? error_memory(err, padded->nx * sizeof *row, "a compliance")
                      : transform_create(&transform, padded, padded->nx / 2, padded->ny / 2, err);
+    if (status == 0 && block_is_coated(block))
+        status = coated_space_create(&coated, grid, padded, block, err);
     if (status == 0) {
-        transform_far(transform, grid, padded, row);
+        transform_far(transform, grid, padded, coated, row);
         const double complex *far = transform_spectrum(transform);
         double area = padded->lx * (grid_is_profile(grid) ? 1 : padded->ly);
         for (size_t mx = 0; mx <= padded->nx / 2; mx++)
             for (size_t j = 0; j < padded->ny; j++) {
                 size_t my = j <= padded->ny / 2 ? j : padded->ny - j;
                 double qx = (double)mx / padded->lx, qy = my > 0 ? (double)my / padded->ly : 0;
-                symbol[mx * padded->ny + j] = area * creal(far[mx * padded->ny + j]) +
-                                              near_symbol(alpha_of(grid), 2 * PI * hypot(qx, qy));
+                double k = 2 * PI * hypot(qx, qy), *out = &symbol[mx * padded->ny + j];
+                *out = area * creal(far[mx * padded->ny + j]) + near_symbol(alpha_of(grid), k);
+                if (coated != NULL)
+                    *out += coated_space_near(coated, k);
             }
     }
+    coated_space_destroy(&coated);
     transform_destroy(&transform);
     free(row);
     return status;
 }
 
 double free_space_bytes(const struct grid *grid) {
+    static const struct block UNCOATED = {.model = MODEL_HALFSPACE, .height = INFINITY};
     struct grid padded, around;
-    free_space_padded(grid, &padded);
+    free_space_padded(grid, &UNCOATED, &padded);
     double waves = ((double)padded.nx / 2 + 1) * (double)padded.ny;
     free_space_around(grid, &around);
     double more = (double)grid_points(&around) - (double)grid_points(grid);

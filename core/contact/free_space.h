@@ -8,10 +8,11 @@
 #ifndef RUGO_CORE_CONTACT_FREE_SPACE_H
 #define RUGO_CORE_CONTACT_FREE_SPACE_H
 
-#include "core/surface/grid.h"
+#include "core/contact/block.h"
 
-/* The padded grid has even sides whose transforms are fast, and the same spacings. */
-void free_space_padded(const struct grid *grid, struct grid *padded);
+/* The padded grid has even sides whose transforms are fast, and the same spacings. A coating pads
+ * small grids more. */
+void free_space_padded(const struct grid *grid, const struct block *block, struct grid *padded);
 
 /* A grid that is an eighth wider to the right and below, with the same spacings: what a
  * preconditioner repeats, so that it does not couple opposite sides of the rectangle. Conjugate
@@ -22,9 +23,10 @@ void free_space_around(const struct grid *grid, struct grid *around);
 /* Fills symbol, a value a wave of the padded grid in the layout of transform.h. The transform of
  * the pressures times symbol is that of the displacements times E*, in the grid's length.
  * Displacements are relative to far points. Profiles have no far points at rest; theirs are
- * relative to a point on the face at a distance lx from a line load. */
-int free_space_symbol(const struct grid *grid, const struct grid *padded, double *symbol,
-                      struct error *err);
+ * relative to a point on the face at a distance lx from a line load. The block is a half-space, and
+ * may have a coating. ERROR_MEMORY. */
+int free_space_symbol(const struct grid *grid, const struct grid *padded, const struct block *block,
+                      double *symbol, struct error *err);
 
 /* Memory of contact in free space beyond that on a periodic grid: a transform of the padded grid,
  * its symbol twice, and what the solver needs for the grid around. */

@@ -80,9 +80,9 @@ struct wave_lanes {
     size_t count;
 };
 
-static void wave_add(struct wave_lanes *w, const struct layered_material *material,
+/* Gives lane l the material of the layers that are eliminated next. */
+static void wave_set(struct wave_lanes *w, size_t l, const struct layered_material *material,
                      const struct symbols *x, const struct symbols *y) {
-    size_t l = w->count++;
     double mu = material->mu, local = material->local, mean = material->mean;
     double kx = x->stiffness * y->mass, ky = x->mass * y->stiffness, mass = x->mass * y->mass;
     double gx = x->cross * y->mass, gy = x->mass * y->cross;
@@ -207,12 +207,13 @@ WIDE_VECTORS static void face(struct wave_lanes *w) {
  * overflow. */
 struct layered_mesh {
     const struct grid *grid;
-    struct layered_material material;
-    double *length;    /* filled: as in struct compliance */
-    double *thickness; /* layers, from the face down */
-    size_t layers;
-    struct symbols *x, *y; /* nx/2 + 1, ny/2 + 1 */
-    bool square;           /* x and y may be swapped */
+    struct layered_material material; /* of the layers below the coating */
+    struct layered_material coating;  /* of the first of them */
+    double *length;                   /* filled: as in struct compliance */
+    double *thickness;                /* layers, from the face down */
+    size_t layers, coated;            /* all; those of the coating, which come first */
+    struct symbols *x, *y;            /* nx/2 + 1, ny/2 + 1 */
+    bool square;                      /* x and y may be swapped */
     struct wave_lanes waves;
 };
 
@@ -229,7 +230,11 @@ static void waves_solve(struct layered_mesh *mesh) {
     struct wave_lanes *w = &mesh->waves;
     size_t layers = mesh->layers;
     far_layer(w, mesh->thickness[layers - 1]);
-    for (size_t k = layers - 1; k-- > 0;)
+    for (size_t k = layers - 1; k-- > mesh->coated;)
+        next_layer(w, mesh->thickness[k]);
+    for (size_t l = 0; mesh->coated > 0 && l < w->count; l++)
+        wave_set(w, l, &mesh->coating, &mesh->x[w->mx[l]], &mesh->y[w->my[l]]);
+    for (size_t k = mesh->coated; k-- > 0;)
         next_layer(w, mesh->thickness[k]);
     face(w);
     double unit = grid_dx(mesh->grid);
@@ -248,12 +253,28 @@ static void mesh_solve(struct layered_mesh *mesh) {
         for (size_t my = mx == 0; my <= (mesh->square ? mx : grid->ny / 2); my++) {
             w->mx[w->count] = mx;
             w->my[w->count] = my;
-            wave_add(w, &mesh->material, &mesh->x[mx], &mesh->y[my]);
+            wave_set(w, w->count++, &mesh->material, &mesh->x[mx], &mesh->y[my]);
             if (w->count == LANES)
                 waves_solve(mesh);
         }
     if (w->count != 0)
         waves_solve(mesh);
+}
+
+/* Returns the number of layers that fill the coating. */
+static size_t coated_layers(const struct layered_mesh *mesh, const struct block *block) {
+    double depth = 0, thickness = block->coating.thickness * (1 - 1e-9);
+    size_t count = 0;
+    while (depth < thickness && count < mesh->layers)
+        depth += mesh->thickness[count++];
+    return count;
+}
+
+/* The same in units of E* of the block below. */
+static struct layered_material coating_material(const struct block *block) {
+    struct layered_material of = layered_material(block->coating.poisson);
+    double stiffness = block_coating_stiffness(block);
+    return (struct layered_material){stiffness * of.mu, stiffness * of.local, stiffness * of.mean};
 }
 
 /* Layers and symbols; the block's height is checked, so that only its ratio to dx can fail. */
@@ -266,6 +287,7 @@ static int mesh_prepare(struct layered_mesh *mesh, const struct block *block, st
                          "a block of height %g needs more than %d layers that grow by %g; allowed: "
                          "a lower block, a larger growth, fewer points",
                          block->height, LAYERS_MOST, block->layer_growth);
+    mesh->coated = coated_layers(mesh, block);
     for (size_t k = 0; k < mesh->layers; k++)
         mesh->thickness[k] /= dx;
     for (size_t mx = 0; mx <= grid->nx / 2; mx++)
@@ -274,6 +296,7 @@ static int mesh_prepare(struct layered_mesh *mesh, const struct block *block, st
         mesh->y[my] = symbols_of(my, grid->ny, dy / dx);
     mesh->square = grid->nx == grid->ny && dx == dy;
     mesh->material = layered_material(block->poisson);
+    mesh->coating = coating_material(block);
     return 0;
 }
 

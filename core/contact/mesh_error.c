@@ -21,7 +21,7 @@ static void fill_missing(struct mesh_error_workspace *workspace,
             double qx = (double)mx / grid->lx, qy = my > 0 ? (double)my / grid->ly : 0;
             if (k > 0)
                 workspace->missing[k] =
-                    block_compliance(2 * PI * hypot(qx, qy), compliance->block.height) -
+                    block_compliance_exact(2 * PI * hypot(qx, qy), &compliance->block) -
                     compliance->length[k];
         }
 }

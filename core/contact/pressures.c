@@ -286,7 +286,7 @@ int pressures_share(struct pressures *pressures, const struct contact_state *sta
                          "beside them follow no law",
                          state->yielded);
     double most = edge_highest_pressure(points, state->p);
-    edge_fill_rise(state, most, 0, points, pressures->rise);
+    edge_fill_rise(state, most, pressures->law->stiffness, 0, points, pressures->rise);
     int status = find_strips(pressures, err);
     if (status != 0)
         return status;

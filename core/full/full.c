@@ -68,6 +68,11 @@ int full_create(struct full **out, const struct grid *grid, const struct block *
                 const struct full_options *options, struct error *err) {
     *out = NULL;
     int status = options_check(options, err);
+    if (status == 0 && block_is_coated(block))
+        status = error_set(err, ERROR_INPUT,
+                           "a coating %g thick: the model full has no coatings, halfspace and "
+                           "layered do",
+                           block->coating.thickness);
     if (status != 0)
         return status;
     struct full *f = array_create(1, sizeof *f);

@@ -209,6 +209,88 @@ static double wave_outside(const struct wave *wave, double gap) {
     return 0.5 * (least + most);
 }
 
+/* --- the wave on a coated block, on a fine grid --- */
+
+enum { FINE_COUNT = 8192, FINE_EDGE = 1 };
+
+/* The fields near the edge: pressure and gap at a distance of one spacing, less what the wave's own
+ * curvature adds. */
+struct tip {
+    double pressure, gap;
+};
+
+/* Return the squared pressure, and the gap to the power of 2/3, of an uncoated wave of the same
+ * contact over what they would be if its edge were straight, at a distance inside or outside. */
+static double wave_bend_inside(const struct wave *wave, double distance) {
+    double by = PI * distance / wave->length, sine = sin(wave->edge - by);
+    double cosine = cos(wave->edge - by) / cos(wave->edge), edge = sin(wave->edge);
+    return by > 1e-3 ? cosine * cosine * (edge * edge - sine * sine) / (by * sin(2 * wave->edge))
+                     : 1;
+}
+
+static double wave_bend_outside(const struct wave *wave, double distance) {
+    double by = PI * distance / wave->length, sine = sin(wave->edge + by), edge = sin(wave->edge);
+    double root = sqrt(fmax(0, sine * sine - edge * edge));
+    double gap = sine * root - edge * edge * log((sine + root) / edge);
+    double straight = 4.0 / 3 * cos(wave->edge) * sqrt(sin(2 * wave->edge)) * pow(by, 1.5);
+    return by > 1e-3 ? pow(gap / straight, 2.0 / 3) : 1;
+}
+
+/* Finds the edge of the wave and the fields there from pressures and gaps of the fine grid. step:
+ * of that, in spacings. */
+static void read_tip(const struct contact_state *state, double step, struct wave *wave,
+                     struct tip *out) {
+    size_t last = 0, to_unit = (size_t)(1 / step);
+    while (last + 1 < FINE_COUNT / 2 && state->p[last + 1] > 0)
+        last++;
+    /* Squared pressures fall evenly towards the edge. */
+    size_t near = last > FINE_EDGE ? last - FINE_EDGE : 0;
+    size_t next = near > FINE_EDGE ? near - FINE_EDGE : 0;
+    double square = state->p[near] * state->p[near];
+    double fall = state->p[next] * state->p[next] - square;
+    double edge = (double)near + (fall > 0 ? FINE_EDGE * square / fall : 0);
+    wave->edge = PI * edge * step / wave->length;
+    double inside = fmax(0, edge - (double)to_unit), outside = edge + (double)to_unit;
+    size_t in = (size_t)inside, beyond = (size_t)outside;
+    double a = inside - (double)in, b = outside - (double)beyond, apart = (double)to_unit * step;
+    double p = (1 - a) * state->p[in] + a * state->p[in + 1];
+    double gap = (1 - b) * state->opening[beyond] + b * state->opening[beyond + 1];
+    out->pressure = p / sqrt(apart * wave_bend_inside(wave, apart));
+    out->gap = gap / pow(apart * wave_bend_outside(wave, apart), 1.5);
+}
+
+/* Solves the wave of amplitude `spacing`, on the exact block. */
+static int solve_tip(const struct block *exact, double spacing, struct wave *wave, struct tip *out,
+                     struct error *err) {
+    const double length = wave->length * spacing, k = 2 * PI / length;
+    const struct grid grid = {FINE_COUNT, 1, length, length};
+    struct contact_options options = CONTACT_DEFAULTS;
+    struct compliance *compliance = NULL;
+    struct contact *contact = NULL;
+    struct contact_state state;
+    double *z = array_create(FINE_COUNT, sizeof *z);
+    options.tolerance = 1e-10;
+    int status = z != NULL ? compliance_create(&compliance, &grid, exact, err)
+                           : error_memory(err, FINE_COUNT * sizeof *z, "a wave");
+    if (status == 0)
+        status = contact_create(&contact, compliance, &options, err);
+    for (size_t i = 0; status == 0 && i < FINE_COUNT; i++)
+        z[i] = spacing * cos(2 * PI * (double)i / FINE_COUNT);
+    if (status == 0)
+        status = contact_begin(contact, z, err);
+    if (status == 0)
+        status = contact_press(contact, WAVE_LOAD * spacing / block_compliance_exact(k, exact),
+                               &state, err);
+    if (status == 0) {
+        read_tip(&state, wave->length / FINE_COUNT, wave, out);
+        out->gap /= spacing;
+    }
+    contact_destroy(&contact);
+    compliance_destroy(&compliance);
+    free(z);
+    return status;
+}
+
 /* --- its problem as that of a profile --- */
 
 /* Compliances along the wave vectors (q m/count) of a direction m, as those of a profile whose node
@@ -226,7 +308,8 @@ static int line_compliance(struct compliance **out, const struct grid *grid,
                          .ly = grid_is_profile(grid) ? (double)nx * dx : (double)ny * dy};
     double length = (double)count / hypot((double)m[0] / dx, (double)m[1] / dy);
     struct block deep = *block;
-    deep.height = block->model == MODEL_HALFSPACE ? INFINITY : 1.5 * length;
+    deep.height =
+        block->model == MODEL_HALFSPACE ? INFINITY : 1.5 * length + block->coating.thickness;
     struct compliance *whole = NULL, *line = array_create(1, sizeof *line);
     int status = line != NULL ? compliance_create(&whole, &plane, &deep, err)
                               : error_memory(err, sizeof *line, "a wave");
@@ -308,42 +391,93 @@ static void fill_table(struct pair *pairs, size_t count, double *table) {
     }
 }
 
+/* The wave that a direction is learnt from. */
+struct lesson {
+    struct wave wave;
+    double spacing; /* along the normal */
+    double steps;   /* of the line over that */
+    double load;
+    /* On a mesh whose compliance is larger by this factor, the wave takes that much less
+     * pressure. */
+    double softer;
+    bool coated;
+    struct tip tip; /* of a coated block; its pressure is that of the law */
+};
+
+/* Return the distance of the fields at a node, at a true distance from the edge. Fields on a coated
+ * block are 1 at a spacing from the edge. */
+static double field_inside(const struct lesson *lesson, double distance, double p) {
+    if (!lesson->coated)
+        return wave_inside(&lesson->wave, p);
+    double root = p / lesson->tip.pressure;
+    return root * root / wave_bend_inside(&lesson->wave, distance);
+}
+
+static double field_outside(const struct lesson *lesson, double distance, double gap) {
+    if (!lesson->coated)
+        return wave_outside(&lesson->wave, gap);
+    double root = cbrt(fmax(0, gap) / lesson->tip.gap);
+    return root * root / wave_bend_outside(&lesson->wave, distance);
+}
+
 /* Presses the wave with its crest `phase` nodes of the line beyond node 0. */
-static int press_wave(struct contact *contact, const struct compliance *line, double steps,
+static int press_wave(struct contact *contact, size_t count, const struct lesson *lesson,
                       double phase, double *z, struct pairs *out, struct error *err) {
-    size_t count = line->grid.nx;
-    double spacing = line->grid.lx / (double)count * steps; /* along the normal */
-    struct wave wave = {(double)count / steps, asin(sqrt(WAVE_LOAD))};
-    /* On a mesh whose compliance is larger by this factor, the wave takes that much less pressure.
-     */
-    double softer = line->length[1] * PI / line->grid.lx;
+    const struct wave *wave = &lesson->wave;
     struct contact_state state;
     for (size_t i = 0; i < count; i++)
-        z[i] = spacing * cos(2 * PI * ((double)i - phase) / (double)count);
+        z[i] = lesson->spacing * cos(2 * PI * ((double)i - phase) / (double)count);
     int status = contact_begin(contact, z, err);
     if (status == 0)
-        status = contact_press(contact, WAVE_LOAD * PI / (wave.length * softer), &state, err);
+        status = contact_press(contact, lesson->load, &state, err);
     if (status != 0)
         return status;
     for (size_t i = 1; i < count / 2; i++) {
-        double distance = wave.edge * wave.length / PI - ((double)i - phase) / steps;
+        double distance = wave->edge * wave->length / PI - ((double)i - phase) / lesson->steps;
         if (fabs(distance) > REACH)
             continue;
         if (state.p[i] > 0 && out->inside_count < PAIRS_MOST)
-            out->inside[out->inside_count++] =
-                (struct pair){wave_inside(&wave, state.p[i] * softer), distance};
+            out->inside[out->inside_count++] = (struct pair){
+                field_inside(lesson, distance, state.p[i] * lesson->softer), distance};
         else if (state.p[i] == 0 && out->outside_count < PAIRS_MOST)
-            out->outside[out->outside_count++] =
-                (struct pair){wave_outside(&wave, state.opening[i] / spacing), -distance};
+            out->outside[out->outside_count++] = (struct pair){
+                field_outside(lesson, -distance, state.opening[i] / lesson->spacing), -distance};
     }
     return 0;
 }
 
+/* Solves the wave on the block where that is coated. The first direction sets the stiffness of the
+ * law, which is 0 before. */
+static int lesson_make(struct lesson *out, const struct compliance *line, double steps,
+                       double *stiffness, struct error *err) {
+    const double count = (double)line->grid.nx, softer = line->length[1] * PI / line->grid.lx;
+    struct block exact = line->block;
+    *out = (struct lesson){.wave = {count / steps, asin(sqrt(WAVE_LOAD))},
+                           .spacing = line->grid.lx / count * steps,
+                           .steps = steps,
+                           .load = WAVE_LOAD * PI / (count / steps * softer),
+                           .softer = softer,
+                           .coated = block_is_coated(&exact)};
+    if (!out->coated) {
+        *stiffness = 1;
+        return 0;
+    }
+    exact.model = MODEL_HALFSPACE;
+    exact.height = INFINITY;
+    out->softer = line->length[1] / block_compliance_exact(2 * PI / line->grid.lx, &exact);
+    int status = solve_tip(&exact, out->spacing, &out->wave, &out->tip, err);
+    if (status == 0 && !(*stiffness > 0))
+        *stiffness = out->tip.pressure / (0.75 * out->tip.gap);
+    out->tip.pressure = *stiffness * 0.75 * out->tip.gap;
+    return status;
+}
+
 static int learn(const struct grid *grid, const struct block *block, const size_t m[2],
-                 struct edge_table *out, struct error *err) {
+                 double *stiffness, struct edge_table *out, struct error *err) {
     struct contact *contact = NULL;
     struct compliance *line = NULL;
     struct contact_options options = CONTACT_DEFAULTS;
+    struct lesson lesson;
     double steps = hypot((double)m[0], (double)m[1]);
     size_t product = 2 * (m[0] > 0 ? m[0] : 1) * (m[1] > 0 ? m[1] : 1);
     size_t count = (size_t)(WAVE_STEPS * steps / (double)product + 0.5) * product;
@@ -355,10 +489,11 @@ static int learn(const struct grid *grid, const struct block *block, const size_
                      ? line_compliance(&line, grid, block, m, count, err)
                      : error_memory(err, sizeof *pairs + count * sizeof *z, "a wave");
     if (status == 0)
+        status = lesson_make(&lesson, line, steps, stiffness, err);
+    if (status == 0)
         status = contact_create(&contact, line, &options, err);
-    for (size_t a = 0; status == 0 && a < phases; a++) {
-        status = press_wave(contact, line, steps, (double)a / (double)phases, z, pairs, err);
-    }
+    for (size_t a = 0; status == 0 && a < phases; a++)
+        status = press_wave(contact, count, &lesson, (double)a / (double)phases, z, pairs, err);
     if (status == 0 && (pairs->inside_count < 2 || pairs->outside_count < 2))
         status = error_set(err, ERROR_NUMERIC, "the edge of a single wave was not found");
     if (status == 0) {
@@ -376,6 +511,7 @@ int edge_law_make(const struct grid *grid, const struct block *block, struct edg
                   struct error *err) {
     bool profile = grid_is_profile(grid), square = !profile && grid_dx(grid) == grid_dy(grid);
     out->count = profile ? 1 : EDGE_DIRECTIONS;
+    out->stiffness = 0;
     for (size_t a = 0; a < out->count; a++) {
         size_t mirror = EDGE_DIRECTIONS - 1 - a;
         double across = profile ? grid_dx(grid) : grid_dy(grid);
@@ -385,7 +521,7 @@ int edge_law_make(const struct grid *grid, const struct block *block, struct edg
         if (square && a > DIAGONAL)
             out->table[a] = out->table[mirror];
         else
-            status = learn(grid, block, DIRECTIONS[a], &out->table[a], err);
+            status = learn(grid, block, DIRECTIONS[a], &out->stiffness, &out->table[a], err);
         if (status != 0)
             return error_context(err, "law of contact edges");
     }

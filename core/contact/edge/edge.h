@@ -7,7 +7,9 @@
  * directions, the true distance for each of these. It is calibrated on a wave with its crests along
  * the direction, whose edges and fields are known in closed form (Westergaard 1939). At the grid's
  * nodes such a wave depends on one whole number, so that it is a profile's problem with the grid's
- * own compliances.
+ * own compliances. On a coated block the wave itself is solved on a fine grid. There the pressure
+ * is c sqrt(d) E* times a stiffness, between 1 and that of the coating, by its thickness over the
+ * spacing (F22.3).
  *
  * Lengths are in units of the spacing of the grid along the edge's normal n, hypot(nx dx, ny dy),
  * which is dx wherever dx = dy. */
@@ -28,6 +30,7 @@ struct edge_law {
     size_t count;                  /* 1 of a profile, 11 of a surface */
     double angle[EDGE_DIRECTIONS]; /* of the normal to the x axis, rising from 0 to pi/2 */
     struct edge_table table[EDGE_DIRECTIONS];
+    double stiffness; /* near edges, over E*; 1 without a coating */
 };
 
 /* Takes some milliseconds. Errors of compliance_create and contact_press. */

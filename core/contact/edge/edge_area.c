@@ -147,7 +147,7 @@ static void fill_part(void *context, size_t part, size_t thread) {
     const struct edge_scan *scan = context;
     size_t size = part_rows(&scan->grid) * scan->grid.nx, first = part * size;
     size_t end = first + size < grid_points(&scan->grid) ? first + size : grid_points(&scan->grid);
-    edge_fill_rise(scan->state, scan->highest, first, end, scan->rise);
+    edge_fill_rise(scan->state, scan->highest, scan->law->stiffness, first, end, scan->rise);
 }
 
 void edge_area_measure(struct edge_scan *scan, const struct contact_state *state,

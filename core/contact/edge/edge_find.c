@@ -15,14 +15,15 @@ double edge_highest_pressure(size_t n, const double *p) {
     return most;
 }
 
-void edge_fill_rise(const struct contact_state *state, double highest, size_t first, size_t end,
-                    double *rise) {
+void edge_fill_rise(const struct contact_state *state, double highest, double stiffness,
+                    size_t first, size_t end, double *rise) {
     for (size_t i = first; i < end; i++) {
         if (state->p[i] > 0) {
             rise[i] = (state->p[i] / highest) * (state->p[i] / highest);
             continue;
         }
-        double open = highest > 0 ? cbrt(0.75 * fmax(0, state->opening[i]) / highest) : 1;
+        double gap = 0.75 * fmax(0, state->opening[i]) * stiffness;
+        double open = highest > 0 ? cbrt(gap / highest) : 1;
         rise[i] = -open * open;
     }
 }

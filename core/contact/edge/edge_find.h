@@ -48,9 +48,9 @@ double edge_highest_pressure(size_t n, const double *p);
 /* Fills rise, of nodes first .. end - 1, with quantities that are proportional to a distance from
  * the edge: in contact the square of the pressure over the highest one of all nodes; elsewhere
  * -(3 gap/4)^(2/3) of the gap over that pressure. An edge does not depend on this unit, and squares
- * stay in range. Gaps are in the grid's lengths. */
-void edge_fill_rise(const struct contact_state *state, double highest, size_t first, size_t end,
-                    double *rise);
+ * stay in range. Gaps are in the grid's lengths. stiffness: that of the law. */
+void edge_fill_rise(const struct contact_state *state, double highest, double stiffness,
+                    size_t first, size_t end, double *rise);
 
 /* The result of a crossing. Distances are true ones; t is the distance to the edge along the line,
  * in steps. */
