@@ -42,7 +42,7 @@ bool contact_case_stretches(const struct contact_case *one_case, size_t model) {
 }
 
 double contact_case_block_bound(const struct contact_case *one_case, size_t model) {
-    return block_bound(one_case->blocks[model].height, surface_case_longest(&one_case->surface));
+    return block_bound(&one_case->blocks[model], surface_case_longest(&one_case->surface));
 }
 
 void contact_case_clear(struct contact_case *one_case) {

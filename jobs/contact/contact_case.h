@@ -98,6 +98,10 @@ static inline bool contact_case_has(const struct contact_case *one_case,
     return one_case->companions[companion].series > 0;
 }
 
+/* Returns whether the blocks have a coating, which is that of all models. */
+static inline bool contact_case_is_coated(const struct contact_case *one_case) {
+    return one_case->model_count > 0 && block_is_coated(&one_case->blocks[0]);
+}
 /* Returns a bound of the relative change of a measure by the height of a model's block. It is
  * several times the relative difference of compliance from a half-space, at the longest wave of the
  * cell. */

@@ -33,6 +33,26 @@ struct asked {
 
 static const char FINE_HEIGHT[] = "/contact/block_fine_height";
 
+static const char COATING[] = "/contact/coating/thickness",
+                  COATING_MODULUS[] = "/contact/coating/modulus",
+                  COATING_POISSON[] = "/contact/coating/poisson";
+
+/* Reads the coating, whose thickness has yet to be compared with the block's height. */
+static void read_coating(struct block *block, struct values *values) {
+    double thickness = values_number(values, COATING);
+    double modulus = values_number(values, COATING_MODULUS);
+    double poisson = values_number(values, COATING_POISSON);
+    if (isnan(thickness) && !isnan(modulus))
+        values_fault(values, COATING_MODULUS, "belongs to a coating: give its thickness, too");
+    if (isnan(thickness) && !isnan(poisson))
+        values_fault(values, COATING_POISSON, "belongs to a coating: give its thickness, too");
+    if (thickness > 0 && isnan(modulus))
+        values_fault(values, COATING, "a coating has a modulus: give /contact/coating/modulus");
+    if (thickness > 0)
+        block->coating =
+            (struct coating){thickness, modulus, isnan(poisson) ? block->poisson : poisson};
+}
+
 static void read_block(struct contact_case *out, struct asked *asked, struct values *values) {
     int models[CONTACT_MODELS_MOST];
     size_t before = values_fault_count(values);
@@ -41,6 +61,7 @@ static void read_block(struct contact_case *out, struct asked *asked, struct val
                           .weighting =
                               (enum gap_weighting)values_choice(values, "/contact/gap_weighting")};
     bool elements = false;
+    read_coating(&block, values);
     out->model_count = values_choices(values, "/contact/model", models);
     out->kinematics = (enum kinematics)values_choice(values, "/contact/kinematics");
     out->transition_depth = values_number(values, "/contact/transition_depth");
@@ -51,6 +72,9 @@ static void read_block(struct contact_case *out, struct asked *asked, struct val
         out->blocks[m] = block;
         out->blocks[m].model = out->models[m]->block;
         elements = elements || out->models[m]->elements;
+        if (block_is_coated(&block) && !out->models[m]->coatings)
+            values_fault(values, COATING, "the model %s has no coatings",
+                         contact_model_name(out->models[m]));
     }
     if (elements && isinf(asked->height))
         values_fault(
@@ -59,6 +83,8 @@ static void read_block(struct contact_case *out, struct asked *asked, struct val
     if (!elements && out->model_count > 0 && block.weighting == GAP_DUAL)
         values_fault(values, "/contact/gap_weighting",
                      "\"dual\" belongs to finite elements, and no such model is asked for");
+    if (out->asperities && block_is_coated(&block))
+        values_fault(values, "/contact/asperities", "\"counted\" is for blocks without a coating");
     asked->block = values_fault_count(values) == before;
 }
 
@@ -366,7 +392,11 @@ static int set_blocks(struct contact_case *out, const struct asked *asked, struc
     bool whole = values_fault_count(values) == before;
     for (size_t m = 0; m < out->model_count && whole && status == 0; m++) {
         const struct contact_model *model = out->models[m];
-        out->blocks[m].height = !isnan(height) ? height : model->default_height * longest;
+        struct block *block = &out->blocks[m];
+        block->height = !isnan(height) ? height : model->default_height * longest;
+        if (block_is_coated(block) && !(block->coating.thickness < block->height))
+            values_fault(values, COATING, "%g lambda_s, and the block of %s is %g lambda_s high",
+                         block->coating.thickness, contact_model_name(model), block->height);
         if (model->check != NULL)
             status = model->check(out, m, values, err);
     }

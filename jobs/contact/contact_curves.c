@@ -2,6 +2,7 @@
 #include "core/theory/bin_averages.h"
 #include "core/theory/contact.h"
 #include "core/theory/translated_asperities.h"
+#include "jobs/contact/coated_theory.h"
 #include "jobs/contact/companion/companion_law.h"
 #include "jobs/contact/contact_errors.h"
 #include "jobs/contact/contact_measure.h"
@@ -61,9 +62,8 @@ static void put_area(struct theory_list *list, const char *name,
     put(list, THEORIES_AREA, name);
 }
 
-static double persson_at(double load, double alpha) {
-    (void)alpha;
-    return persson_area(load);
+static double persson_at(double load, double factor) {
+    return persson_area(factor * load);
 }
 
 static double line_at(double load, double kappa) {
@@ -121,18 +121,24 @@ static int put_summits(struct theory_list *list, const struct modes *modes,
     return status;
 }
 
-static void put_plastic(struct theory_list *list) {
+static void put_plastic(struct theory_list *list, double factor) {
     const struct contact_case *one_case = list->one_case;
     for (size_t k = 0; k < one_case->load_count; k++)
-        list->values[k] = persson_plastic_area(one_case->loads[k], one_case->hardness);
+        list->values[k] =
+            persson_plastic_area(factor * one_case->loads[k], factor * one_case->hardness);
     put(list, THEORIES_PLASTIC, "persson");
 }
 
-static void put_rough(struct theory_list *list, const struct moments *moments) {
-    put_area(list, "persson", persson_at, 0);
+/* Theories of asperities are those of one material. */
+static void put_rough(struct theory_list *list, const struct modes *modes,
+                      const struct moments *moments) {
+    double factor = coated_theory_factor(list->one_case, modes);
+    put_area(list, "persson", persson_at, factor);
     if (list->one_case->hardness > 0)
-        put_plastic(list);
-    put_area(list, "persson_light_load", line_at, persson_light_load());
+        put_plastic(list, factor);
+    put_area(list, "persson_light_load", line_at, factor * persson_light_load());
+    if (contact_case_is_coated(list->one_case))
+        return;
     if (list->one_case->surface.dimension == 2)
         put_area(list, "bgt_light_load", line_at, bgt_light_load());
     if (has_asperities(list->one_case, moments)) {
@@ -142,7 +148,8 @@ static void put_rough(struct theory_list *list, const struct moments *moments) {
 }
 
 /* Makes the theories. modes, moments: of the prescribed spectrum. A profile of one wave has
- * Westergaard's solution; all others have Persson's theory and those of asperities that apply. */
+ * Westergaard's solution; all others have Persson's theory and those of asperities that apply. With
+ * a coating there is Persson's alone. */
 static int theories_make(struct theories *out, const struct contact_case *one_case,
                          const struct modes *modes, const struct moments *moments,
                          struct case_result *result, struct error *err) {
@@ -152,12 +159,13 @@ static int theories_make(struct theories *out, const struct contact_case *one_ca
     if (list.values == NULL)
         return error_memory(err, THEORIES_MOST * one_case->load_count * sizeof(double), "theories");
     /* No theory here has the mean of a wave of random amplitude. */
-    if (is_one_wave(one_case, modes) && surface_case_exact(&one_case->surface))
+    bool coated = contact_case_is_coated(one_case);
+    if (is_one_wave(one_case, modes) && surface_case_exact(&one_case->surface) && !coated)
         put_wave(&list);
     if (is_one_wave(one_case, modes))
         return 0;
-    put_rough(&list, moments);
-    return put_summits(&list, modes, moments, err);
+    put_rough(&list, modes, moments);
+    return coated ? 0 : put_summits(&list, modes, moments, err);
 }
 
 /* Computes the mean density of the pressures in each bin; false without a theory. */
@@ -165,7 +173,13 @@ static bool theory_pressures(const struct contact_case *one_case, const struct m
                              double load, double *pdf) {
     if (is_one_wave(one_case, modes))
         return false;
-    bin_averages_persson(load, &one_case->pressure, pdf);
+    /* Of pressures times the factor, as the load is. */
+    double factor = coated_theory_factor(one_case, modes);
+    const struct bins *bins = &one_case->pressure;
+    const struct bins scaled = {factor * bins->low, factor * bins->high, bins->count};
+    bin_averages_persson(factor * load, &scaled, pdf);
+    for (size_t b = 0; b < bins->count; b++)
+        pdf[b] *= factor;
     return true;
 }
 

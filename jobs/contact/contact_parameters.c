@@ -25,6 +25,8 @@ static const struct choice ASPERITIES[] = {
 static const struct choice LOAD_UNITS[] = {
     {"E* h'", LOAD_UNIT_REDUCED}, {"Pa", LOAD_UNIT_PASCAL}, {0}};
 
+#define COATING_TARGET "a target's bounds were measured on blocks without a coating"
+
 static const struct parameter ROWS[] = {
     {.path = "/contact/model",
      .type = PARAMETER_CHOICES,
@@ -52,7 +54,44 @@ static const struct parameter ROWS[] = {
      .sweep = true,
      .default_json = "0.3",
      .example_json = "0.3",
-     .help = "Poisson's ratio; without influence on a half-space"},
+     .help = "Poisson's ratio; without influence on a half-space that has no coating"},
+    {.path = "/contact/coating/thickness",
+     .symbol = "t",
+     .title = "thickness of the coating",
+     .type = PARAMETER_NUMBER,
+     .minimum = 0,
+     .maximum = 1e6,
+     .sweep = true,
+     .target_refusal = COATING_TARGET,
+     .later = true,
+     .unit = "lambda_s",
+     .example_json = "[0, 0.5, 2]",
+     .help = "halfspace, layered: thickness of a layer of another material, bonded to the face of "
+             "the block; below the block's height; 0, or not given: there is none. E*, and with "
+             "it loads and curves, is that of the block below"},
+    {.path = "/contact/coating/modulus",
+     .symbol = "E1/E2",
+     .title = "modulus of the coating",
+     .type = PARAMETER_NUMBER,
+     .minimum = COATING_LEAST,
+     .maximum = COATING_MOST,
+     .sweep = true,
+     .target_refusal = COATING_TARGET,
+     .later = true,
+     .example_json = "[0.5, 4]",
+     .help = "Young's modulus of the coating over that of the block below; with a thickness it is "
+             "to be given"},
+    {.path = "/contact/coating/poisson",
+     .symbol = "nu1",
+     .title = "Poisson's ratio of the coating",
+     .type = PARAMETER_NUMBER,
+     .minimum = 0,
+     .maximum = 0.4999,
+     .sweep = true,
+     .target_refusal = COATING_TARGET,
+     .later = true,
+     .example_json = "0.2",
+     .help = "Poisson's ratio of the coating; unless given that of the block below"},
     {.path = "/contact/block_height",
      .type = PARAMETER_MEASURE,
      .choices = HEIGHTS,

@@ -186,7 +186,8 @@ static void theories(const struct contact_case *one_case, const struct moments *
     for (size_t a = 0; a < CONTACT_SCALAR_COUNT; a++)
         theory[a] = NAN;
     /* A single wave has alpha = 1, and no light-load line. */
-    if (one_case->surface.dimension == 2 || moments->nayak_alpha > 1 + 1e-9)
+    if (!contact_case_is_coated(one_case) &&
+        (one_case->surface.dimension == 2 || moments->nayak_alpha > 1 + 1e-9))
         theory[CONTACT_SCALAR_KAPPA] = theory[CONTACT_SCALAR_ERF_KAPPA] = persson_light_load();
     theory[CONTACT_SCALAR_RMS_HEIGHT] = moments->rms_height;
     theory[CONTACT_SCALAR_RMS_SLOPE] = moments->rms_slope;

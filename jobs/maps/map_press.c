@@ -132,7 +132,8 @@ static void fill_case(struct map_press *press, const struct press_block *asked) 
                                                         .poisson = asked->poisson,
                                                         .height = lengths * press->grid.lx,
                                                         .layer_growth = 1.1,
-                                                        .weighting = GAP_STANDARD}},
+                                                        .weighting = GAP_STANDARD,
+                                                        .coating = asked->coating}},
                                             .kinematics = FULL_DEFAULTS.kinematics,
                                             .transition_depth = FULL_DEFAULTS.transition,
                                             .level_count = 1,
@@ -281,7 +282,7 @@ static int measure_load(struct map_press *press, const struct contact_pressed *p
     value[PRESS_PEAK] = largest(grid_points(&press->grid), state->p) / press->slope;
     value[PRESS_APPROACH] = state->approach / press->height;
     value[PRESS_CONTACT_NODES] = (double)state->nodes / press->copies;
-    if (press->asperities != NULL) {
+    if (press->asperities != NULL && !contact_case_is_coated(&press->one_case)) {
         double load = value[PRESS_LOAD];
         value[PRESS_BGT_COUNTED] = counted_asperities_area(press->asperities, COUNTED_BGT, load);
         value[PRESS_GW_COUNTED] = counted_asperities_area(press->asperities, COUNTED_GW, load);

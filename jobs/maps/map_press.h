@@ -21,9 +21,10 @@ struct press_block {
     const struct contact_model *model;
     double poisson;
     double lengths; /* height of the block in lengths of the map as it is pressed; 0: the model's */
-    double tolerance;     /* of a solution, as in studies; 0: the model's */
-    double hardness;      /* over E*; 0: it is elastic */
-    bool conducts, leaks; /* these quantities are asked for */
+    double tolerance;       /* of a solution, as in studies; 0: the model's */
+    double hardness;        /* over E*; 0: it is elastic */
+    bool conducts, leaks;   /* these quantities are asked for */
+    struct coating coating; /* thickness in the map's length */
 };
 
 /* Values of a load have the numbers of the measures of studies and of the model's own; these

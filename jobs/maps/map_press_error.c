@@ -222,8 +222,10 @@ static void block_errors_at(const struct errors *errors, size_t m, double bound,
 static double bound_of(const struct errors *errors, size_t m) {
     const struct grid *grid = &errors->press->grid;
     double longest = grid_is_profile(grid) ? grid->lx : fmax(grid->lx, grid->ly);
-    double height = errors->series[m].height;
-    return isfinite(height) ? block_bound(height, longest) : 0;
+    const struct press_block *of = &errors->series[m].block;
+    const struct block block = {
+        .poisson = of->poisson, .height = errors->series[m].height, .coating = of->coating};
+    return isfinite(block.height) ? block_bound(&block, longest) : 0;
 }
 
 /* Finds the contact of a block on the points of the map, which a series may have already. */

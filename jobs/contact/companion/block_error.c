@@ -1,4 +1,5 @@
 #include "jobs/contact/companion/block_error.h"
+#include "core/contact/compliance.h"
 #include <math.h>
 
 /* With a larger bound of its relative change the error of the height is estimated. */
@@ -7,8 +8,16 @@ static const double BLOCK_LOW = 1e-4;
  * meshes it holds within this part of itself. */
 static const double BLOCK_MARGIN = 0.25;
 
-double block_bound(double height, double longest) {
+double block_bound(const struct block *block, double longest) {
     static const double SAFETY = 10;
+    double height = block->height;
+    if (block_is_coated(block)) {
+        struct block infinite = *block;
+        double k = 2 * M_PI / longest;
+        infinite.height = INFINITY;
+        return SAFETY *
+               fabs(1 - block_compliance_exact(k, block) / block_compliance_exact(k, &infinite));
+    }
     /* 1 - (cosh 2x - 1)/(sinh 2x + 2x) (compliance.h), in a form without overflow and
      * cancellation. */
     double x = 2 * M_PI * height / longest;

@@ -34,15 +34,24 @@ struct contact_level coarse_level(const struct contact_case *one_case) {
     return level;
 }
 
+/* Returns the half-space or layer that stands for the blocks of a case, with their coating. */
+static struct block block_of(const struct contact_case *one_case, double height) {
+    const struct block *first = &one_case->blocks[0];
+    return (struct block){.model = MODEL_HALFSPACE,
+                          .poisson = first->poisson,
+                          .height = height,
+                          .layer_growth = 1,
+                          .coating = first->coating};
+}
+
 static struct quantity_scene quantity_scene_of(const struct contact_case *one_case,
                                                const struct grid *grid, double height) {
-    const struct block block = {.model = MODEL_HALFSPACE, .height = height, .layer_growth = 1};
     return (struct quantity_scene){
-        .one_case = one_case, .grid = *grid, .block = block, .exact = true};
+        .one_case = one_case, .grid = *grid, .block = block_of(one_case, height), .exact = true};
 }
 
 static int solver_fill(struct coarse_solver *solver, double height, struct error *err) {
-    struct block block = {.model = MODEL_HALFSPACE, .height = height, .layer_growth = 1};
+    const struct block block = block_of(solver->one_case, height);
     struct contact_options options = CONTACT_DEFAULTS;
     options.tolerance = solver->one_case->tolerance;
     if (solver->one_case->hardness > 0)

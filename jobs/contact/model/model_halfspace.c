@@ -5,6 +5,7 @@
 const struct contact_model HALFSPACE_MODEL = {
     .rank = 0,
     .yields = true,
+    .coatings = true,
     .free_space = true,
     .block = MODEL_HALFSPACE,
     .default_height = INFINITY,

@@ -6,6 +6,7 @@ const struct contact_model LAYERED_MODEL = {
     .yields = true,
     .block = MODEL_LAYERED,
     .elements = true,
+    .coatings = true,
     .default_height = 1.5,
     .bytes = linear_bytes,
     .seconds = linear_seconds,

@@ -7,6 +7,7 @@
 struct contact_solver {
     struct contact *contact;
     double poisson;
+    bool coated;
 };
 
 double linear_seconds(const struct contact_case *one_case, size_t model, const struct grid *grid) {
@@ -32,6 +33,7 @@ int linear_create(struct contact_solver **out, const struct contact_case *one_ca
         options.hardness = one_case->yield;
     options.without_tangent = !contact_case_needs_tangent(one_case);
     solver->poisson = one_case->blocks[model].poisson;
+    solver->coated = block_is_coated(&one_case->blocks[model]);
     int status = contact_create(&solver->contact, compliance, &options, err);
     if (status != 0)
         linear_destroy(&solver);
@@ -59,7 +61,8 @@ int linear_begin(struct contact_solver *solver, const double *z, int (*stop)(voi
 
 int linear_press(struct contact_solver *solver, double pressure, struct contact_pressed *out,
                  struct error *err) {
-    out->open_stretch = stretch_open(solver->poisson, pressure);
+    /* Of a coated face it is not known (F22.6). */
+    out->open_stretch = solver->coated ? (double)NAN : stretch_open(solver->poisson, pressure);
     return contact_press(solver->contact, pressure, &out->state, err);
 }
 

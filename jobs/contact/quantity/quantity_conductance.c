@@ -1,7 +1,7 @@
 /* The conductance of the contact by its elastic stiffness (core/quantity/conductance.h). On a
  * half-space without end it is the stiffness of the solution itself, under a hardness that of
- * unloading, to which yielded nodes contribute. Under other blocks half-spaces
- * conduct through the same nodes, which takes a solution of its own. */
+ * unloading, to which yielded nodes contribute. Under other blocks half-spaces conduct through the
+ * same nodes, which takes a solution of its own. */
 #include "core/cost.h"
 #include "core/quantity/conductance.h"
 #include "jobs/contact/contact_measure.h"
@@ -62,7 +62,7 @@ static bool asked(struct contact_case *one_case, struct values *values) {
 
 /* Returns whether the stiffness of solutions is that of half-spaces without end. */
 static bool is_halfspace(const struct quantity_scene *scene) {
-    return scene->exact && isinf(scene->block.height);
+    return scene->exact && isinf(scene->block.height) && !block_is_coated(&scene->block);
 }
 
 static double bytes_of(const struct quantity_scene *scene) {

@@ -1,5 +1,7 @@
 /* A contact case is read as it was meant: defaults, models, blocks, loads, meshes; and what does
  * not fit together is refused, with its pointer. */
+#include "core/surface/spectrum.h"
+#include "jobs/contact/coated_theory.h"
 #include "jobs/contact/contact_case_read.h"
 #include "jobs/contact/contact_scene.h"
 #include "schema/study/fault.h"
@@ -184,6 +186,54 @@ static void loads_and_pressures(void **state) {
     contact_case_clear(&one_case);
 }
 
+/* A coating is that of all models; lengths are lambda_s, and its ratio of Poisson is the block's
+ * unless given. */
+static void coatings(void **state) {
+    (void)state;
+    struct contact_case one_case =
+        read_case(STUDY(PROFILE, "\"model\": [\"layered\", \"halfspace\"], \"poisson\": 0.4, "
+                                 "\"coating\": {\"thickness\": 0.5, \"modulus\": 4}"));
+    for (size_t m = 0; m < 2; m++) {
+        const struct coating *coating = &one_case.blocks[m].coating;
+        assert_true(coating->thickness == 0.5 && coating->modulus == 4 && coating->poisson == 0.4);
+    }
+    assert_true(contact_case_is_coated(&one_case));
+    contact_case_clear(&one_case);
+    one_case = read_case(
+        STUDY(PROFILE, "\"coating\": {\"thickness\": 2, \"modulus\": 0.5, \"poisson\": 0}"));
+    assert_true(one_case.blocks[0].coating.poisson == 0);
+    contact_case_clear(&one_case);
+    one_case = read_case(STUDY(PROFILE, "\"coating\": {\"thickness\": 0}"));
+    assert_false(contact_case_is_coated(&one_case));
+    contact_case_clear(&one_case);
+}
+
+/* Persson's theory has the deviation of the pressure that flattens all: of a thick coating that of
+ * a half-space of it, of a thin one that of the block, and in between the sum over all waves. */
+static void persson_with_a_coating(void **state) {
+    (void)state;
+    static const char *const STUDIES[] = {
+        STUDY(PROFILE, "\"coating\": {\"thickness\": 1e-6, \"modulus\": 4}"),
+        STUDY(PROFILE, "\"coating\": {\"thickness\": 300, \"modulus\": 4}"),
+        STUDY(PROFILE, "\"coating\": {\"thickness\": 0.2, \"modulus\": 4}"),
+        STUDY(PROFILE, "\"poisson\": 0.1"),
+        STUDY("\"hurst\": 0.8, \"wavelength_ratio\": 4",
+              "\"coating\": {\"thickness\": 0.2, \"modulus\": 0.25}")};
+    double factor[5];
+    for (size_t a = 0; a < 5; a++) {
+        struct contact_case one_case = read_case(STUDIES[a]);
+        struct modes *modes = NULL;
+        assert_int_equal(
+            modes_create(&modes, &one_case.surface.spectrum, &one_case.surface.grid, NULL), 0);
+        factor[a] = coated_theory_factor(&one_case, modes);
+        modes_destroy(&modes);
+        contact_case_clear(&one_case);
+    }
+    assert_true(fabs(factor[0] - 1) < 1e-4 && fabs(factor[1] - 0.25) < 1e-9);
+    assert_true(factor[2] > 0.3 && factor[2] < 0.9 && factor[3] == 1);
+    assert_true(factor[4] > 1.1 && factor[4] < 4);
+}
+
 /* 2 points a wave: every 4th point of the own 8; 4: every 2nd; 6: resampled; 16: finer. */
 static void levels(void **state) {
     (void)state;
@@ -223,11 +273,57 @@ static void rectangles(void **state) {
     contact_case_clear(&one_case);
 }
 
+/* A study with one fault; pointer NULL: with none. */
+struct faulty {
+    const char *text, *pointer, *words;
+};
+
+static void check_fault(const struct faulty *bad) {
+    struct fault_list list = {0};
+    struct contact_case one_case;
+    struct error err = {0};
+    cJSON *parameters = cJSON_Parse(bad->text);
+    assert_non_null(parameters);
+    int status = contact_case_read(&one_case, parameters, 0, &list, &err);
+    if (bad->pointer == NULL) {
+        assert_int_equal(status, 0);
+        contact_case_clear(&one_case);
+    } else if (status != ERROR_INPUT || list.count != 1 ||
+               strcmp(list.faults[0].pointer, bad->pointer) != 0 ||
+               strstr(list.faults[0].detail, bad->words) == NULL) {
+        fail_msg("%s: %zu faults, %s", bad->text, list.count, err.text);
+    }
+    fault_list_clear(&list);
+    cJSON_Delete(parameters);
+}
+
+static void coating_faults(void **state) {
+    (void)state;
+    static const struct faulty BAD[] = {
+        {STUDY(PROFILE, "\"coating\": {\"thickness\": 1}"), "/contact/coating/thickness",
+         "give /contact/coating/modulus"},
+        {STUDY(PROFILE, "\"coating\": {\"modulus\": 2}"), "/contact/coating/modulus",
+         "give its thickness, too"},
+        {STUDY(PROFILE, "\"coating\": {\"poisson\": 0.2}"), "/contact/coating/poisson",
+         "give its thickness, too"},
+        {STUDY(PROFILE, "\"coating\": {\"thickness\": 1, \"modulus\": 2000}"),
+         "/contact/coating/modulus", "[0.001, 1000]"},
+        {STUDY(PROFILE, "\"model\": \"layered\", \"coating\": {\"thickness\": 12, \"modulus\": 2}"),
+         "/contact/coating/thickness", "12 lambda_s, and the block of layered is 12 lambda_s high"},
+        {STUDY(PROFILE ", \"rms_slope\": 0.1",
+               "\"model\": \"full\", \"coating\": {\"thickness\": 1, \"modulus\": 2}"),
+         "/contact/coating/thickness", "the model full has no coatings"},
+        {STUDY("\"hurst\": 0.8, \"wavelength_ratio\": 4",
+               "\"asperities\": \"counted\", \"coating\": {\"thickness\": 1, \"modulus\": 2}"),
+         "/contact/asperities", "for blocks without a coating"},
+    };
+    for (size_t b = 0; b < sizeof BAD / sizeof *BAD; b++)
+        check_fault(&BAD[b]);
+}
+
 static void faults(void **state) {
     (void)state;
-    static const struct {
-        const char *text, *pointer, *words;
-    } BAD[] = {
+    static const struct faulty BAD[] = {
         {STUDY(PROFILE, "\"model\": \"mesh\""), "/contact/model", "not one of \"halfspace\""},
         {STUDY(PROFILE, "\"model\": \"full\""), "/surface/rms_slope", "slopes count"},
         {STUDY(PROFILE ", \"rms_slope\": 3", "\"model\": [\"layered\", \"full\"]"),
@@ -319,24 +415,8 @@ static void faults(void **state) {
         {STUDY(PROFILE, "\"pressure_pdf\": {\"bins\": [1, 1, 5]}"), "/contact/pressure_pdf/bins",
          "below high"},
     };
-    for (size_t b = 0; b < sizeof BAD / sizeof *BAD; b++) {
-        struct fault_list list = {0};
-        struct contact_case one_case;
-        struct error err = {0};
-        cJSON *parameters = cJSON_Parse(BAD[b].text);
-        assert_non_null(parameters);
-        int status = contact_case_read(&one_case, parameters, 0, &list, &err);
-        if (BAD[b].pointer == NULL) {
-            assert_int_equal(status, 0);
-            contact_case_clear(&one_case);
-        } else if (status != ERROR_INPUT || list.count != 1 ||
-                   strcmp(list.faults[0].pointer, BAD[b].pointer) != 0 ||
-                   strstr(list.faults[0].detail, BAD[b].words) == NULL) {
-            fail_msg("%s: %zu faults, %s", BAD[b].text, list.count, err.text);
-        }
-        fault_list_clear(&list);
-        cJSON_Delete(parameters);
-    }
+    for (size_t b = 0; b < sizeof BAD / sizeof *BAD; b++)
+        check_fault(&BAD[b]);
 }
 
 /* What is at fault is not handed on: a surface without its table, its lengths, its shape or a grid
@@ -494,8 +574,11 @@ int main(void) {
         cmocka_unit_test(models_beside_full),
         cmocka_unit_test(loads_and_pressures),
         cmocka_unit_test(levels),
+        cmocka_unit_test(coatings),
+        cmocka_unit_test(persson_with_a_coating),
         cmocka_unit_test(rectangles),
         cmocka_unit_test(faults),
+        cmocka_unit_test(coating_faults),
         cmocka_unit_test(faulty_surfaces_end_reading),
         cmocka_unit_test(surfaces_beyond_memory_are_not_summed),
         cmocka_unit_test(all_faults_at_once),
