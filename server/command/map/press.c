@@ -10,6 +10,7 @@
 #include "server/command/command.h"
 #include "server/command/map/map_file.h"
 #include "server/command/map/map_output.h"
+#include "server/command/map/press_coating.h"
 #include "server/command/map/press_loads.h"
 #include "server/command/output_file.h"
 #include "server/show/map/map_png.h"
@@ -150,8 +151,9 @@ enum { CONTACT_NODES_FEW = 50 };
 
 struct press_options {
     const char *model;
-    double lengths;   /* height of the block in lengths of the map, 0: not given */
-    double tolerance; /* likewise */
+    const char *coating; /* NULL: none */
+    double lengths;      /* height of the block in lengths of the map, 0: not given */
+    double tolerance;    /* likewise */
     int boundary, format, without_error;
     bool leak;
     unsigned threads; /* 0: as many processors as are allotted */
@@ -187,7 +189,11 @@ static const struct option_row OPTIONS[] = {
      "what the block is made of; of several, with commas between, the differences to the most "
      "complete one are errors of the others"},
     {"poisson", 0, OPTION_NUMBER, 0, 0.4999, AT(words.poisson), "NU", "0.3",
-     "Poisson's ratio, of meshes and for --modulus"},
+     "Poisson's ratio, of meshes, of coated blocks and for --modulus"},
+    {"coating", 0, OPTION_TEXT, 0, 0, AT(coating), "T,E[,NU]", NULL,
+     "a layer of another material on the block (halfspace, layered): its thickness, such as 200nm, "
+     "its modulus over that of the block or in Pa, and its ratio of Poisson (the block's): "
+     "200nm,0.5 or 1um,4GPa,0.4"},
     {"height", 0, OPTION_NUMBER, 1e-3, 1e3, AT(lengths), "LENGTHS", NULL,
      "height of the block in lengths of the map (infinite; of meshes 1.5)"},
     {"tolerance", 0, OPTION_NUMBER, 1e-12, 1e-2, AT(tolerance), "T", NULL,
@@ -247,6 +253,22 @@ static void warn_of_seam(const struct press_order *order) {
             order->path, seam->x, seam->y);
 }
 
+/* Gives the blocks the coating, whose thickness is in the map's lengths. */
+static int take_coating(struct press_order *order, const struct height_map *map,
+                        struct error *err) {
+    const struct press_options *options = order->options;
+    struct coating coating;
+    int status = press_coating_parse(&coating, options->coating, &options->words, map, err);
+    for (size_t m = 0; m < order->model_count && status == 0; m++) {
+        const struct contact_model *model = order->blocks[m].model;
+        order->blocks[m].coating = coating;
+        if (options->coating != NULL && !model->coatings)
+            status = error_set(err, ERROR_INPUT, "--coating %.60s: the model %s has no coatings",
+                               options->coating, contact_model_name(model));
+    }
+    return status;
+}
+
 static int read_map(struct height_map *map, struct press_order *order, struct error *err) {
     static const int ASKED[] = {[ASKED_AUTO] = ASK_BOUNDARY_AUTO,
                                 [ASKED_OPEN] = ASK_BOUNDARY_OPEN,
@@ -264,6 +286,7 @@ static int read_map(struct height_map *map, struct press_order *order, struct er
         return status;
     order->boundary = boundary_of(order);
     warn_of_seam(order);
+    status = take_coating(order, map, err);
     for (size_t m = 0; m < order->model_count && status == 0; m++)
         status = map_press_check(order->boundary, order->blocks[m].model, err);
     return status == 0 ? 0 : error_context(err, "%s", order->path);

@@ -165,6 +165,13 @@ static void print_heading(FILE *file, const struct part *part) {
         const char *prefix = quantity_prefix(report->modulus, &scale);
         fprintf(file, "; E* = %.4g %sPa", report->modulus / scale, prefix);
     }
+    const struct coating *coating = &part->series->block.coating;
+    if (coating->thickness > 0) {
+        fprintf(file, "\n");
+        print_length(file, "coating: thickness", coating->thickness, report->metres);
+        fprintf(file, ", modulus %.4g of the block's, Poisson's ratio %.4g", coating->modulus,
+                coating->poisson);
+    }
     fprintf(file, "\n\n");
 }
 
@@ -337,9 +344,21 @@ static bool add_heading(cJSON *document, const struct press_report *report) {
            cJSON_AddStringToObject(document, "boundary_by", report->boundary_by);
 }
 
+/* Adds the coating that the blocks have, if they have one. */
+static bool add_coating(cJSON *document, const struct coating *coating) {
+    if (!(coating->thickness > 0))
+        return true;
+    cJSON *out = cJSON_AddObjectToObject(document, "coating");
+    return out != NULL &&
+           cJSON_AddItemToObject(out, "thickness", json_number(coating->thickness)) &&
+           cJSON_AddItemToObject(out, "modulus", json_number(coating->modulus)) &&
+           cJSON_AddItemToObject(out, "poisson", json_number(coating->poisson));
+}
+
 static bool add_scales(cJSON *document, const struct press_report *report) {
     const struct map_press *press = report->press;
-    return cJSON_AddStringToObject(document, "unit", report->metres ? "m" : "") &&
+    return add_coating(document, &report->series[0].block.coating) &&
+           cJSON_AddStringToObject(document, "unit", report->metres ? "m" : "") &&
            cJSON_AddItemToObject(document, "rms_slope", json_number(press->slope)) &&
            cJSON_AddItemToObject(document, "rms_height", json_number(press->height));
 }

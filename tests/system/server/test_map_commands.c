@@ -86,6 +86,49 @@ static void several_models_press_a_map(void **state) {
     assert_int_equal(run_shell("$RUGO press wave.csv --boundary open --model halfspace,full"), 2);
 }
 
+static double first_area(const char *path) {
+    char *text = slurp(path);
+    cJSON *document = cJSON_Parse(text);
+    double area = json_at(document, "/edges/0")->valuedouble;
+    cJSON_Delete(document);
+    free(text);
+    return area;
+}
+
+/* A soft coating takes more contact under one load, and a thick one is a softer block: its loads
+ * are over its own E*. Coatings are printed, and refused where they have no meaning. */
+static void coatings_are_pressed(void **state) {
+    (void)state;
+    assert_int_equal(
+        run_shell("awk 'BEGIN { for (j = 0; j < 32; j++) for (i = 0; i < 32; i++) printf "
+                  "\"%.9f%c\", cos(i * 0.19634954) * cos(j * 0.19634954), i < 31 ? 44 : 10 }' > "
+                  "sines.csv; press=\"$RUGO press sines.csv --boundary periodic --format json\"; "
+                  "$press --loads 0.1 > bare.json && $press --loads 0.1 --coating 2,0.25 > "
+                  "soft.json && $press --loads 0.025 --coating 1e4,0.25 > thick.json && "
+                  "$press --loads 0.1 --unit um --z-unit um --modulus 200GPa --coating "
+                  "2um,50GPa,0.3 > units.json"),
+        0);
+    double bare = first_area("bare.json"), soft = first_area("soft.json");
+    assert_true(soft > 1.5 * bare);
+    check_relative(first_area("thick.json"), bare, 1e-3);
+    check_relative(first_area("units.json"), soft, 1e-6);
+    assert_true(contains("soft.json", "\"coating\""));
+    assert_false(contains("bare.json", "\"coating\""));
+    assert_int_equal(run_shell("$RUGO press sines.csv --boundary open --loads 0.1 --coating 2,4"),
+                     0);
+    assert_true(contains("shell.out", "coating: thickness 2, modulus 4 of the block's"));
+    assert_int_equal(
+        run_shell("$RUGO press sines.csv --boundary periodic --model full --coating 2,4"), 2);
+    assert_true(contains("shell.err", "--coating 2,4: the model full has no coatings"));
+    assert_int_equal(
+        run_shell("$RUGO press sines.csv --boundary periodic --model layered --height 1 "
+                  "--coating 32,4"),
+        2);
+    assert_true(contains("shell.err", "coating thickness = 32; allowed: below the block height"));
+    assert_int_equal(run_shell("$RUGO press sines.csv --coating 2,4GPa"), 2);
+    assert_true(contains("shell.err", "needs that of the block: --modulus"));
+}
+
 /* A tilted map with a hole is open, loses a plane and has no seam to be pressed over. */
 static void a_measured_map_does_not_repeat(void **state) {
     (void)state;
@@ -355,6 +398,7 @@ int main(void) {
         cmocka_unit_test(a_surface_goes_out_and_in),
         cmocka_unit_test(a_map_in_a_file_is_pressed),
         cmocka_unit_test(several_models_press_a_map),
+        cmocka_unit_test(coatings_are_pressed),
         cmocka_unit_test(a_measured_map_does_not_repeat),
         cmocka_unit_test(lengths_have_units),
         cmocka_unit_test(a_map_is_converted),

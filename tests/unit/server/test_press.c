@@ -1,5 +1,6 @@
 /* Protects: quantities with units are read and printed as people write them; the loads of `press`
  * in each of their forms, and what is refused. */
+#include "server/command/map/press_coating.h"
 #include "server/command/map/press_loads.h"
 #include "server/show/quantity.h"
 #include "tests/support/check.h"
@@ -123,11 +124,62 @@ static void loads_are_refused(void **state) {
     }
 }
 
+static void coatings_are_read(void **state) {
+    (void)state;
+    const struct press_words words = {.poisson = 0.3, .modulus = "200GPa"};
+    struct height_map map = {.grid = {10, 10, 1e-3, 1e-3}, .xy_unit = "m", .z_unit = "m"};
+    struct coating coating;
+    struct error err = {0};
+    assert_int_equal(press_coating_parse(&coating, "200nm,0.5", &words, &map, &err), 0);
+    check_relative(coating.thickness, 200e-9, 1e-14);
+    assert_true(coating.modulus == 0.5 && coating.poisson == 0.3);
+    assert_int_equal(press_coating_parse(&coating, "1um,4GPa,0.4", &words, &map, &err), 0);
+    check_relative(coating.modulus, 0.02, 1e-14);
+    assert_true(coating.poisson == 0.4);
+    map.xy_unit[0] = '\0';
+    assert_int_equal(press_coating_parse(&coating, "0.25,2,0", &words, &map, &err), 0);
+    assert_true(coating.thickness == 0.25 && coating.modulus == 2 && coating.poisson == 0);
+    assert_int_equal(press_coating_parse(&coating, NULL, &words, &map, &err), 0);
+    assert_true(coating.thickness == 0);
+}
+
+static void coatings_are_refused(void **state) {
+    (void)state;
+    static const struct {
+        bool metres, modulus;
+        const char *text, *reason;
+    } WRONG[] = {{true, true, "200nm", "allowed is THICKNESS,MODULUS or"},
+                 {true, true, "200nm,1,0.3,4", "allowed is THICKNESS,MODULUS or"},
+                 {true, true, "200,1", "the thickness is a length above 0 with its unit"},
+                 {false, true, "200nm,1", "a number above 0 in the lengths of the map"},
+                 {false, true, "0,1", "a number above 0 in the lengths of the map"},
+                 {false, true, "1,x", "or a pressure with its unit, such as 4GPa"},
+                 {false, true, "1,-2", "over that of the block is 0.001 to 1000"},
+                 {false, true, "1,nan", "or a pressure with its unit, such as 4GPa"},
+                 {false, true, "1,1MPa", "is 0.001 to 1000 times that of the block"},
+                 {false, false, "1,4GPa", "needs that of the block: --modulus"},
+                 {false, true, "1,2,0.5", "Poisson's ratio is 0 to 0.4999"},
+                 {false, true, "1,2,", "Poisson's ratio is 0 to 0.4999"}};
+    for (size_t n = 0; n < sizeof WRONG / sizeof *WRONG; n++) {
+        const struct press_words words = {.modulus = WRONG[n].modulus ? "200GPa" : NULL};
+        struct height_map map = {.grid = {10, 10, 1e-3, 1e-3}};
+        struct coating coating;
+        struct error err = {0};
+        map.xy_unit[0] = WRONG[n].metres ? 'm' : '\0';
+        assert_int_equal(press_coating_parse(&coating, WRONG[n].text, &words, &map, &err),
+                         ERROR_INPUT);
+        if (strstr(err.text, WRONG[n].reason) == NULL)
+            fail_msg("\"%s\" does not contain \"%s\"", err.text, WRONG[n].reason);
+        assert_true(coating.thickness == 0);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(quantities_are_read), cmocka_unit_test(values_have_readable_prefixes),
-        cmocka_unit_test(units_are_readable),  cmocka_unit_test(loads_are_read),
-        cmocka_unit_test(loads_are_refused),
+        cmocka_unit_test(quantities_are_read),  cmocka_unit_test(values_have_readable_prefixes),
+        cmocka_unit_test(units_are_readable),   cmocka_unit_test(loads_are_read),
+        cmocka_unit_test(loads_are_refused),    cmocka_unit_test(coatings_are_read),
+        cmocka_unit_test(coatings_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
