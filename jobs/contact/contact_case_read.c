@@ -210,8 +210,13 @@ static int read_pdf(struct contact_case *out, struct values *values, struct erro
     if (status != 0)
         return status;
     bool given = at != NULL;
+    if (given && out->hardness > 0)
+        values_fault(values, path,
+                     "many pressures are the hardness, so that they have no density; plastic_area "
+                     "and plastic_load say how many");
     out->pdf_pairs = values_choice(values, "/contact/pressure_pdf/pairs") == PAIRS_COUNTED;
-    out->pdf_count = given ? out->pdf_count : 1;
+    if (!given)
+        out->pdf_count = out->hardness > 0 ? (size_t)0 : 1;
     out->pdf_loads = array_create(out->pdf_count, sizeof *out->pdf_loads);
     if (out->pdf_loads == NULL) {
         free(at);
@@ -219,7 +224,7 @@ static int read_pdf(struct contact_case *out, struct values *values, struct erro
     }
     if (given)
         check_rising(values, path, out->pdf_count, at);
-    else if (out->load_count > 0)
+    else if (out->load_count > 0 && out->pdf_count > 0)
         out->pdf_loads[0] = out->load_count - 1;
     for (size_t a = 0; given && a < out->pdf_count && out->load_count > 0; a++) {
         out->pdf_loads[a] = load_find(out, at[a]);

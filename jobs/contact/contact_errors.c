@@ -1,6 +1,7 @@
 #include "jobs/contact/contact_errors.h"
 #include "core/statistics/uncertainty/richardson.h"
 #include "jobs/contact/companion/companion.h"
+#include "jobs/contact/quantity/quantity.h"
 #include <math.h>
 
 /* A solution is within so many times the solver's tolerance of the exact one. */
@@ -117,12 +118,25 @@ static void add_floors(const struct contact_tally *tally, enum contact_measure m
         out[k].bound += share * fabs(finest_mean(tally, measure, model, k).value);
 }
 
+/* Adds to bounds of areas by edges what these may be off beside yielded nodes, where their law does
+ * not hold (F21.5). */
+static void add_yielded(const struct contact_tally *tally, enum contact_measure measure,
+                        size_t model, struct contact_error *out) {
+    bool by_edges = measure == MEASURE_EDGES || measure == MEASURE_EDGES_STRETCHED ||
+                    measure == MEASURE_PERIMETER;
+    if (!by_edges || !measure_is_of(tally->one_case, EDGES_YIELDED))
+        return;
+    for (size_t k = 0; k < tally->one_case->load_count; k++)
+        out[k].bound += finest_mean(tally, (enum contact_measure)EDGES_YIELDED, model, k).value;
+}
+
 static bool mesh_errors(const struct contact_tally *tally, enum contact_measure measure,
                         size_t model, struct contact_error *out) {
     if (tally->one_case->level_count < 2)
         return false;
     limit_errors(tally, measure, model, contact_tally_level, out);
     add_floors(tally, measure, model, false, out);
+    add_yielded(tally, measure, model, out);
     return true;
 }
 

@@ -12,7 +12,7 @@
 /* All quantities: NAME and how many measures it has. NAME_QUANTITY is its struct, NAME_PARAMETERS
  * its table of parameters. Partial results hold measures in this order, so that an entry comes
  * behind all others. */
-#define CONTACT_QUANTITY_LIST(ENTRY) ENTRY(CONDUCTANCE, 1) ENTRY(LEAK, 7) ENTRY(HARDNESS, 4)
+#define CONTACT_QUANTITY_LIST(ENTRY) ENTRY(CONDUCTANCE, 1) ENTRY(LEAK, 7) ENTRY(HARDNESS, 5)
 
 /* NAME_AT: its position, as in quantities_asked. NAME_MEASURE: the number of its first measure. */
 #define CONTACT_QUANTITY_POSITION(name, count) name##_AT,
@@ -29,13 +29,14 @@ _Static_assert((int)CONTACT_QUANTITY_BEHIND <= (int)MEASURE_PAIRED, "too many me
 struct measure_context; /* contact_measure.h */
 struct contact_area;    /* core/contact/area.h */
 
-/* Measures that have columns of their own in tables of one map. */
+/* Measures that others name: columns of tables of one map, and a bound of areas by edges. */
 enum {
     LEAK_ALONG_X = LEAK_MEASURE + 4,
     LEAK_ALONG_Y,
     PLASTIC_AREA = HARDNESS_MEASURE,
     PLASTIC_LOAD,
-    PLASTIC_VOLUME
+    PLASTIC_VOLUME,
+    EDGES_YIELDED = HARDNESS_MEASURE + 4
 };
 
 /* What a quantity is measured on: one grid under one model. */

@@ -57,6 +57,9 @@ static bool asked(struct contact_case *one_case, struct values *values) {
             values_fault(values, UNITS[u], "nothing conducts unless /contact/conductance is true");
     if (values_is_given(values, UNITS[0]) && values_is_given(values, UNITS[1]))
         values_fault(values, UNITS[1], "give it or /contact/resistivity, not both");
+    if (conducts && values_is_given(values, "/contact/coating/thickness"))
+        values_fault(values, ROWS[0].path,
+                     "what passes a coating is not known from its contact; leave one of them out");
     return conducts;
 }
 

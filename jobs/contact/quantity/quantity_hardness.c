@@ -6,9 +6,10 @@
 #include <math.h>
 
 /* Its measures, in this order. */
-enum { AREA, LOAD, VOLUME, UNLOAD_STIFFNESS, HARDNESS_MEASURES };
+enum { AREA, LOAD, VOLUME, UNLOAD_STIFFNESS, EDGES, HARDNESS_MEASURES };
 _Static_assert((int)HARDNESS_MEASURE + AREA == (int)PLASTIC_AREA &&
-                   (int)HARDNESS_MEASURE + VOLUME == (int)PLASTIC_VOLUME,
+                   (int)HARDNESS_MEASURE + VOLUME == (int)PLASTIC_VOLUME &&
+                   (int)HARDNESS_MEASURE + EDGES == (int)EDGES_YIELDED,
                "columns of tables");
 
 static const struct parameter ROWS[] = {
@@ -47,11 +48,11 @@ static int measure(struct quantity_state *state, const struct measure_context *c
     const struct contact_state *contact = &pressed->state;
     double stiffness = contact->unload_stiffness * context->rms_height / context->rms_slope;
     (void)state;
-    (void)area;
     (void)err;
     values[AREA] = (double)contact->yielded / context->points;
     values[LOAD] = contact->plastic_load;
     values[VOLUME] = contact->plastic_volume / context->rms_height;
+    values[EDGES] = area->edges_yielded;
     values[UNLOAD_STIFFNESS] = fabs(stiffness) < VALUE_MOST ? stiffness : (double)NAN;
     return 0;
 }
@@ -63,6 +64,11 @@ static bool is_asked(const struct contact_case *one_case) {
 static bool is_shown(const struct contact_case *one_case, size_t model) {
     (void)model;
     return is_asked(one_case);
+}
+
+static bool is_edges_shown(const struct contact_case *one_case, size_t model) {
+    (void)model;
+    return is_asked(one_case) && one_case->edges;
 }
 
 static bool is_stiffness_kept(const struct contact_case *one_case) {
@@ -114,6 +120,19 @@ static const struct measure MEASURES[HARDNESS_MEASURES] = {
                 .cell = CELL_SAME,
                 .values = VALUES_SOME,
                 .over = OVER_HEIGHT},
+    [EDGES] = {.quantity = "contact_area",
+               .series = "edges_yielded",
+               .y_label = "A/A0",
+               .shown = is_edges_shown,
+               .kept = is_asked,
+               .order = 1,
+               .theories = THEORIES_NONE,
+               .solver = SOLVER_COUNTED,
+               .field = FIELD_PRESSURE,
+               .load = LOAD_FALLS,
+               .cell = CELL_SAME,
+               .values = VALUES_SOME,
+               .over = OVER_AREA},
     [UNLOAD_STIFFNESS] = {.quantity = "unload_stiffness",
                           .series = "",
                           .y_label = "K sqrt(m0)/(E* h'_rms)",

@@ -1,7 +1,8 @@
 /* Protects what studies ask of a solved contact: the conductance is the stiffness of a half-space
- * without end, and of other blocks that of half-spaces through their nodes; it has the errors of
- * other curves and does not depend on how realisations are cut into blocks. A case that does not
- * ask for it keeps the bytes of its partial results. */
+ * without end, and of other blocks that of half-spaces through their nodes; what yields bears the
+ * hardness; leaks lie between those of both means, and close where free space does. All have the
+ * errors of other curves and do not depend on how realisations are cut into blocks. A case that
+ * does not ask for them keeps the bytes of its partial results. */
 #include "jobs/contact/contact_case_read.h"
 #include "jobs/contact/quantity/quantity.h"
 #include "tests/support/check.h"
@@ -13,6 +14,9 @@
     "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": " \
     "4, \"points_per_wavelength\": 8, \"rms_slope\": 0.1}, \"contact\": {\"levels\": [4, 8], "     \
     "\"pressures\": {\"values\": [0.01, 0.1]}, " contact "}}"
+#define SURFACE(contact)                                                                           \
+    "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 2, "                \
+    "\"points_per_wavelength\": 4}, \"contact\": {\"tolerance\": 1e-6, " contact "}}"
 enum { LOADS = 2 };
 
 static void half_space_conducts_as_it_is_stiff(void **state) {
@@ -70,6 +74,68 @@ static void stiffness_may_be_omitted(void **state) {
     cJSON_Delete(without);
 }
 
+/* The load is what yielded nodes bear, each the hardness, and what others bear. A hard block is
+ * elastic, and a soft one touches where it yields. */
+static void what_yields_bears_the_hardness(void **state) {
+    (void)state;
+    cJSON *document = solve(STUDY("\"hardness\": 0.2, \"conductance\": true"), 3);
+    const cJSON *area = curve_of(document, "plastic_area", "", "halfspace");
+    const cJSON *load = curve_of(document, "plastic_load", "", "halfspace");
+    const cJSON *nodes = curve_of(document, "contact_area", "nodes", "halfspace");
+    const cJSON *bracket = curve_of(document, "contact_area", "edges_yielded", "halfspace");
+    const cJSON *edges = curve_of(document, "contact_area", "edges", "halfspace");
+    const cJSON *unload = curve_of(document, "unload_stiffness", "", "halfspace");
+    const cJSON *conductance = curve_of(document, "conductance", "", "halfspace");
+    for (int k = 0; k < LOADS; k++) {
+        double x = at(area, "/x", k);
+        assert_near(0.2 * at(area, "/y", k), at(load, "/y", k) * x, 1e-4 * x, x);
+        assert_true(at(area, "/y", k) > 0 && at(area, "/y", k) <= at(nodes, "/y", k));
+        assert_true(at(bracket, "/y", k) > 0);
+        assert_true(at(edges, "/discretisation_bound", k) >= at(bracket, "/y", k));
+        assert_true(at(area, "/discretisation_bound", k) > 0 && at(area, "/cell_bound", k) > 0);
+        assert_near(at(conductance, "/y", k), at(unload, "/y", k), 0, x);
+        assert_near(cJSON_GetArrayItem(json_at(area, "/theory/persson"), k)->valuedouble,
+                    at(area, "/y", k), 0.5 * at(area, "/y", k), x);
+    }
+    cJSON_Delete(document);
+    cJSON *hard = solve(STUDY("\"hardness\": 1e3"), 2),
+          *elastic = solve(STUDY("\"poisson\": 0.3"), 2);
+    for (int k = 0; k < LOADS; k++) {
+        assert_near(at(curve_of(hard, "contact_area", "edges", "halfspace"), "/y", k),
+                    at(curve_of(elastic, "contact_area", "edges", "halfspace"), "/y", k), 0, k);
+        assert_near(at(curve_of(hard, "plastic_area", "", "halfspace"), "/y", k), 0, 0, k);
+    }
+    cJSON_Delete(hard);
+    cJSON_Delete(elastic);
+}
+
+/* Light loads leave the gap open both ways, heavy ones close it, and the area at which it closes
+ * lies between those of the loads. */
+static void gaps_leak_until_they_close(void **state) {
+    (void)state;
+    cJSON *document = solve(
+        SURFACE("\"leak\": true, \"pressures\": {\"values\": [0.02, 0.1, 0.2, 0.3, 0.5]}"), 3);
+    const cJSON *leak = curve_of(document, "leak", "", "halfspace");
+    const cJSON *low = curve_of(document, "leak", "harmonic", "halfspace");
+    const cJSON *high = curve_of(document, "leak", "arithmetic", "halfspace");
+    const cJSON *open = curve_of(document, "percolates", "", "halfspace");
+    const cJSON *along_x = curve_of(document, "leak", "x", "halfspace");
+    const cJSON *along_y = curve_of(document, "leak", "y", "halfspace");
+    const cJSON *area = curve_of(document, "contact_area", "edges", "halfspace");
+    for (int k = 0; k < points(leak); k++) {
+        double y = at(leak, "/y", k), x = at(leak, "/x", k);
+        assert_true(y >= at(low, "/y", k) && y <= at(high, "/y", k));
+        assert_true((y > 0) == (at(open, "/y", k) > 0));
+        assert_near(y, (at(along_x, "/y", k) + at(along_y, "/y", k)) / 2, 1e-12, x);
+    }
+    assert_true(at(open, "/y", 0) == 1 && at(open, "/y", 4) == 0 && at(leak, "/y", 0) > 0.3);
+    double closes = json_at(document, "/scalars/percolation_area/value")->valuedouble;
+    double load = json_at(document, "/scalars/percolation_load/value")->valuedouble;
+    assert_true(closes > 0.3 && closes < 0.6 && closes < at(area, "/y", 4));
+    assert_true(load > 0.02 && load < 0.5);
+    cJSON_Delete(document);
+}
+
 /* The document of realisations 0 .. 3 in blocks of `block`. */
 static char *in_blocks(const char *study, uint64_t block, size_t *bytes) {
     const struct job_kind *kind = kind_find("contact");
@@ -101,14 +167,18 @@ static char *in_blocks(const char *study, uint64_t block, size_t *bytes) {
 
 static void blocks_do_not_matter(void **state) {
     (void)state;
-    static const char STUDIED[] =
-        STUDY("\"conductance\": true, \"model\": [\"halfspace\", \"layered\"]");
-    size_t one_block, four_blocks;
-    char *one = in_blocks(STUDIED, 4, &one_block), *four = in_blocks(STUDIED, 1, &four_blocks);
-    assert_string_equal(one, four);
-    assert_non_null(strstr(one, "\"conductance\""));
-    free(one);
-    free(four);
+    static const char *const STUDIED[] = {
+        STUDY("\"conductance\": true, \"hardness\": 0.3, \"model\": [\"halfspace\", \"layered\"]"),
+        SURFACE("\"conductance\": true, \"leak\": true, \"pressures\": {\"values\": [0.1, 0.3]}")};
+    for (size_t s = 0; s < 2; s++) {
+        size_t one_block, four_blocks;
+        char *one = in_blocks(STUDIED[s], 4, &one_block);
+        char *four = in_blocks(STUDIED[s], 1, &four_blocks);
+        assert_string_equal(one, four);
+        assert_non_null(strstr(one, "\"conductance\""));
+        free(one);
+        free(four);
+    }
 }
 
 /* What a case without quantities holds is counted by what it has to: sums of 20 measures of the
@@ -154,6 +224,17 @@ static void what_does_not_fit_is_refused(void **state) {
            "/contact/resistivity: nothing conducts unless /contact/conductance is true");
     refuse("\"conductance\": true, \"resistivity\": [1e-7], \"conductivity\": [50]",
            "/contact/conductivity: give it or /contact/resistivity, not both");
+    refuse("\"leak\": true",
+           "/contact/leak: a profile leaks nothing, as each contact closes it; take "
+           "a surface");
+    refuse("\"hardness\": 0.1", "/contact/pressures/values: number 1 is a load of 0.1 E* h', and "
+                                "nothing bears a load of the hardness, 0.1 E* h', or more");
+    refuse("\"hardness\": 1, \"model\": [\"halfspace\", \"full\"]",
+           "/contact/hardness: the model full does not yield; leave one of them out");
+    refuse(
+        "\"hardness\": 1, \"pressure_pdf\": {\"at\": [0.1]}",
+        "/contact/pressure_pdf/at: many pressures are the hardness, so that they have no density; "
+        "plastic_area and plastic_load say how many");
     refuse("\"conductance\": true, \"resistivity\": [1, 2, 3]",
            "/contact/resistivity: [1,2,3] is not an array of 1 to 2 numbers");
 }
@@ -163,6 +244,8 @@ int main(void) {
         cmocka_unit_test(half_space_conducts_as_it_is_stiff),
         cmocka_unit_test(low_blocks_conduct_as_half_spaces),
         cmocka_unit_test(stiffness_may_be_omitted),
+        cmocka_unit_test(what_yields_bears_the_hardness),
+        cmocka_unit_test(gaps_leak_until_they_close),
         cmocka_unit_test(blocks_do_not_matter),
         cmocka_unit_test(what_is_not_asked_for_takes_no_room),
         cmocka_unit_test(what_does_not_fit_is_refused),
