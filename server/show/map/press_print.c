@@ -100,6 +100,17 @@ static const char *si_unit(enum kind kind, bool profile) {
     return profile ? PROFILE_UNITS[kind] : UNITS[kind];
 }
 
+/* Says what pressures of an elastic block mean where they have a unit. */
+static void print_elastic(FILE *file, const struct part *part, double most) {
+    double scale;
+    if (!(part->report->modulus > 0) || part->series->block.hardness > 0 || !(most > 0))
+        return;
+    const char *prefix = quantity_prefix(most, &scale);
+    fprintf(file,
+            "elastic pressures reach %.3g %sPa; --hardness, such as 2GPa, makes the block yield\n",
+            most / scale, prefix);
+}
+
 static double largest(const struct part *part, const struct press_column *column) {
     double most = 0;
     for (size_t l = 0; l < part->report->loads; l++)
@@ -135,6 +146,8 @@ static void print_physical(FILE *file, const struct part *part) {
     fprintf(file, "\n");
     table_print(&table, file);
     table_clear(&table);
+    print_elastic(file, part,
+                  largest(part, column_of(PRESS_PEAK)) * report->press->slope * report->modulus);
 }
 
 /* --- text --- */

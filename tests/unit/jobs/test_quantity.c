@@ -109,7 +109,7 @@ static void what_yields_bears_the_hardness(void **state) {
     cJSON_Delete(elastic);
 }
 
-/* Light loads leave the gap open both ways, heavy ones close it, and the area at which it closes
+/* Light loads leave the gap open, heavy ones close it, and the area at which it closes
  * lies between those of the loads. */
 static void gaps_leak_until_they_close(void **state) {
     (void)state;
