@@ -74,7 +74,7 @@ static double sum_within(size_t n, double hardness, const double *t, double leve
     return sum;
 }
 
-/* The sum falls with the level, piece by piece evenly: Newton's steps, which are halved intervals
+/* The sum falls with the level, linearly between kinks: Newton's steps, or halved intervals
  * where they leave what is left. */
 void bounded_project(struct conjugate_gradient *solver, double mean, double stride) {
     const double load = mean * (double)solver->n, hardness = solver->hardness;
@@ -157,38 +157,48 @@ static void balance(struct conjugate_gradient *solver, double mean, double sum,
     conjugate_step_apply_compliance(solver, solver->p, solver->u);
 }
 
+/* Fills what a pass found, and whether that is the solution. Returns the largest violation. */
+static double fill_end(const struct pass_result *next, double tolerance, double rounding,
+                       struct conjugate_gradient_end *end) {
+    end->bounded = end->bounded || next->sum[YIELDED] > 0;
+    end->penetration = next->most[PENETRATION];
+    end->lifted = next->most[LIFTED];
+    end->deepest = next->most[DEEPEST];
+    double violation = fmax(end->inside, fmax(end->penetration, end->lifted));
+    end->converged = !(next->sum[OPENED] + next->sum[YIELDED] > 0) && isfinite(end->approach) &&
+                     violation <= fmax(tolerance * end->deepest, rounding);
+    return violation;
+}
+
 void bounded_set_run(struct conjugate_gradient *solver, double mean, double tolerance,
                      size_t max_iterations, struct conjugate_gradient_end *end) {
     const double rounding = CONJUGATE_ROUNDING * conjugate_step_highest(solver);
     double least = INFINITY, best = INFINITY; /* changes of the set, violations */
     double members = count_members(solver);
+    double changed = INFINITY;
     size_t asked = end->iterations;
     int stalled = 0;
     while (stalled < SETS_STALLED && end->iterations < max_iterations) {
+        /* A set that has not changed is solved to the end. */
+        double share = changed > 0 || !end->bounded ? active_set_share(solver, stalled) : 0;
         end->inside = 0;
         if (members > 0)
-            active_set_close(solver, fmax(tolerance * end->deepest, rounding),
-                             active_set_share(solver, stalled), max_iterations, end);
+            active_set_close(solver, fmax(tolerance * end->deepest, rounding), share,
+                             max_iterations, end);
         else
             end->approach = bounded_approach(solver);
         const struct pass pass = {.solver = solver, .approach = end->approach};
         struct pass_result next = pass_run(&solver->board, &pass, follow_block);
         double cuts = next.sum[OPENED] + next.sum[YIELDED];
         members = next.sum[STAY];
-        end->bounded = end->bounded || next.sum[YIELDED] > 0;
-        end->penetration = next.most[PENETRATION];
-        end->lifted = next.most[LIFTED];
-        end->deepest = next.most[DEEPEST];
-        double violation = fmax(end->inside, fmax(end->penetration, end->lifted));
-        end->converged = !(cuts > 0) && isfinite(end->approach) &&
-                         violation <= fmax(tolerance * end->deepest, rounding);
+        double violation = fill_end(&next, tolerance, rounding, end);
         if (end->converged || !isfinite(end->approach))
             return;
         if (end->iterations >= asked + CONJUGATE_ASK) {
             asked = end->iterations;
             end->stopped = solver->stop != NULL && solver->stop(solver->stop_context) != 0;
         }
-        double changed = cuts + next.sum[JOINED];
+        changed = cuts + next.sum[JOINED];
         bool better = changed < least || violation < 0.5 * best;
         stalled = better ? 0 : stalled + 1;
         if (better || end->bounded) {

@@ -30,6 +30,7 @@ struct block_fault {
     const struct grid *grid;
     struct block block;
     bool open;
+    double hardness; /* 0: none */
 };
 struct pressed_fault {
     struct compliance *compliance;
@@ -45,11 +46,14 @@ static int press_once(struct pressed_fault *p, const struct block_fault *pressed
     struct contact_area area;
     struct patches patches;
     const struct grid *grid = pressed->grid;
+    struct contact_options options = CONTACT_DEFAULTS;
+    if (pressed->hardness > 0)
+        options.hardness = pressed->hardness;
     heights(grid, 0.1, z);
     int status = pressed->open ? compliance_create_open(&p->compliance, grid, &pressed->block, err)
                                : compliance_create(&p->compliance, grid, &pressed->block, err);
     if (status == 0)
-        status = contact_create(&p->contact, p->compliance, &CONTACT_DEFAULTS, err);
+        status = contact_create(&p->contact, p->compliance, &options, err);
     if (status == 0)
         status = area_workspace_create(&p->areas, p->compliance, err);
     if (status == 0)
@@ -79,14 +83,15 @@ static int press(void *context, struct error *err) {
 
 static void linear_models(void **state) {
     (void)state;
-    struct block_fault deep = {&LINE, DEEP, false}, meshed = {&GRID, MESHED, false};
-    struct block_fault open = {&GRID, DEEP, true};
+    struct block_fault deep = {&LINE, DEEP, false, 0}, meshed = {&GRID, MESHED, false, 0};
+    struct block_fault open = {&GRID, DEEP, true, 0}, soft = {&GRID, DEEP, false, 0.15};
     each_allocation(&(struct failing_call){.name = "half-space", press, &deep});
     each_allocation(&(struct failing_call){.name = "layered", press, &meshed});
     each_allocation(&(struct failing_call){.name = "free space", press, &open});
     struct block_fault coated = {&LINE, DEEP, true};
     coated.block.coating = (struct coating){0.1, 4, 0.2};
     each_allocation(&(struct failing_call){.name = "coated", press, &coated});
+    each_allocation(&(struct failing_call){.name = "hardness", press, &soft});
 }
 
 struct solid_case {

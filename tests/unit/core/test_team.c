@@ -61,8 +61,9 @@ static double height(const struct grid *grid, size_t i) {
     return 3 * cos(2 * M_PI * x) * cos(2 * M_PI * y) + noise - floor(noise);
 }
 
+/* hardness 0: none. */
 static struct left press(const struct grid *grid, const struct block *block, bool open,
-                         size_t threads) {
+                         double hardness, size_t threads) {
     enum { LOADS = 2 };
     static const double LOAD[LOADS] = {0.3, 2};
     struct left left = {.n = grid_points(grid)};
@@ -73,6 +74,8 @@ static struct left press(const struct grid *grid, const struct block *block, boo
     struct team *team;
     struct contact_options options = CONTACT_DEFAULTS;
     options.tolerance = 1e-4;
+    if (hardness > 0)
+        options.hardness = hardness;
     double *z = test_calloc(left.n, sizeof *z);
     for (size_t i = 0; i < left.n; i++)
         z[i] = height(grid, i);
@@ -116,12 +119,16 @@ static void contact_has_the_same_digits(void **state) {
         struct grid grid;
         const struct block *block;
         bool open;
-    } CASES[] = {{{270, 180, 1, 0.7}, &DEEP, false},  {{256, 256, 1, 1}, &LAYERED, false},
-                 {{149, 133, 1, 0.9}, &DEEP, true},   {{40000, 1, 1, 1}, &DEEP, false},
-                 {{20000, 1, 1, 1}, &LAYERED, false}, {{64, 300, 1, 3}, &DEEP, false}};
+        double hardness;
+    } CASES[] = {{{270, 180, 1, 0.7}, &DEEP, false, 0},  {{256, 256, 1, 1}, &LAYERED, false, 0},
+                 {{149, 133, 1, 0.9}, &DEEP, true, 0},   {{40000, 1, 1, 1}, &DEEP, false, 0},
+                 {{20000, 1, 1, 1}, &LAYERED, false, 0}, {{64, 300, 1, 3}, &DEEP, false, 0},
+                 {{270, 180, 1, 0.7}, &DEEP, false, 20}};
     for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
-        struct left alone = press(&CASES[c].grid, CASES[c].block, CASES[c].open, 1);
-        struct left shared = press(&CASES[c].grid, CASES[c].block, CASES[c].open, 3);
+        struct left alone =
+            press(&CASES[c].grid, CASES[c].block, CASES[c].open, CASES[c].hardness, 1);
+        struct left shared =
+            press(&CASES[c].grid, CASES[c].block, CASES[c].open, CASES[c].hardness, 3);
         const size_t BYTES = alone.n * sizeof *alone.p;
         assert_memory_equal(alone.p, shared.p, BYTES);
         assert_memory_equal(alone.gap, shared.gap, BYTES);
