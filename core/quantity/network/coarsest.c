@@ -1,4 +1,5 @@
 #include "core/quantity/network/coarsest.h"
+#include <limits.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -34,6 +35,10 @@ int coarsest_create(struct coarsest **out, const struct level *level, struct err
         return error_memory(err, sizeof *c, "a leak");
     c->level = level;
     c->nodes = level->nx * level->ny;
+    if (c->nodes > INT_MAX / ENTRIES) { /* its indices are int */
+        free(c);
+        return error_memory(err, level->nx * level->ny * ENTRIES * 16, "a leak");
+    }
     cholmod_start(&c->common);
     c->common.print = 0;
     c->common.supernodal = CHOLMOD_SUPERNODAL;
@@ -89,33 +94,37 @@ static double inverse_of(const struct level *level, size_t node) {
     return level->inverse[level_row(level, node / level->nx) + node % level->nx];
 }
 
+static void put(cholmod_triplet *matrix, size_t a, size_t b, double value) {
+    ((int *)matrix->i)[matrix->nnz] = (int)(a > b ? a : b);
+    ((int *)matrix->j)[matrix->nnz] = (int)(a > b ? b : a);
+    ((double *)matrix->x)[matrix->nnz++] = value;
+}
+
+/* The conductance c between nodes a and b, of which one may have cancelled to none. */
+static void put_face(struct coarsest *c, size_t a, size_t b, double conductance) {
+    bool both = inverse_of(c->level, a) > 0 && inverse_of(c->level, b) > 0;
+    put(c->triplet, a, b, both ? -conductance : 0);
+}
+
 /* CHOLMOD adds entries of the same row and column. Zeros are kept, so that the pattern stays the
  * same. */
 static void fill(struct coarsest *c, double shift) {
     const struct level *level = c->level;
-    int *row = c->triplet->i, *column = c->triplet->j;
-    double *entry = c->triplet->x;
-    size_t nx = level->nx, ny = level->ny, count = 0;
+    size_t nx = level->nx, ny = level->ny;
+    c->triplet->nnz = 0;
     for (size_t j = 0; j < ny; j++)
         for (size_t i = 0; i < nx; i++) {
-            size_t k = level_row(level, j) + i, up = j + 1 < ny ? j + 1 : 0, node = j * nx + i;
-            double diagonal =
-                level->inverse[k] > 0 ? 1 / level->inverse[k] + shift * size_at(level, j, i) : 1;
-            const size_t to[ENTRIES] = {node, j * nx + i + 1, up * nx + i, up * nx + i + 1,
-                                        up * nx + i - 1};
-            const double values[ENTRIES] = {diagonal, -level->e[k], -level->n[k],
-                                            -value_at(level->ne, k), -value_at(level->nw, k)};
-            const bool there[ENTRIES] = {true, i + 1 < nx, true, i + 1 < nx, i > 0};
-
-            for (size_t a = 0; a < ENTRIES; a++)
-                if (there[a]) {
-                    bool both = level->inverse[k] > 0 && inverse_of(level, to[a]) > 0;
-                    row[count] = (int)(to[a] > node ? to[a] : node);
-                    column[count] = (int)(to[a] > node ? node : to[a]);
-                    entry[count++] = a == 0 || both ? values[a] : 0;
-                }
+            size_t k = level_row(level, j) + i, a = j * nx + i, up = (j + 1) % ny * nx + i;
+            double inverse = level->inverse[k];
+            put(c->triplet, a, a, inverse > 0 ? 1 / inverse + shift * size_at(level, j, i) : 1);
+            put_face(c, a, up, level->n[k]);
+            if (i + 1 < nx)
+                put_face(c, a, a + 1, level->e[k]);
+            if (i + 1 < nx)
+                put_face(c, a, up + 1, value_at(level->ne, k));
+            if (i > 0)
+                put_face(c, a, up - 1, value_at(level->nw, k));
         }
-    c->triplet->nnz = count;
 }
 
 static int failure(struct coarsest *c, struct error *err) {

@@ -24,24 +24,29 @@ static void join(ptrdiff_t *link, size_t a, size_t b) {
     link[other] = (ptrdiff_t)root;
 }
 
-bool percolation_keep(size_t nx, size_t ny, size_t stride, double *k, ptrdiff_t *link) {
-    for (size_t j = 0; j < ny; j++)
-        for (size_t i = 0; i < nx; i++) {
-            int ends = (i == 0 ? FIRST : 0) + (i + 1 == nx ? LAST : 0);
-            link[j * nx + i] = -(ROOT + ends);
-        }
+static void join_neighbours(size_t nx, size_t ny, size_t stride, const double *k, ptrdiff_t *link) {
     for (size_t j = 0; j < ny; j++) {
-        const double *row = k + j * stride, *up = k + (j + 1 < ny ? j + 1 : 0) * stride;
-        size_t at = j * nx, above = (j + 1 < ny ? j + 1 : 0) * nx;
+        size_t next = j + 1 < ny ? j + 1 : 0;
+        const double *row = k + j * stride, *up = k + next * stride;
         for (size_t i = 0; i < nx; i++) {
             if (!(row[i] > 0))
                 continue;
             if (i + 1 < nx && row[i + 1] > 0)
-                join(link, at + i, at + i + 1);
+                join(link, j * nx + i, j * nx + i + 1);
             if (up[i] > 0)
-                join(link, at + i, above + i);
+                join(link, j * nx + i, next * nx + i);
         }
     }
+}
+
+bool percolation_keep(size_t nx, size_t ny, size_t stride, double *k, ptrdiff_t *link) {
+    for (size_t j = 0; j < ny; j++) {
+        for (size_t i = 0; i < nx; i++)
+            link[j * nx + i] = -ROOT;
+        link[j * nx] -= FIRST;
+        link[j * nx + nx - 1] -= LAST;
+    }
+    join_neighbours(nx, ny, stride, k, link);
     bool any = false;
     for (size_t j = 0; j < ny; j++)
         for (size_t i = 0; i < nx; i++) {

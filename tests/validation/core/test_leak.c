@@ -133,29 +133,37 @@ static double face(const struct direct *d, size_t a, size_t b) {
     return d->harmonic ? 2 / (1 / k + 1 / l) : (k + l) / 2;
 }
 
-/* Neighbours of a node: left, right, below, above; itself where there is none. */
-static void neighbours(const struct direct *d, size_t a, size_t *out) {
-    size_t i = a % d->nx, j = a / d->nx;
+/* Neighbours of node (i, j): left, right, below, above; itself where there is none. */
+static void neighbours(const struct direct *d, size_t i, size_t j, size_t *out) {
+    size_t nx = d->nx, row = j * nx, a = row + i;
     out[0] = i > 0 ? a - 1 : a;
-    out[1] = i + 1 < d->nx ? a + 1 : a;
-    out[2] = (j + d->ny - 1) % d->ny * d->nx + i;
-    out[3] = (j + 1) % d->ny * d->nx + i;
+    out[1] = i + 1 < nx ? a + 1 : a;
+    out[2] = (j > 0 ? row - nx : (d->ny - 1) * nx) + i;
+    out[3] = (j + 1 < d->ny ? row + nx : 0) + i;
 }
 
-/* Closes the free nodes without a path to a column, by sweeps until nothing changes. */
-static void mark(struct direct *d, size_t column) {
-    size_t n = d->nx * d->ny, next[4];
-    for (size_t a = 0; a < n; a++)
-        d->reached[a] = d->cube[a] > 0 && a % d->nx == column;
-    for (bool changed = true; changed;) {
-        changed = false;
-        for (size_t a = 0; a < n; a++) {
-            neighbours(d, a, next);
+/* Reaches free nodes from those reached. Returns whether there are any. */
+static bool reach_further(struct direct *d) {
+    bool any = false;
+    for (size_t j = 0; j < d->ny; j++)
+        for (size_t i = 0; i < d->nx; i++) {
+            size_t a = j * d->nx + i, next[4];
+            neighbours(d, i, j, next);
             for (size_t k = 0; k < 4 && d->cube[a] > 0 && !d->reached[a]; k++)
                 if (d->reached[next[k]])
-                    d->reached[a] = changed = true;
+                    d->reached[a] = any = true;
         }
-    }
+    return any;
+}
+
+/* Closes the free nodes without a path to a column. */
+static void mark(struct direct *d, size_t column) {
+    size_t n = d->nx * d->ny;
+    memset(d->reached, 0, n * sizeof *d->reached);
+    for (size_t j = 0; j < d->ny; j++)
+        d->reached[j * d->nx + column] = d->cube[j * d->nx + column] > 0;
+    while (reach_further(d))
+        ;
     for (size_t a = 0; a < n; a++)
         d->cube[a] = d->reached[a] ? d->cube[a] : 0;
 }
@@ -166,29 +174,34 @@ static void put(cholmod_triplet *matrix, size_t row, size_t column, double value
     ((double *)matrix->x)[matrix->nnz++] = value;
 }
 
-/* Equations of all nodes: those without conductances have a pressure of 0. Returns the flow into
- * the first column. */
+/* The balance of a node: without conductances its pressure is 0. */
+static void put_node(const struct direct *d, size_t i, size_t j, cholmod_triplet *entries,
+                     double *load) {
+    size_t a = j * d->nx + i, next[4];
+    neighbours(d, i, j, next);
+    put(entries, a, a, d->cube[a] == 0 ? 1 : 0);
+    if (i == 0 || i + 1 == d->nx)
+        put(entries, a, a, 2 * d->cube[a]);
+    if (i == 0)
+        load[a] = 2 * d->cube[a];
+    for (size_t k = 0; k < 4; k++) {
+        double c = next[k] != a ? face(d, a, next[k]) * (k < 2 ? 1 : d->along) : 0;
+        put(entries, a, a, c);
+        if (next[k] < a)
+            put(entries, a, next[k], -c);
+    }
+}
+
+/* Returns the flow into the first column. */
 static double solve(const struct direct *d) {
-    size_t n = d->nx * d->ny, next[4];
+    size_t n = d->nx * d->ny;
     cholmod_common common;
     cholmod_start(&common);
     cholmod_triplet *entries = cholmod_allocate_triplet(n, n, 9 * n, -1, CHOLMOD_REAL, &common);
     cholmod_dense *load = cholmod_zeros(n, 1, CHOLMOD_REAL, &common);
-    for (size_t a = 0; a < n; a++) {
-        size_t i = a % d->nx;
-        neighbours(d, a, next);
-        put(entries, a, a, d->cube[a] == 0 ? 1 : 0);
-        if (i == 0 || i + 1 == d->nx)
-            put(entries, a, a, 2 * d->cube[a]);
-        if (i == 0)
-            ((double *)load->x)[a] = 2 * d->cube[a];
-        for (size_t k = 0; k < 4; k++) {
-            double c = next[k] != a ? face(d, a, next[k]) * (k < 2 ? 1 : d->along) : 0;
-            put(entries, a, a, c);
-            if (next[k] < a)
-                put(entries, a, next[k], -c);
-        }
-    }
+    for (size_t j = 0; j < d->ny; j++)
+        for (size_t i = 0; i < d->nx; i++)
+            put_node(d, i, j, entries, load->x);
     cholmod_sparse *matrix = cholmod_triplet_to_sparse(entries, 0, &common);
     cholmod_factor *factor = cholmod_analyze(matrix, &common);
     assert_true(cholmod_factorize(matrix, factor, &common) && common.status == CHOLMOD_OK);
