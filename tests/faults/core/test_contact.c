@@ -88,7 +88,7 @@ static void linear_models(void **state) {
     each_allocation(&(struct failing_call){.name = "half-space", press, &deep});
     each_allocation(&(struct failing_call){.name = "layered", press, &meshed});
     each_allocation(&(struct failing_call){.name = "free space", press, &open});
-    struct block_fault coated = {&LINE, DEEP, true};
+    struct block_fault coated = {&LINE, DEEP, true, 0};
     coated.block.coating = (struct coating){0.1, 4, 0.2};
     each_allocation(&(struct failing_call){.name = "coated", press, &coated});
     each_allocation(&(struct failing_call){.name = "hardness", press, &soft});
