@@ -165,8 +165,8 @@ static int errors(double hurst, struct error *err) {
     printf("\n");
     for (size_t a = 0; status == 0 && a <= sizeof cases / sizeof *cases; a++) {
         if (a > 0)
-            block = (struct block){MODEL_LAYERED, cases[a - 1].poisson, 1.5, cases[a - 1].growth,
-                                   cases[a - 1].weighting};
+            block = (struct block){MODEL_LAYERED,       cases[a - 1].poisson,   1.5,
+                                   cases[a - 1].growth, cases[a - 1].weighting, {0, 0, 0}};
         status = rough(COARSE, hurst, &block, &few, err);
         if (a == 0)
             printf(" halfspace\n");

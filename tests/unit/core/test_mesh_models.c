@@ -12,7 +12,7 @@
 static const double HEIGHT = 1.5;
 
 static struct mesh *mesh_of(const struct grid *grid, double transition) {
-    const struct block block = {MODEL_LAYERED, 0.3, HEIGHT, 1.3, GAP_DUAL};
+    const struct block block = {MODEL_LAYERED, 0.3, HEIGHT, 1.3, GAP_DUAL, {0, 0, 0}};
     struct error err = {0};
     struct mesh *mesh = NULL;
     double z[128];

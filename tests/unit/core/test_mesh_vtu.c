@@ -193,7 +193,7 @@ static void check_step(const struct parsed *parsed, const struct grid *grid, siz
 
 static void one_file(struct grid grid, enum kinematics kinematics, size_t widenings) {
     static const double SLOPE = 0.05, LOAD = 0.2;
-    struct block block = {MODEL_LAYERED, 0.3, HEIGHT, 1.3, GAP_DUAL};
+    struct block block = {MODEL_LAYERED, 0.3, HEIGHT, 1.3, GAP_DUAL, {0, 0, 0}};
     struct full_options options = FULL_DEFAULTS;
     struct error err = {0};
     struct full *full = NULL;
@@ -243,7 +243,7 @@ static void meshes_and_steps(void **state) {
 static void a_full_disk_is_told(void **state) {
     (void)state;
     struct grid grid = {8, 1, 1, 1};
-    struct block block = {MODEL_LAYERED, 0.3, HEIGHT, 1.3, GAP_DUAL};
+    struct block block = {MODEL_LAYERED, 0.3, HEIGHT, 1.3, GAP_DUAL, {0, 0, 0}};
     struct mesh *mesh = NULL;
     struct error err = {0};
     FILE *file = fopen("/dev/full", "wb");

@@ -154,9 +154,10 @@ static void press_rough(struct grid grid, struct block block, uint64_t realisati
 
 static void any_contact_bears_its_load(void **state) {
     (void)state;
-    static const struct block BLOCKS[] = {{MODEL_HALFSPACE, 0.3, INFINITY, 1, GAP_STANDARD},
-                                          {MODEL_LAYERED, 0.3, 1.5, 1.3, GAP_STANDARD},
-                                          {MODEL_LAYERED, 0.4999, 1.5, 1.1, GAP_DUAL}};
+    static const struct block BLOCKS[] = {
+        {MODEL_HALFSPACE, 0.3, INFINITY, 1, GAP_STANDARD, {0, 0, 0}},
+        {MODEL_LAYERED, 0.3, 1.5, 1.3, GAP_STANDARD, {0, 0, 0}},
+        {MODEL_LAYERED, 0.4999, 1.5, 1.1, GAP_DUAL, {0, 0, 0}}};
     static const struct grid GRIDS[] = {{64, 1, 1, 1}, {32, 32, 1, 1}, {32, 16, 1, 1}};
     for (size_t a = 0; a < 3; a++)
         for (size_t b = 0; b < 3; b++)
