@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROWS_MOST = 32, LONG_CODE = 256 };
+enum { ROWS_MOST = 64, LONG_CODE = 256 };
 
 int usage_error(const char *command, const char *format, ...) {
     va_list arguments;
