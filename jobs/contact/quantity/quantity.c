@@ -7,9 +7,9 @@ static const size_t COUNTS[] = {CONTACT_QUANTITY_LIST(COUNT)};
 
 const struct contact_quantity *contact_quantity_at(size_t at, size_t *measure) {
     *measure = MEASURE_QUANTITIES;
-    for (size_t q = 0; q < at; q++)
+    for (size_t q = 0; q < at && q < CONTACT_QUANTITIES; q++)
         *measure += COUNTS[q];
-    return QUANTITIES[at];
+    return at < CONTACT_QUANTITIES ? QUANTITIES[at] : NULL;
 }
 
 /* Returns the quantity with a measure, and its first number; CONTACT_QUANTITIES: there is none. */

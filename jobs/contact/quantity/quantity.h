@@ -80,7 +80,7 @@ struct contact_quantity {
     /* Fills the scalars of a realisation; NaN: none. NULL where it has none. */
     void (*summarise)(const struct quantity_values *values, double *scalars);
 };
-/* Returns a quantity by its position, and the number of its first measure. */
+/* Returns a quantity by its position, and the number of its first measure; NULL behind the last. */
 const struct contact_quantity *contact_quantity_at(size_t at, size_t *measure);
 
 /* The parameters of all, for the tables of the kind. */

@@ -58,7 +58,7 @@ int quantity_scalars(const struct contact_tally *tally, struct case_result *out,
     for (size_t at = 0; at < CONTACT_QUANTITIES && status == 0; at++) {
         size_t first;
         const struct contact_quantity *quantity = contact_quantity_at(at, &first);
-        if (one_case->asked.of[at] && quantity->scalars != NULL)
+        if (quantity != NULL && one_case->asked.of[at] && quantity->scalars != NULL)
             status = put(tally, quantity, first, room, room + loads, out, err);
     }
     free(room);

@@ -497,6 +497,10 @@ static int order_models(struct press_order *order, struct error *err) {
                                                 .hardness = order->loads.hardness,
                                                 .conducts = order->loads.resistivity > 0,
                                                 .leaks = options->leak};
+    if (order->loads.resistivity > 0 && options->coating != NULL)
+        return error_set(err, ERROR_INPUT,
+                         "--%s and --coating: what passes a coating is not known from its contact",
+                         order->loads.heat ? "conductivity" : "resistivity");
     for (size_t m = 0; m < order->model_count && order->loads.hardness > 0; m++)
         if (!order->blocks[m].model->yields)
             return error_set(err, ERROR_INPUT,
