@@ -134,3 +134,26 @@ void team_share(struct team *team, size_t parts, team_work *work, void *context)
         pthread_cond_wait(&team->ends, &team->mutex);
     pthread_mutex_unlock(&team->mutex);
 }
+
+size_t team_parts(size_t count, size_t size) {
+    return count / size + (count % size != 0);
+}
+
+struct ranges {
+    size_t count, size;
+    team_range_work *work;
+    void *context;
+};
+
+static void work_range(void *context, size_t part, size_t thread) {
+    const struct ranges *ranges = context;
+    size_t first = part * ranges->size, rest = ranges->count - first;
+    ranges->work(ranges->context, first, first + (rest < ranges->size ? rest : ranges->size),
+                 thread);
+}
+
+void team_share_ranges(struct team *team, size_t count, size_t size, team_range_work *work,
+                       void *context) {
+    struct ranges ranges = {count, size, work, context};
+    team_share(team, team_parts(count, size), work_range, &ranges);
+}

@@ -25,4 +25,14 @@ size_t team_threads(const struct team *team);
  * in order. */
 void team_share(struct team *team, size_t parts, team_work *work, void *context);
 
+/* Returns the number of parts of `size` items, above 0, that hold so many; the last one may hold
+ * fewer. */
+size_t team_parts(size_t count, size_t size);
+/* Computes items first .. end - 1 of a task; thread as of team_work. */
+typedef void team_range_work(void *context, size_t first, size_t end, size_t thread);
+/* Calls work for each of those parts once, as team_share does. Part number first/size does not
+ * depend on the team. */
+void team_share_ranges(struct team *team, size_t count, size_t size, team_range_work *work,
+                       void *context);
+
 #endif

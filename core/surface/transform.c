@@ -264,75 +264,67 @@ struct field {
     const double *symbol;
 };
 
-static size_t parts_of(size_t count, size_t part) {
-    return count / part + (count % part != 0);
-}
-
-static size_t rows_of(const struct field *f, size_t part) {
-    return least(f->count - part * f->transform->group, f->transform->group);
-}
-
-static void forward_part(void *context, size_t part, size_t thread) {
+static void forward_rows(void *context, size_t first, size_t end, size_t thread) {
     const struct field *f = context;
     struct transform *t = f->transform;
     const struct desk *desk = &t->desks[thread];
-    size_t j = part * t->group, rows = rows_of(f, part);
+    size_t rows = end - first;
     for (size_t row = 0; row < rows; row++) {
-        memcpy(desk->lines + row * t->nx, f->in + (j + row) * f->nx, f->nx * sizeof *f->in);
+        memcpy(desk->lines + row * t->nx, f->in + (first + row) * f->nx, f->nx * sizeof *f->in);
         memset(desk->lines + row * t->nx + f->nx, 0, (t->nx - f->nx) * sizeof *f->in);
     }
-    forward_lines(t, desk, f->first + j, rows, f->scale);
+    forward_lines(t, desk, f->first + first, rows, f->scale);
 }
 
-static void inverse_part(void *context, size_t part, size_t thread) {
+static void inverse_rows(void *context, size_t first, size_t end, size_t thread) {
     const struct field *f = context;
     struct transform *t = f->transform;
     const struct desk *desk = &t->desks[thread];
-    size_t j = part * t->group, rows = rows_of(f, part);
-    inverse_lines(t, desk, f->first + j, rows);
+    size_t rows = end - first;
+    inverse_lines(t, desk, f->first + first, rows);
     for (size_t row = 0; row < rows; row++)
-        memcpy(f->out + (j + row) * f->nx, desk->lines + row * t->nx, f->nx * sizeof *f->out);
+        memcpy(f->out + (first + row) * f->nx, desk->lines + row * t->nx, f->nx * sizeof *f->out);
 }
 
-static void share_rows(const struct field *field, team_work *work) {
+static void share_rows(const struct field *field, team_range_work *work) {
     struct field f = *field;
-    team_share(f.transform->team, parts_of(f.count, f.transform->group), work, &f);
+    team_share_ranges(f.transform->team, f.count, f.transform->group, work, &f);
 }
 
-static void columns_transform(struct transform *t, fftw_plan all, team_work *one) {
+static void columns_transform(struct transform *t, fftw_plan all, team_range_work *one) {
     if (t->ny == 1)
         return;
     if (all != NULL)
         fftw_execute(all);
     else
-        team_share(t->team, parts_of(t->columns, SHARE), one, t);
+        team_share_ranges(t->team, t->columns, SHARE, one, t);
 }
 
-/* Transforms the columns of a part. In place, FFTW would take a buffer from the heap for each of
+/* Transforms columns first .. end - 1. In place, FFTW would take a buffer from the heap for each of
  * them, of which the heap gives back the pages: half of the time of 2048 x 2048 points in free
  * space went into page faults. */
-static void columns_part(struct transform *t, size_t part, size_t thread, fftw_plan plan) {
+static void transform_columns(struct transform *t, size_t first, size_t end, size_t thread,
+                              fftw_plan plan) {
     double complex *line = t->desks[thread].line;
-    size_t end = least((part + 1) * SHARE, t->columns);
-    for (size_t i = part * SHARE; i < end; i++) {
+    for (size_t i = first; i < end; i++) {
         double complex *column = t->spectrum + i * t->ny;
         memcpy(line, column, t->ny * sizeof *line);
         fftw_execute_dft(plan, line, column);
     }
 }
 
-static void inverse_columns_part(void *context, size_t part, size_t thread) {
+static void inverse_columns(void *context, size_t first, size_t end, size_t thread) {
     struct transform *t = context;
-    columns_part(t, part, thread, t->one_inverse);
+    transform_columns(t, first, end, thread, t->one_inverse);
 }
 
-static void forward_columns_part(void *context, size_t part, size_t thread) {
+static void forward_columns(void *context, size_t first, size_t end, size_t thread) {
     struct transform *t = context;
-    columns_part(t, part, thread, t->one_forward);
+    transform_columns(t, first, end, thread, t->one_forward);
 }
 
 void transform_inverse_columns(struct transform *t) {
-    columns_transform(t, t->column_inverse, inverse_columns_part);
+    columns_transform(t, t->column_inverse, inverse_columns);
 }
 
 double *transform_inverse_strip(struct transform *t, size_t first, size_t count) {
@@ -341,7 +333,7 @@ double *transform_inverse_strip(struct transform *t, size_t first, size_t count)
 }
 
 void transform_inverse_rows(struct transform *t, size_t first, size_t count, double *z) {
-    share_rows(&(struct field){t, first, count, t->nx, .out = z}, inverse_part);
+    share_rows(&(struct field){t, first, count, t->nx, .out = z}, inverse_rows);
 }
 
 void transform_inverse(struct transform *t, double *z) {
@@ -375,11 +367,11 @@ static double scale_of(const struct transform *t) {
 
 void transform_forward_rows(struct transform *t, size_t first, size_t count, const double *z) {
     share_rows(&(struct field){t, first, count, t->nx, .in = z, .scale = scale_of(t)},
-               forward_part);
+               forward_rows);
 }
 
 void transform_forward_columns(struct transform *t) {
-    columns_transform(t, t->column_forward, forward_columns_part);
+    columns_transform(t, t->column_forward, forward_columns);
 }
 
 void transform_forward(struct transform *t, const double *z) {
@@ -387,12 +379,11 @@ void transform_forward(struct transform *t, const double *z) {
     transform_forward_columns(t);
 }
 
-/* Multiplies the columns of a part by their symbol, in cache; rows from count on are 0 before. */
-static void filter_part(void *context, size_t part, size_t thread) {
+/* Multiplies columns by their symbol, in cache; rows from count on are 0 before. */
+static void filter_columns(void *context, size_t first, size_t end, size_t thread) {
     const struct field *f = context;
     struct transform *t = f->transform;
-    size_t end = least((part + 1) * SHARE, t->columns);
-    for (size_t i = part * SHARE; i < end; i++) {
+    for (size_t i = first; i < end; i++) {
         double complex *column = t->spectrum + i * t->ny;
         memset(column + f->count, 0, (t->ny - f->count) * sizeof *column);
         double complex *line = t->ny > 1 ? t->desks[thread].line : column;
@@ -408,9 +399,9 @@ static void filter_part(void *context, size_t part, size_t thread) {
 void transform_filter_part(struct transform *t, const double *symbol, double factor, size_t nx,
                            size_t ny, const double *in, double *out) {
     struct field f = {t, 0, ny, nx, in, out, factor / ((double)t->nx * (double)t->ny), symbol};
-    share_rows(&f, forward_part);
-    team_share(t->team, parts_of(t->columns, SHARE), filter_part, &f);
-    share_rows(&f, inverse_part);
+    share_rows(&f, forward_rows);
+    team_share_ranges(t->team, t->columns, SHARE, filter_columns, &f);
+    share_rows(&f, inverse_rows);
 }
 
 void transform_filter(struct transform *t, const double *symbol, double factor, const double *in,

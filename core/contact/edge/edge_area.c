@@ -35,7 +35,6 @@ struct edge_scan {
     const struct edge_law *law; /* borrowed */
     struct grid grid;
     bool open;
-    size_t parts;
     double *own;            /* grid_points: takes memory where states have no scratch */
     double *rise;           /* that of the last state, or own */
     struct part_sums *sums; /* of each part */
@@ -50,7 +49,7 @@ static size_t part_rows(const struct grid *grid) {
 }
 
 static size_t part_count(const struct grid *grid) {
-    return grid->ny / part_rows(grid) + (grid->ny % part_rows(grid) != 0);
+    return team_parts(grid->ny, part_rows(grid));
 }
 
 int edge_scan_create(struct edge_scan **out, const struct edge_law *law, const struct grid *grid,
@@ -59,9 +58,9 @@ int edge_scan_create(struct edge_scan **out, const struct edge_law *law, const s
     *out = NULL;
     if (scan == NULL)
         return error_memory(err, sizeof *scan, "contact areas");
-    *scan = (struct edge_scan){.law = law, .grid = *grid, .open = open, .parts = part_count(grid)};
+    *scan = (struct edge_scan){.law = law, .grid = *grid, .open = open};
     scan->own = array_create(grid_points(grid), sizeof *scan->own);
-    scan->sums = array_create(scan->parts, sizeof *scan->sums);
+    scan->sums = array_create(part_count(grid), sizeof *scan->sums);
     if (scan->own == NULL || scan->sums == NULL) {
         edge_scan_destroy(&scan);
         return error_memory(err, grid_points(grid) * sizeof(double), "contact areas");
@@ -132,22 +131,21 @@ static void scan_row(const struct edge_scan *scan, size_t j, struct part_sums *p
     }
 }
 
-static void scan_part(void *context, size_t part, size_t thread) {
+static void scan_rows(void *context, size_t first, size_t end, size_t thread) {
     (void)thread;
     const struct edge_scan *scan = context;
     struct part_sums sums = {0};
-    size_t rows = part_rows(&scan->grid);
-    for (size_t j = part * rows; j < (part + 1) * rows && j < scan->grid.ny; j++)
+    for (size_t j = first; j < end; j++)
         scan_row(scan, j, &sums);
-    scan->sums[part] = sums;
+    scan->sums[first / part_rows(&scan->grid)] = sums;
 }
 
-static void fill_part(void *context, size_t part, size_t thread) {
+static void fill_rows(void *context, size_t first, size_t end, size_t thread) {
     (void)thread;
     const struct edge_scan *scan = context;
-    size_t size = part_rows(&scan->grid) * scan->grid.nx, first = part * size;
-    size_t end = first + size < grid_points(&scan->grid) ? first + size : grid_points(&scan->grid);
-    edge_fill_rise(scan->state, scan->highest, scan->law->stiffness, first, end, scan->rise);
+    size_t nx = scan->grid.nx;
+    edge_fill_rise(scan->state, scan->highest, scan->law->stiffness, first * nx, end * nx,
+                   scan->rise);
 }
 
 void edge_area_measure(struct edge_scan *scan, const struct contact_state *state,
@@ -159,9 +157,9 @@ void edge_area_measure(struct edge_scan *scan, const struct contact_state *state
     scan->state = state;
     scan->rise = state->scratch != NULL ? state->scratch : scan->own;
     scan->highest = edge_highest_pressure(points, state->p);
-    team_share(scan->team, scan->parts, fill_part, scan);
-    team_share(scan->team, scan->parts, scan_part, scan);
-    for (size_t part = 0; part < scan->parts; part++) {
+    team_share_ranges(scan->team, scan->grid.ny, part_rows(&scan->grid), fill_rows, scan);
+    team_share_ranges(scan->team, scan->grid.ny, part_rows(&scan->grid), scan_rows, scan);
+    for (size_t part = 0; part < part_count(&scan->grid); part++) {
         const struct edge_area *sums = &scan->sums[part].area;
         total.inside += scan->sums[part].inside;
         area->straight += sums->straight;

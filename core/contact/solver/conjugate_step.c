@@ -250,10 +250,10 @@ struct corner {
 };
 enum { CORNER_ROWS = 32 }; /* of a part */
 
-static void copy_part(void *context, size_t part, size_t thread) {
+static void copy_rows(void *context, size_t first, size_t end, size_t thread) {
     (void)thread;
     const struct corner *c = context;
-    for (size_t j = part * CORNER_ROWS; j < (part + 1) * CORNER_ROWS && j < c->ny; j++) {
+    for (size_t j = first; j < end; j++) {
         double *to = c->to + j * c->to_row;
         memcpy(to, c->from + j * c->from_row, c->nx * sizeof *to);
         if (c->to_row > c->nx)
@@ -262,7 +262,7 @@ static void copy_part(void *context, size_t part, size_t thread) {
 }
 
 static void copy_corner(struct team *team, struct corner corner) {
-    team_share(team, corner.ny / CORNER_ROWS + 1, copy_part, &corner);
+    team_share_ranges(team, corner.ny, CORNER_ROWS, copy_rows, &corner);
 }
 
 /* Returns r in the corner of `around`, with zeros about it; where that is the grid itself, r. */

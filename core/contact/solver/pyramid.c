@@ -91,15 +91,13 @@ struct stage {
     const double *from;
     double *to;
     void (*row)(const struct stage *stage, size_t j, double *line);
-    size_t rows, of_part; /* in all, and of a part */
 };
 enum { PART = 1 << 14 }; /* cells of a part, about */
 
-static void stage_part(void *context, size_t part, size_t thread) {
+static void stage_rows(void *context, size_t first, size_t end, size_t thread) {
     const struct stage *stage = context;
     double *line = stage->pyramid->lines + thread * line_size(stage->pyramid->levels[0].nx) + 1;
-    size_t end = (part + 1) * stage->of_part;
-    for (size_t j = part * stage->of_part; j < end && j < stage->rows; j++)
+    for (size_t j = first; j < end; j++)
         stage->row(stage, j, line);
 }
 
@@ -108,9 +106,7 @@ static void share_rows(const struct pyramid *pyramid, size_t l, size_t rows, str
     stage.pyramid = pyramid;
     stage.fine = &pyramid->levels[l - 1];
     stage.coarse = &pyramid->levels[l];
-    stage.rows = rows;
-    stage.of_part = PART / stage.fine->nx + 1;
-    team_share(pyramid->team, rows / stage.of_part + 1, stage_part, &stage);
+    team_share_ranges(pyramid->team, rows, PART / stage.fine->nx + 1, stage_rows, &stage);
 }
 
 /* --- upwards --- */

@@ -40,6 +40,40 @@ static void each_part_is_worked_once(void **state) {
     }
 }
 
+/* Items of a task that is shared by ranges of so many. */
+struct range_tally {
+    atomic_int times[PARTS_MOST];
+    size_t count, size, threads;
+};
+
+static void count_range(void *context, size_t first, size_t end, size_t thread) {
+    struct range_tally *tally = context;
+    assert_true(thread < tally->threads);
+    assert_int_equal(first % tally->size, 0);
+    assert_true(end == tally->count || (end == first + tally->size && end < tally->count));
+    assert_true(end > first && end - first <= tally->size);
+    for (size_t i = first; i < end; i++)
+        atomic_fetch_add(&tally->times[i], 1);
+}
+
+static void ranges_hold_each_item_once(void **state) {
+    static const size_t SIZES[] = {1, 7, 100, 3000}, COUNTS[] = {0, 1, 7, 99, 700, PARTS_MOST};
+    (void)state;
+    struct team *team;
+    assert_int_equal(team_create(&team, 3, NULL), 0);
+    for (size_t s = 0; s < sizeof SIZES / sizeof *SIZES; s++)
+        for (size_t c = 0; c < sizeof COUNTS / sizeof *COUNTS; c++) {
+            struct range_tally tally = {
+                .count = COUNTS[c], .size = SIZES[s], .threads = team_threads(team)};
+            team_share_ranges(c % 2 == 0 ? team : NULL, COUNTS[c], SIZES[s], count_range, &tally);
+            for (size_t i = 0; i < PARTS_MOST; i++)
+                assert_int_equal(atomic_load(&tally.times[i]), i < COUNTS[c] ? 1 : 0);
+            size_t parts = team_parts(COUNTS[c], SIZES[s]);
+            assert_true(parts * SIZES[s] >= COUNTS[c] && parts * SIZES[s] < COUNTS[c] + SIZES[s]);
+        }
+    team_destroy(&team);
+}
+
 /* What a face leaves under its last load. */
 struct left {
     size_t n;
@@ -145,6 +179,7 @@ static void contact_has_the_same_digits(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_part_is_worked_once),
+        cmocka_unit_test(ranges_hold_each_item_once),
         cmocka_unit_test(contact_has_the_same_digits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
