@@ -138,6 +138,8 @@ static const double FACTORED_ITERATIONS = 20, SURFACE_FACTORED = 20000;
 static const double PROFILE_NEWTON_NS = 250, SURFACE_NEWTON_NS = 1100;
 static const double PROFILE_LINEAR_NS = 36, SURFACE_LINEAR_NS = 80, PRESSURE_NS = 50;
 static const double PROFILE_FACTORED_NS = 5000, SURFACE_FACTORED_NS = 7e4;
+/* Arrays take so many times their bytes, with what heaps keep between them. */
+static const double MEMORY_ROOM = 1.03;
 /* Bytes a degree of freedom of a factorisation. */
 static const double PROFILE_FACTOR_BYTES = 900, SURFACE_FACTOR_BYTES = 6500;
 /* Number of transforms of a point that take the time of an iteration of Newton's method on a degree
@@ -176,7 +178,7 @@ double cost_full_contact(const struct grid *grid, const struct full_size *size, 
 
 double cost_full_bytes(const struct grid *grid, const struct block *block,
                        const struct full_options *options, const struct full_size *size) {
-    double bytes = full_bytes(grid, block, options, 2 * size->linear);
+    double bytes = MEMORY_ROOM * full_bytes(grid, block, options, 2 * size->linear);
     if (size->factored)
         bytes += (grid_is_profile(grid) ? PROFILE_FACTOR_BYTES : SURFACE_FACTOR_BYTES) *
                  size->degrees_of_freedom;

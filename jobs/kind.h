@@ -121,6 +121,10 @@ struct target_component {
     const struct job_merger *merger; /* which holds both (merger.h) */
 };
 
+/* Bytes of the program, its libraries and tables that do not grow with a grid, which every estimate
+ * of memory has. */
+#define PROCESS_BYTES 2.4e7
+
 struct job_kind {
     struct study_kind study;          /* what readers of studies must know; check: kind_check */
     const char *(*scalar)(size_t at); /* name of a scalar of a realisation; NULL behind the last */

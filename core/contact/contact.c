@@ -55,13 +55,16 @@ struct contact {
     double *last; /* without tangent: the solver's p at the load before; NULL with it */
 };
 
-double contact_bytes(const struct grid *grid, const struct block *block) {
-    const double weighted = compliance_has_weight(block) ? 2 * (double)grid_points(grid) : 0;
-    return sizeof(double) * weighted + conjugate_gradient_bytes(grid, block);
+static bool has_tangent(const struct contact_options *options, const struct block *block) {
+    return !options->without_tangent || block->model == MODEL_LAYERED;
 }
 
-double contact_hardness_bytes(const struct grid *grid) {
-    return flattening_bytes(grid);
+double contact_bytes(const struct grid *grid, const struct block *block,
+                     const struct contact_options *options) {
+    double arrays = (compliance_has_weight(block) ? 2 : 0) + (has_tangent(options, block) ? 0 : 1);
+    return sizeof(double) * arrays * (double)grid_points(grid) +
+           conjugate_gradient_bytes(grid, block) +
+           (isfinite(options->hardness) ? flattening_bytes(grid) : 0);
 }
 
 static int options_check(const struct contact_options *options, struct error *err) {
@@ -83,7 +86,7 @@ int contact_create(struct contact **out, const struct compliance *compliance,
         return error_memory(err, sizeof *c, "a contact");
     c->compliance = compliance;
     c->options = *options;
-    c->tangent = !options->without_tangent || compliance->block.model == MODEL_LAYERED;
+    c->tangent = has_tangent(options, &compliance->block);
     c->flattening.hardness = INFINITY;
     int status = conjugate_gradient_create(&c->solver, compliance, err);
     size_t n = c->solver.n;

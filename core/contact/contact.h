@@ -74,11 +74,10 @@ struct contact;
 int contact_create(struct contact **out, const struct compliance *compliance,
                    const struct contact_options *options, struct error *err);
 void contact_destroy(struct contact **contact);
-/* Returns the bytes of a solver with its tangent, but for its compliance: of a periodic grid; in
- * free space free_space_bytes are added. */
-double contact_bytes(const struct grid *grid, const struct block *block);
-/* Returns the bytes that a finite hardness adds. */
-double contact_hardness_bytes(const struct grid *grid);
+/* Returns the bytes of a solver, but for its compliance: of a periodic grid; in free space
+ * free_space_bytes are added. */
+double contact_bytes(const struct grid *grid, const struct block *block,
+                     const struct contact_options *options);
 /* Sets stop, which is called every few iterations. When it returns non-zero, contact_press fails
  * with ERROR_STOPPED, as it fails where it does not converge. NULL, the initial value, never
  * stops. */

@@ -68,8 +68,10 @@ int mesh_error_set_team(struct mesh_error_workspace *workspace, struct team *tea
 
 double mesh_error_bytes(const struct grid *grid, const struct block *block) {
     double waves = ((double)grid->nx / 2 + 1) * (double)grid->ny;
-    return block->model == MODEL_LAYERED ? 8.0 * (waves + (double)grid_points(grid)) + 16.0 * waves
-                                         : 0;
+    if (block->model != MODEL_LAYERED)
+        return 0;
+    return sizeof(double) * (waves + (double)grid_points(grid)) +
+           transform_bytes(grid, grid->nx / 2);
 }
 
 void mesh_error_measure(struct mesh_error_workspace *workspace, const struct contact_state *state,

@@ -10,7 +10,8 @@ struct pressures;
 /* Borrows the workspace, which must outlive it. */
 int pressures_create(struct pressures **out, const struct area_workspace *areas, struct error *err);
 void pressures_destroy(struct pressures **pressures);
-double pressures_bytes(const struct grid *grid);
+/* Of faces with waves of up to these numbers. */
+double pressures_bytes(const struct grid *grid, size_t mode_x, size_t mode_y);
 
 /* Fills shares[bins->count + 2] of a state on the workspace's grid: fractions of the cell where
  * p/unit lies in each of the bins, which begin at 0 or above; the first is underflow, the last

@@ -153,7 +153,7 @@ double full_bytes(const struct grid *grid, const struct block *block,
     double bytes =
         sizeof(double) * (VECTORS * unknowns + FACES * (double)mesh->face + (double)mesh->nodes) +
         tangent_bytes(mesh, pressures) + gmres_bytes(mesh, &material, iterations) +
-        contact_bytes(grid, block) + compliance_bytes(grid, block);
+        contact_bytes(grid, block, &CONTACT_DEFAULTS) + compliance_bytes(grid, block);
     mesh_destroy(&mesh);
     return bytes;
 }

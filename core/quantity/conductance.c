@@ -39,7 +39,7 @@ void conductance_destroy(struct conductance **conductance) {
 }
 
 double conductance_bytes(const struct grid *grid, bool open) {
-    return contact_bytes(grid, &HALFSPACE) + compliance_bytes(grid, &HALFSPACE) +
+    return contact_bytes(grid, &HALFSPACE, &CONTACT_DEFAULTS) + compliance_bytes(grid, &HALFSPACE) +
            (open ? free_space_bytes(grid) : 0);
 }
 

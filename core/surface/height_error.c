@@ -92,8 +92,7 @@ void height_error_destroy(struct height_error **height_error) {
 }
 
 double height_error_bytes(const struct grid *grid) {
-    size_t columns = grid->nx / 2 + 1;
-    return sizeof(double complex) * (double)columns * (double)grid->ny +
+    return transform_bytes(grid, grid->nx / 2) +
            2.0 * sizeof(uint32_t) * (double)bins_for(grid_points(grid));
 }
 

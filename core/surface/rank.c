@@ -60,7 +60,7 @@ static size_t cells_for(size_t n) {
 
 size_t ranker_bytes(size_t n) {
     size_t cells = cells_for(n);
-    return sizeof(struct ranker) + n * (sizeof(double) + sizeof(uint16_t) + 2 * sizeof(uint32_t)) +
+    return sizeof(struct ranker) + n * (sizeof(double) + sizeof(uint16_t)) +
            cells * (3 * sizeof(uint32_t) + sizeof(uint16_t)) +
            KEYS_FAST * (sizeof(double) + (2 + FINE_A_KEY) * sizeof(uint32_t));
 }

@@ -10,6 +10,7 @@ struct ranker;
 /* Makes a workspace for n values; rank.c states its memory. */
 int ranker_create(struct ranker **out, size_t n, struct error *err);
 void ranker_destroy(struct ranker **ranker);
+/* Returns the bytes that are used where few keys are alike. */
 size_t ranker_bytes(size_t n);
 
 /* ordered[i] = sorted[rank of key[i]], equal keys ranked in order of index (as a stable sort).

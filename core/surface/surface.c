@@ -118,14 +118,18 @@ const struct modes *generator_drawn(const struct generator *generator) {
     return generator->drawn != NULL ? generator->drawn : generator->modes;
 }
 
+/* Of the tables of a law of translation, which do not grow with the grid. */
+static const double TRANSLATION_BYTES = 6e6;
+
 double generator_bytes(const struct grid *grid, size_t mode_x, size_t mode_y,
                        const struct surface_options *options) {
     double points = (double)grid->nx * (double)grid->ny;
     double band = (double)(mode_x + 1) * (double)(2 * mode_y + 1);
-    double columns = (double)(mode_x + 1) * (double)grid->ny;
-    double bytes = sizeof(double) * (points + 2 * band) + sizeof(double complex) * columns;
+    double bytes = sizeof(double) * (points + 2 * band) + transform_bytes(grid, mode_x);
     if (options->amplitudes == AMPLITUDES_RANDOM)
         bytes += sizeof(double) * band;
+    if (options->heights.type != HEIGHTS_GAUSSIAN && options->law == LAW_TRANSLATION)
+        bytes += TRANSLATION_BYTES;
     if (!surface_is_iterated(options))
         return bytes;
     return bytes + nongaussian_bytes(grid, mode_x, mode_y, options);

@@ -43,10 +43,18 @@ static size_t least(size_t a, size_t b) {
     return a < b ? a : b;
 }
 
+/* Returns the rows of a desk. */
+static size_t group_of(size_t ny) {
+    return ny < ROWS ? ny : GROUP;
+}
+
 static size_t desk_bytes(const struct transform *t) {
     return (t->group * t->half + t->ny) * sizeof(double complex) +
            t->group * t->nx * sizeof(double);
 }
+
+/* Of tables and buffers of FFTW, for a point of the sides, where these have small factors. */
+static const double PLAN_BYTES = 8;
 
 /* FFTW aborts the process where it runs out of memory in a plan. Its tables, and its buffers
  * as it transforms, took up to 193 bytes a point of the sides (a prime of 10^6) and 1 MB. */
@@ -107,6 +115,13 @@ static bool plans_create(struct transform *t) {
         fftw_plan_many_dft_r2c(1, &nx, batch, t->desks->lines, NULL, 1, nx, t->desks->rows, NULL, 1,
                                half, FFTW_ESTIMATE | FFTW_DESTROY_INPUT);
     return t->row_inverse != NULL && t->row_forward != NULL;
+}
+
+double transform_bytes(const struct grid *grid, size_t mode_x) {
+    const double nx = (double)grid->nx, ny = (double)grid->ny, group = (double)group_of(grid->ny);
+    double desk = group * ((nx / 2 + 1) * sizeof(double complex) + nx * sizeof(double)) +
+                  ny * sizeof(double complex);
+    return (double)(mode_x + 1) * ny * sizeof(double complex) + desk + PLAN_BYTES * (nx + ny);
 }
 
 static bool desk_create(const struct transform *t, struct desk *out) {
@@ -170,7 +185,7 @@ int transform_create(struct transform **out, const struct grid *grid, size_t mod
                             .mode_y = mode_y,
                             .half = grid->nx / 2 + 1,
                             .batch = alone ? 1 : least(grid->ny, ROWS),
-                            .group = grid->ny < ROWS ? grid->ny : GROUP,
+                            .group = group_of(grid->ny),
                             .threads = 1,
                             .desks = desks};
     if (!parts_create(t)) {

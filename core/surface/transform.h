@@ -25,6 +25,8 @@ size_t transform_fast_count(size_t n);
 int transform_create(struct transform **out, const struct grid *grid, size_t mode_x, size_t mode_y,
                      struct error *err);
 void transform_destroy(struct transform **transform);
+/* Returns the bytes of a plan without a team. */
+double transform_bytes(const struct grid *grid, size_t mode_x);
 /* Lets a team work along, in all but strips, with the same digits; it is borrowed until the plan is
  * destroyed or has another one. NULL: the caller alone. ERROR_MEMORY. */
 int transform_set_team(struct transform *transform, struct team *team, struct error *err);

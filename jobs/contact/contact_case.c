@@ -64,6 +64,15 @@ size_t contact_case_complete(const struct contact_case *one_case) {
     return complete;
 }
 
+struct contact_options contact_case_options(const struct contact_case *one_case) {
+    struct contact_options options = CONTACT_DEFAULTS;
+    options.tolerance = one_case->tolerance;
+    if (one_case->hardness > 0)
+        options.hardness = one_case->yield;
+    options.without_tangent = !one_case->tangent;
+    return options;
+}
+
 double contact_case_least_seconds(const struct contact_case *one_case) {
     const struct surface_case *surface = &one_case->surface;
     double seconds =

@@ -4,6 +4,7 @@
 #ifndef RUGO_JOBS_CONTACT_CONTACT_CASE_H
 #define RUGO_JOBS_CONTACT_CONTACT_CASE_H
 
+#include "core/contact/contact.h"
 #include "core/full/material.h"
 #include "core/statistics/heights/histogram.h"
 #include "jobs/contact/companion/companion_plan.h"
@@ -60,6 +61,7 @@ struct contact_case {
     double *loads;                 /* owned: p/(E* h'), rising, > 0 */
     bool nodes, edges, perimeter;  /* estimators shown */
     bool stiffness;                /* is shown */
+    bool tangent;                  /* solutions need it: for the stiffness, or a quantity */
     struct quantities_asked asked; /* beside these (quantity/quantity.h) */
     bool asperities;               /* theories by counted summits are wanted */
     double hardness;               /* over E* h', above all loads; 0: the contact is elastic */
@@ -120,6 +122,8 @@ int contact_case_scale(const struct contact_case *one_case, double *rms_height, 
 /* Returns whether the areas of a model are reported as they are under load. */
 bool contact_case_stretches(const struct contact_case *one_case, size_t model);
 
+/* Returns how the case has linear models solved. */
+struct contact_options contact_case_options(const struct contact_case *one_case);
 /* Returns the least CPU seconds of a realisation, without its companions. A choice that changes
  * values must not depend on whether memory suffices for a better estimate. */
 double contact_case_least_seconds(const struct contact_case *one_case);

@@ -258,9 +258,6 @@ int contact_scene_solve(struct contact_scene *scene, const struct contact_surfac
 
 /* --- the cost of a case, estimated before anything ran --- */
 
-/* Bytes of the program, its libraries and tables that do not grow with the grid. */
-static const double PROCESS_BYTES = 2.1e7;
-
 /* Curves of a model and level: areas by four or five estimators, and eight other quantities. */
 enum { LEVEL_CURVES = 13 };
 
@@ -283,9 +280,10 @@ static double plain_bytes(const struct contact_case *one_case) {
         const struct grid *grid = &one_case->levels[l].grid;
         bytes += patch_finder_bytes(grid);
         for (size_t m = 0; m < one_case->model_count; m++) {
-            bytes += contact_tally_counts(one_case, l) ? pressures_bytes(grid) : 0;
             const struct quantity_scene quantities = quantity_scene_of(one_case, m, l);
             bytes += contact_quantities_bytes(&quantities);
+            if (contact_tally_counts(one_case, l))
+                bytes += pressures_bytes(grid, one_case->band.x, one_case->band.y);
             bytes += area_workspace_bytes(grid, &one_case->blocks[m]) +
                      one_case->models[m]->bytes(one_case, m, grid) +
                      compliance_bytes(grid, &one_case->blocks[m]);

@@ -143,6 +143,7 @@ static void fill_case(struct map_press *press, const struct press_block *asked) 
                                             .edges = true,
                                             .perimeter = true,
                                             .stiffness = true,
+                                            .tangent = true,
                                             .tolerance = tolerance_of(asked)};
     if (asked->hardness > 0) {
         press->one_case.yield = asked->hardness;

@@ -93,7 +93,7 @@ void statistics_case_estimate(const struct statistics_case *one_case, struct stu
                         (wanted ? (double)grid_points(grid) * sizeof(double) : 0) +
                         statistics_tally_bytes(one_case) + statistics_levels_bytes(one_case) +
                         like_patch_bytes(&one_case->like) + 6 * summits * sizeof(struct summit) +
-                        spectra_bytes(one_case) + 6e6;
+                        spectra_bytes(one_case) + PROCESS_BYTES;
     out->seconds = expected_seconds(one_case);
     out->case_seconds = expected_case_seconds(one_case, summits);
     /* sum of the bins' errors over their sum: integral sqrt(p) / sqrt(N w), p near normal */

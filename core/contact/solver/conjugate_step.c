@@ -23,10 +23,10 @@ double conjugate_gradient_bytes(const struct grid *grid, const struct block *blo
     double waves = ((double)grid->nx / 2 + 1) * (double)grid->ny;
     double pyramid = grid_is_profile(grid) ? 0 : pyramid_bytes(grid);
     double results = pass_board_bytes(padded(grid_points(grid)));
-    double symbols = compliance_has_weight(block) ? 2 : 1; /* and a spectrum */
+    double symbols = compliance_has_weight(block) ? 2 : 1;
     return sizeof(double) *
-               ((ARRAYS - SPARES) * (double)padded(grid_points(grid)) + (2 + symbols) * waves) +
-           pyramid + results;
+               ((ARRAYS - SPARES) * (double)padded(grid_points(grid)) + symbols * waves) +
+           transform_bytes(grid, grid->nx / 2) + pyramid + results;
 }
 
 static int arrays_create(struct conjugate_gradient *solver, struct error *err) {

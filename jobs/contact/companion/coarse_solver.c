@@ -52,11 +52,9 @@ static struct quantity_scene quantity_scene_of(const struct contact_case *one_ca
 
 static int solver_fill(struct coarse_solver *solver, double height, struct error *err) {
     const struct block block = block_of(solver->one_case, height);
-    struct contact_options options = CONTACT_DEFAULTS;
-    options.tolerance = solver->one_case->tolerance;
-    if (solver->one_case->hardness > 0)
+    struct contact_options options = contact_case_options(solver->one_case);
+    if (isfinite(options.hardness)) /* of a surface with a slope of its own */
         options.hardness = solver->one_case->hardness * solver->rms_slope;
-    options.without_tangent = !contact_case_needs_tangent(solver->one_case);
     int status = compliance_create(&solver->compliance, &solver->grid, &block, err);
     if (status == 0)
         status = contact_create(&solver->contact, solver->compliance, &options, err);
@@ -138,9 +136,9 @@ int coarse_solver_press(struct coarse_solver *solver, const double *z, double *s
 double coarse_solver_bytes(const struct contact_case *one_case, const struct grid *grid) {
     const struct block block = {.model = MODEL_HALFSPACE, .height = INFINITY};
     const struct quantity_scene scene = quantity_scene_of(one_case, grid, 1);
-    return contact_quantities_bytes(&scene) +
-           (one_case->hardness > 0 ? contact_hardness_bytes(grid) : 0) + patch_finder_bytes(grid) +
-           contact_bytes(grid, &block) + area_workspace_bytes(grid, &block) +
+    const struct contact_options options = contact_case_options(one_case);
+    return contact_quantities_bytes(&scene) + patch_finder_bytes(grid) +
+           contact_bytes(grid, &block, &options) + area_workspace_bytes(grid, &block) +
            compliance_bytes(grid, &block);
 }
 

@@ -83,7 +83,6 @@ static double cell_seconds(const struct contact_case *one_case, const struct com
 
 static double cell_bytes(const struct contact_case *one_case, const struct companion_plan *plan) {
     const struct grid *grid = &plan->level.grid;
-    (void)one_case;
     return surface_case_bytes(&plan->surface) + 8 * (double)grid_points(grid) +
            coarse_solver_bytes(one_case, grid);
 }

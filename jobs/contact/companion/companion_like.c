@@ -36,7 +36,6 @@ static bool like_plan(const struct contact_case *one_case, struct companion_plan
 }
 
 static double like_bytes(const struct contact_case *one_case, const struct companion_plan *plan) {
-    (void)one_case;
     return coarse_solver_bytes(one_case, &plan->level.grid) +
            16.0 * (double)grid_points(&plan->level.grid);
 }

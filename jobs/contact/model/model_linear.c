@@ -1,7 +1,6 @@
 #include "jobs/contact/model/model_linear.h"
 #include "core/contact/stretch.h"
 #include "core/cost.h"
-#include "jobs/contact/quantity/quantity.h"
 #include <stdlib.h>
 
 struct contact_solver {
@@ -18,20 +17,16 @@ double linear_seconds(const struct contact_case *one_case, size_t model, const s
 }
 
 double linear_bytes(const struct contact_case *one_case, size_t model, const struct grid *grid) {
-    return contact_bytes(grid, &one_case->blocks[model]) +
-           (one_case->hardness > 0 ? contact_hardness_bytes(grid) : 0);
+    const struct contact_options options = contact_case_options(one_case);
+    return contact_bytes(grid, &one_case->blocks[model], &options);
 }
 
 int linear_create(struct contact_solver **out, const struct contact_case *one_case, size_t model,
                   const struct compliance *compliance, struct error *err) {
-    struct contact_options options = CONTACT_DEFAULTS;
+    const struct contact_options options = contact_case_options(one_case);
     struct contact_solver *solver = array_create(1, sizeof *solver);
     if (solver == NULL)
         return error_memory(err, sizeof *solver, "a contact solver");
-    options.tolerance = one_case->tolerance;
-    if (one_case->hardness > 0)
-        options.hardness = one_case->yield;
-    options.without_tangent = !contact_case_needs_tangent(one_case);
     solver->poisson = one_case->blocks[model].poisson;
     solver->coated = block_is_coated(&one_case->blocks[model]);
     int status = contact_create(&solver->contact, compliance, &options, err);

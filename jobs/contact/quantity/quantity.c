@@ -25,11 +25,13 @@ static void ask(struct contact_case *one_case, size_t q) {
     for (size_t before = 0; before <= q; before++)
         behind += COUNTS[before];
     one_case->asked.of[q] = true;
+    one_case->tangent = one_case->tangent || QUANTITIES[q]->tangent;
     if (one_case->asked.measures < behind)
         one_case->asked.measures = behind;
 }
 
 void contact_quantities_read(struct contact_case *one_case, struct values *values) {
+    one_case->tangent = one_case->stiffness;
     for (size_t q = 0; q < CONTACT_QUANTITIES; q++)
         if (QUANTITIES[q]->read(one_case, values))
             ask(one_case, q);
@@ -39,13 +41,6 @@ void contact_quantities_ask(struct contact_case *one_case, size_t measure) {
     size_t first, q = quantity_of(measure - MEASURE_QUANTITIES, &first);
     if (q < CONTACT_QUANTITIES)
         ask(one_case, q);
-}
-
-bool contact_case_needs_tangent(const struct contact_case *one_case) {
-    bool need = one_case->stiffness;
-    for (size_t q = 0; q < CONTACT_QUANTITIES; q++)
-        need = need || (one_case->asked.of[q] && QUANTITIES[q]->tangent);
-    return need;
 }
 
 const struct measure *quantity_measure(size_t number) {

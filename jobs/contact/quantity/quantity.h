@@ -91,12 +91,11 @@ CONTACT_QUANTITY_LIST(CONTACT_QUANTITY_DECLARE)
 #define CONTACT_QUANTITY_TABLE(name, count) &name##_PARAMETERS,
 #define CONTACT_QUANTITY_TABLES CONTACT_QUANTITY_LIST(CONTACT_QUANTITY_TABLE)
 
-/* Fills which quantities the study asks for, with their faults. */
+/* Fills which quantities the study asks for, with their faults, and whether solutions need their
+ * tangent. */
 void contact_quantities_read(struct contact_case *one_case, struct values *values);
 /* Asks for the quantity with this measure, in a case that no study describes. */
 void contact_quantities_ask(struct contact_case *one_case, size_t measure);
-/* Returns whether solutions need their tangent: for the stiffness, or for a quantity. */
-bool contact_case_needs_tangent(const struct contact_case *one_case);
 /* Returns the row of a measure by its number from MEASURE_QUANTITIES on; NULL: no quantity has it.
  */
 const struct measure *quantity_measure(size_t number);

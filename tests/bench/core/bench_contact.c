@@ -149,7 +149,8 @@ static int surfaces(enum block_model model, bool open, struct error *err) {
                "%.4f  %6.0f MB  (prepared in %.0f ms)\n",
                n, result.ms, 1e-3 * WIDE_COUNT * result.ms, result.iterations, result.violation,
                area[1], area[3], area[6],
-               1e-6 * (contact_bytes(&grid, &block) + (open ? free_space_bytes(&grid) : 0)),
+               1e-6 * (contact_bytes(&grid, &block, &CONTACT_DEFAULTS) +
+                       (open ? free_space_bytes(&grid) : 0)),
                preparation);
     }
     return 0;
