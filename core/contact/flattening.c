@@ -63,7 +63,7 @@ void flattening_turn(struct flattening *f, struct conjugate_gradient *solver, do
 
 bool flattening_limit(const struct flattening *f, struct conjugate_gradient *solver, double mean) {
     const double load = mean * (double)solver->n;
-    double sum = load;
+    double sum;
     size_t held = 0, last;
     /* Pressures below the hardness are scaled until they bear what the others do not; each time
      * more reach it. */

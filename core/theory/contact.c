@@ -16,6 +16,7 @@ double persson_pressure_pdf(double x, double load) {
 /* Up to this hardness the waves between the two ends are summed, above it the mirror images of the
  * load; either takes few terms there. */
 static const double HARDNESS_OF_WAVES = 1;
+enum { WAVES_MOST = 10 }; /* up to that hardness; exp(-100 pi^2/8) is 1e-54 */
 
 /* Returns the term n of the sums over waves without its factor: V/H^2 = 1/(4 H^2). */
 static double persson_wave(double n, double load, double hardness) {
@@ -27,7 +28,7 @@ static double persson_wave(double n, double load, double hardness) {
  * are mirrored at both ends, 2 H apart. */
 static double persson_images(double first, double hardness) {
     double share = 0, last = 1;
-    for (double n = 0; last > 0; n++) {
+    for (int n = 0; last > 0; n++) {
         last = erfc(M_SQRT2 * (2 * n * hardness + first));
         share += last - erfc(M_SQRT2 * (2 * (n + 1) * hardness - first));
     }
@@ -40,8 +41,8 @@ double persson_plastic_area(double load, double hardness) {
     if (hardness > HARDNESS_OF_WAVES)
         return isinf(hardness) ? 0 : persson_images(hardness - load, hardness);
     double share = load / hardness;
-    for (double n = 1; n <= 4 + 6 * hardness; n++)
-        share += (fmod(n, 2) > 0 ? -1 : 1) * persson_wave(n, load, hardness);
+    for (int n = 1; n <= WAVES_MOST; n++)
+        share += (n % 2 == 1 ? -1 : 1) * persson_wave(n, load, hardness);
     return fmax(0, share);
 }
 
@@ -54,7 +55,7 @@ double persson_elastic_area(double load, double hardness) {
         return fmax(0,
                     1 - persson_images(load, hardness) - persson_images(hardness - load, hardness));
     double share = 0;
-    for (double n = 1; n <= 4 + 6 * hardness; n += 2)
+    for (int n = 1; n <= WAVES_MOST; n += 2)
         share += 2 * persson_wave(n, load, hardness);
     return fmax(0, share);
 }

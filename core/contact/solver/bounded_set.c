@@ -12,6 +12,16 @@ static const double ROUNDING = 1e-12;
 enum { STAY, OPENED, YIELDED, JOINED, PRESSURE };
 enum { PENETRATION, DEEPEST, LIFTED }; /* as in struct conjugate_gradient_end */
 
+static inline double larger(double a, double b) {
+    return a > b ? a : b;
+}
+
+/* Returns p, at its bound where it is beyond one. */
+static inline double within(double p, double hardness, double opens, double yields) {
+    double below = yields > 0 ? hardness : p;
+    return opens > 0 ? 0 : below;
+}
+
 /* Makes r != 0 the next set of elastic nodes, and sets p to 0 below it and to the hardness above.
  */
 WIDE_VECTORS static void follow(size_t n, double hardness, const double *u, const double *z,
@@ -30,10 +40,10 @@ WIDE_VECTORS static void follow(size_t n, double hardness, const double *u, cons
             yielded[a] += yields;
             joined[a] += joins + lifts;
             members[a] += member;
-            through[a] = below > through[a] ? below : through[a];
-            lifted[a] = above > lifted[a] ? above : lifted[a];
-            deep[a] = depth > deep[a] ? depth : deep[a];
-            p[i + a] = opens > 0 ? 0 : yields > 0 ? hardness : p[i + a];
+            through[a] = larger(below, through[a]);
+            lifted[a] = larger(above, lifted[a]);
+            deep[a] = larger(depth, deep[a]);
+            p[i + a] = within(p[i + a], hardness, opens, yields);
             sum[a] += p[i + a];
             r[i + a] = member;
         }
@@ -170,10 +180,25 @@ static double fill_end(const struct pass_result *next, double tolerance, double 
     return violation;
 }
 
+struct progress {
+    double least, best; /* changes of the set, violations */
+};
+
+/* Returns whether a set was better than those before. */
+static bool improve(struct progress *progress, double changed, double violation, bool bounded) {
+    bool better = changed < progress->least || violation < 0.5 * progress->best;
+    if (bounded) {
+        progress->least = fmin(changed, progress->least);
+        progress->best = fmin(violation, progress->best);
+    } else if (better)
+        *progress = (struct progress){changed, violation};
+    return better;
+}
+
 void bounded_set_run(struct conjugate_gradient *solver, double mean, double tolerance,
                      size_t max_iterations, struct conjugate_gradient_end *end) {
     const double rounding = CONJUGATE_ROUNDING * conjugate_step_highest(solver);
-    double least = INFINITY, best = INFINITY; /* changes of the set, violations */
+    struct progress progress = {INFINITY, INFINITY};
     double members = count_members(solver);
     double changed = INFINITY;
     size_t asked = end->iterations;
@@ -199,12 +224,7 @@ void bounded_set_run(struct conjugate_gradient *solver, double mean, double tole
             end->stopped = solver->stop != NULL && solver->stop(solver->stop_context) != 0;
         }
         changed = cuts + next.sum[JOINED];
-        bool better = changed < least || violation < 0.5 * best;
-        stalled = better ? 0 : stalled + 1;
-        if (better || end->bounded) {
-            least = end->bounded ? fmin(changed, least) : changed;
-            best = end->bounded ? fmin(violation, best) : violation;
-        }
+        stalled = improve(&progress, changed, violation, end->bounded) ? 0 : stalled + 1;
         if (cuts > 0) {
             balance(solver, mean, next.sum[PRESSURE], end);
             members = count_members(solver);

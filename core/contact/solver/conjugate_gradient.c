@@ -52,6 +52,10 @@ static double approach_of(const struct conjugate_gradient *solver) {
     return isnan(approach) ? bounded_approach(solver) : approach;
 }
 
+static inline double larger(double a, double b) {
+    return a > b ? a : b;
+}
+
 /* r is the gap in the set {0 < p < hardness, or where released gap < 0 with no pressure or > 0 with
  * the hardness}, where it is never exactly 0, and 0 outside, so that r != 0 marks the set. Returns
  * the size of the set. end->approach is an input; all lengths of end are filled. */
@@ -68,10 +72,10 @@ WIDE_VECTORS static double residual(size_t n, double hardness, const double *p, 
             double within = in * fabs(gap), depth = fabs(u[i + a]);
             double through = gap < 0 ? (in + held - 1) * gap : 0, above = gap > 0 ? held * gap : 0;
             double member = in + (through + above) * released > 0 ? 1 : 0;
-            lifted[a] = above > lifted[a] ? above : lifted[a];
-            inside[a] = within > inside[a] ? within : inside[a];
-            outside[a] = through > outside[a] ? through : outside[a];
-            deep[a] = depth > deep[a] ? depth : deep[a];
+            lifted[a] = larger(above, lifted[a]);
+            inside[a] = larger(within, inside[a]);
+            outside[a] = larger(through, outside[a]);
+            deep[a] = larger(depth, deep[a]);
             members[a] += member;
             r[i + a] = member * (gap == 0 ? DBL_MIN : gap);
         }
