@@ -111,7 +111,10 @@ static void readers_and_rows_agree(void **state) {
                                           "jobs/contact/contact_case_read.c",
                                           "jobs/statistics/statistics_case.c",
                                           "jobs/target.c",
-                                          "jobs/like/like_case.c"};
+                                          "jobs/like/like_case.c",
+                                          "jobs/contact/quantity/quantity_conductance.c",
+                                          "jobs/contact/quantity/quantity_hardness.c",
+                                          "jobs/contact/quantity/quantity_leak.c"};
     const char *source = getenv("RUGO_SOURCE");
     if (source == NULL) { /* it is set by tests/run-tests */
         print_message("SKIP: RUGO_SOURCE does not say where the tree is\n");

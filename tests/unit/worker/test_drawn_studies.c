@@ -11,7 +11,7 @@
 #include "tests/support/seed.h"
 #include <string.h>
 
-enum { BYTES = 256, DRAWN = 4000, KINDS_MOST = 4, ROWS_MOST = 200, CASES_MOST = 20 };
+enum { BYTES = 256, DRAWN = 8000, KINDS_MOST = 4, ROWS_MOST = 200, CASES_MOST = 20 };
 
 /* How often a row was in a study that was taken, and in one that was not. */
 static size_t counts[KINDS_MOST][ROWS_MOST][2];
