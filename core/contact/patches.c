@@ -1,4 +1,5 @@
 #include "core/contact/patches.h"
+#include "core/contact/link_tree.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -41,19 +42,8 @@ double patch_finder_bytes(const struct grid *grid) {
     return sizeof(ptrdiff_t) * (double)grid_points(grid);
 }
 
-static size_t root_of(ptrdiff_t *link, size_t i) {
-    while (link[i] >= 0) {
-        ptrdiff_t next = link[link[i]];
-        if (next < 0)
-            return (size_t)link[i];
-        link[i] = next;
-        i = (size_t)next;
-    }
-    return i;
-}
-
 static void join(ptrdiff_t *link, size_t i, size_t j) {
-    size_t a = root_of(link, i), b = root_of(link, j);
+    size_t a = link_tree_root(link, i), b = link_tree_root(link, j);
     if (a == b)
         return;
     size_t root = a < b ? a : b, other = a < b ? b : a;

@@ -16,6 +16,7 @@
 /* Values at the loads of the case, in a result's arena. Fractions above 1, which light-load
  * theories reach, are NaN. */
 struct theories {
+    double coating; /* coated_theory_factor */
     size_t count[THEORIES_KINDS];
     struct theory of[THEORIES_KINDS][THEORIES_MOST];
 };
@@ -130,9 +131,8 @@ static void put_plastic(struct theory_list *list, double factor) {
 }
 
 /* Theories of asperities are those of one material. */
-static void put_rough(struct theory_list *list, const struct modes *modes,
-                      const struct moments *moments) {
-    double factor = coated_theory_factor(list->one_case, modes);
+static void put_rough(struct theory_list *list, const struct moments *moments) {
+    double factor = list->out->coating;
     put_area(list, "persson", persson_at, factor);
     if (list->one_case->hardness > 0)
         put_plastic(list, factor);
@@ -153,7 +153,7 @@ static void put_rough(struct theory_list *list, const struct modes *modes,
 static int theories_make(struct theories *out, const struct contact_case *one_case,
                          const struct modes *modes, const struct moments *moments,
                          struct case_result *result, struct error *err) {
-    *out = (struct theories){0};
+    *out = (struct theories){.coating = coated_theory_factor(one_case, modes)};
     struct theory_list list = {one_case, out,
                                result_numbers(result, THEORIES_MOST * one_case->load_count)};
     if (list.values == NULL)
@@ -164,23 +164,8 @@ static int theories_make(struct theories *out, const struct contact_case *one_ca
         put_wave(&list);
     if (is_one_wave(one_case, modes))
         return 0;
-    put_rough(&list, modes, moments);
+    put_rough(&list, moments);
     return coated ? 0 : put_summits(&list, modes, moments, err);
-}
-
-/* Computes the mean density of the pressures in each bin; false without a theory. */
-static bool theory_pressures(const struct contact_case *one_case, const struct modes *modes,
-                             double load, double *pdf) {
-    if (is_one_wave(one_case, modes))
-        return false;
-    /* Of pressures times the factor, as the load is. */
-    double factor = coated_theory_factor(one_case, modes);
-    const struct bins *bins = &one_case->pressure;
-    const struct bins scaled = {factor * bins->low, factor * bins->high, bins->count};
-    bin_averages_persson(factor * load, &scaled, pdf);
-    for (size_t b = 0; b < bins->count; b++)
-        pdf[b] *= factor;
-    return true;
 }
 
 /* --- curves --- */
@@ -195,6 +180,21 @@ struct contact_curve_maker {
     struct contact_error *errors; /* scratch: one for each load, as the next */
     struct estimate *differences;
 };
+
+/* Computes the mean density of the pressures in each bin; false without a theory. */
+static bool theory_pressures(const struct contact_curve_maker *maker, double load, double *pdf) {
+    const struct contact_case *one_case = maker->one_case;
+    if (is_one_wave(one_case, maker->modes))
+        return false;
+    /* Of pressures times the factor, as the load is. */
+    double factor = maker->theories.coating;
+    const struct bins *bins = &one_case->pressure;
+    const struct bins scaled = {factor * bins->low, factor * bins->high, bins->count};
+    bin_averages_persson(factor * load, &scaled, pdf);
+    for (size_t b = 0; b < bins->count; b++)
+        pdf[b] *= factor;
+    return true;
+}
 
 static int no_room(struct error *err) {
     return error_set(err, ERROR_MEMORY, "no memory left for curves");
@@ -446,7 +446,7 @@ static int append_pressures(struct contact_curve_maker *maker, size_t model, siz
                                                          .standard_error = of_model + 2 * n,
                                                          .order = NAN};
     curve_set_points(&curve, n, x, y, standard_error);
-    if (theory_pressures(one_case, maker->modes, load, pdf))
+    if (theory_pressures(maker, load, pdf))
         curve.theories[curve.theory_count++] = (struct theory){"persson", pdf};
     if (one_case->models[model]->may_fail)
         curve.valueless = valueless;

@@ -6,14 +6,6 @@
 #include <math.h>
 #include <stdio.h>
 
-/* A stiffness beyond this, in units of E* h'/sqrt(m0), is that of full contact but for rounding.
- * Its square must fit into exact sums, as must that of a fit's factor. */
-static const double VALUE_MOST = 1e6;
-
-static double limited(double value) {
-    return fabs(value) < VALUE_MOST ? value : (double)NAN;
-}
-
 /* Areas as they are under load need a surface with a scale, and a strain of the face that is that
  * of one material (F22.6). */
 static bool has_stretched(const struct contact_case *one_case) {
@@ -68,7 +60,7 @@ static const struct measure NO_MEASURE = {.shown = never_shown, .kept = never_ke
     ROW(GAP, true, true, area.mean_gap / context->rms_height,                                      \
         "mean_gap", "", "mean gap/sqrt(m0)", GAP, 2, SMOOTH, GAP, STAYS, SAME, ALL, HEIGHT)        \
     ROW(STIFFNESS, one_case->stiffness, true,                                                      \
-        limited(state->stiffness * context->rms_height / context->rms_slope),                      \
+        measure_stiffness(context, state->stiffness),                      \
         "stiffness", "", "K sqrt(m0)/(E* h'_rms)", NONE,                                           \
         2, COUNTED, GAP, FALLS, SAME, REPORTED, STIFFNESS)                                         \
     ROW(PATCHES, true, false, (double)patches.count,                                               \
@@ -200,9 +192,10 @@ void contact_measure_fits(size_t n, const double *loads, const double *edges, do
             slope = NAN;
         else if (edges[k] < 1)
             slope = fit_erf_near(k + 1, loads, edges, slope);
-        kappa[k] = edges[k] > 0 ? limited(products / squares) : (double)NAN;
-        power_law_a[k] = k > 0 ? limited(exp((logs.y - power * logs.x) / logs.n)) : (double)NAN;
-        power_law_b[k] = k > 0 ? limited(power) : (double)NAN;
-        erf_kappa[k] = limited(slope);
+        kappa[k] = edges[k] > 0 ? measure_limited(products / squares) : (double)NAN;
+        power_law_a[k] =
+            k > 0 ? measure_limited(exp((logs.y - power * logs.x) / logs.n)) : (double)NAN;
+        power_law_b[k] = k > 0 ? measure_limited(power) : (double)NAN;
+        erf_kappa[k] = measure_limited(slope);
     }
 }

@@ -7,6 +7,7 @@
 #include "jobs/contact/measure.h"
 #include "jobs/contact/model/model.h"
 #include "schema/result/result.h"
+#include <math.h>
 
 struct contact_quantities;
 
@@ -21,6 +22,16 @@ struct measure_context {
     bool scaled;                           /* the surface has a scale */
     bool free_space; /* the grid is a map in free space, no cell of fixed sides */
 };
+/* Returns a value that fits into exact sums, as its square must, too; else NaN. A stiffness so
+ * large is that of full contact but for rounding. */
+static inline double measure_limited(double value) {
+    static const double VALUE_MOST = 1e6;
+    return fabs(value) < VALUE_MOST ? value : (double)NAN;
+}
+/* Returns a stiffness over E* h'/sqrt(m0), from one over E* per length. */
+static inline double measure_stiffness(const struct measure_context *context, double stiffness) {
+    return measure_limited(stiffness * context->rms_height / context->rms_slope);
+}
 /* Fills all measures but the fits; NaN for those of quantities that are not asked for. Errors are
  * those of a quantity. */
 int contact_measure(const struct measure_context *context, const struct contact_pressed *pressed,

@@ -281,7 +281,8 @@ void coarsening_make(const struct level *fine, struct level *coarse) {
 
 /* --- between the grids --- */
 
-void coarsening_restrict(const struct level *fine, struct level *coarse) {
+/* all: from all nodes of the fine grid, else from the corners and middles of coarse cells alone. */
+static inline void restrict_from(const struct level *fine, struct level *coarse, bool all) {
     const struct interpolation *to = &coarse->to;
     const double *from = fine->residual;
     for (size_t J = 0; J < coarse->rows; J++) {
@@ -292,50 +293,18 @@ void coarsening_restrict(const struct level *fine, struct level *coarse) {
         const double *below = from + level_below(fine, 2 * J) - 1;
         for (size_t I = 0; I < coarse->nx; I++) {
             size_t K = row + I, U = under + I, i = 2 * I + 1;
-            coarse->r[K] = a[i] + to->x_a[K] * a[i + 1] + to->x_b[K - 1] * a[i - 1] +
-                           to->y_a[K] * b[i] + to->y_c[U] * below[i] + to->z_a[K] * b[i + 1] +
-                           to->z_b[K - 1] * b[i - 1] + to->z_c[U] * below[i + 1] +
-                           to->z_d[U - 1] * below[i - 1];
-        }
-    }
-}
-
-void coarsening_prolong(const struct level *coarse, struct level *fine) {
-    const struct interpolation *to = &coarse->to;
-    for (size_t J = 0; J < coarse->rows; J++) {
-        size_t row = level_row(coarse, J);
-        size_t up = level_row(coarse, J + 1 < coarse->rows ? J + 1 : 0);
-        double *a = fine->u + level_row(fine, 2 * J), *b = a + fine->stride;
-        for (size_t I = 0; I < coarse->nx; I++) {
-            size_t K = row + I, i = 2 * I;
-            const double *low = coarse->u + K, *high = coarse->u + up + I;
-            a[i] += low[0];
-            a[i + 1] += to->x_a[K] * low[0] + to->x_b[K] * low[1];
-            b[i] += to->y_a[K] * low[0] + to->y_c[K] * high[0];
-            b[i + 1] += to->z_a[K] * low[0] + to->z_b[K] * low[1] + to->z_c[K] * high[0] +
-                        to->z_d[K] * high[1];
-        }
-    }
-}
-
-void coarsening_restrict_finest(const struct level *fine, struct level *coarse) {
-    const struct interpolation *to = &coarse->to;
-    const double *from = fine->residual;
-    for (size_t J = 0; J < coarse->rows; J++) {
-        size_t row = level_row(coarse, J);
-        size_t under = level_row(coarse, J > 0 ? J - 1 : coarse->rows - 1);
-        /* from the column before the first */
-        const double *a = from + level_row(fine, 2 * J) - 1, *b = a + fine->stride;
-        const double *below = from + level_below(fine, 2 * J) - 1;
-        for (size_t I = 0; I < coarse->nx; I++) {
-            size_t K = row + I, U = under + I, i = 2 * I + 1;
-            coarse->r[K] = a[i] + to->z_a[K] * b[i + 1] + to->z_b[K - 1] * b[i - 1] +
+            double r = a[i];
+            if (all)
+                r = r + to->x_a[K] * a[i + 1] + to->x_b[K - 1] * a[i - 1] + to->y_a[K] * b[i] +
+                    to->y_c[U] * below[i];
+            coarse->r[K] = r + to->z_a[K] * b[i + 1] + to->z_b[K - 1] * b[i - 1] +
                            to->z_c[U] * below[i + 1] + to->z_d[U - 1] * below[i - 1];
         }
     }
 }
 
-void coarsening_prolong_finest(const struct level *coarse, struct level *fine) {
+/* all: to all nodes of the fine grid, else as above. */
+static inline void prolong_to(const struct level *coarse, struct level *fine, bool all) {
     const struct interpolation *to = &coarse->to;
     for (size_t J = 0; J < coarse->rows; J++) {
         size_t row = level_row(coarse, J);
@@ -345,8 +314,28 @@ void coarsening_prolong_finest(const struct level *coarse, struct level *fine) {
             size_t K = row + I, i = 2 * I;
             const double *low = coarse->u + K, *high = coarse->u + up + I;
             a[i] += low[0];
+            if (all) {
+                a[i + 1] += to->x_a[K] * low[0] + to->x_b[K] * low[1];
+                b[i] += to->y_a[K] * low[0] + to->y_c[K] * high[0];
+            }
             b[i + 1] += to->z_a[K] * low[0] + to->z_b[K] * low[1] + to->z_c[K] * high[0] +
                         to->z_d[K] * high[1];
         }
     }
+}
+
+void coarsening_restrict(const struct level *fine, struct level *coarse) {
+    restrict_from(fine, coarse, true);
+}
+
+void coarsening_prolong(const struct level *coarse, struct level *fine) {
+    prolong_to(coarse, fine, true);
+}
+
+void coarsening_restrict_finest(const struct level *fine, struct level *coarse) {
+    restrict_from(fine, coarse, false);
+}
+
+void coarsening_prolong_finest(const struct level *coarse, struct level *fine) {
+    prolong_to(coarse, fine, false);
 }

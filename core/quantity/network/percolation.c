@@ -1,22 +1,12 @@
 #include "core/quantity/network/percolation.h"
+#include "core/contact/link_tree.h"
 
 /* Nodes are joined in a tree whose root stands for it (Tarjan 1975, paths halved). A root has a
  * negative link: minus 1, and minus the ends that its nodes reach. */
 enum { ROOT = 1, FIRST = 2, LAST = 4, BOTH = ROOT + FIRST + LAST };
 
-static size_t root_of(ptrdiff_t *link, size_t a) {
-    while (link[a] >= 0) {
-        ptrdiff_t next = link[link[a]];
-        if (next < 0)
-            return (size_t)link[a];
-        link[a] = next;
-        a = (size_t)next;
-    }
-    return a;
-}
-
 static void join(ptrdiff_t *link, size_t a, size_t b) {
-    size_t m = root_of(link, a), n = root_of(link, b);
+    size_t m = link_tree_root(link, a), n = link_tree_root(link, b);
     if (m == n)
         return;
     size_t root = m < n ? m : n, other = m < n ? n : m;
@@ -51,7 +41,7 @@ bool percolation_keep(size_t nx, size_t ny, size_t stride, double *k, ptrdiff_t 
     for (size_t j = 0; j < ny; j++)
         for (size_t i = 0; i < nx; i++) {
             double *node = k + j * stride + i;
-            bool through = *node > 0 && link[root_of(link, j * nx + i)] == -BOTH;
+            bool through = *node > 0 && link[link_tree_root(link, j * nx + i)] == -BOTH;
             any = any || through;
             *node = through ? *node : 0;
         }

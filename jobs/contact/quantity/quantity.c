@@ -53,15 +53,18 @@ bool quantity_is_asked(const struct contact_case *one_case, size_t number) {
     return q < CONTACT_QUANTITIES && one_case->asked.of[q];
 }
 
+/* Returns whether a quantity is asked for and has a state. */
+static bool has_state(const struct quantity_scene *scene, size_t q) {
+    return scene->one_case->asked.of[q] && QUANTITIES[q]->create != NULL;
+}
+
 int contact_quantities_create(struct contact_quantities *out, const struct quantity_scene *scene,
                               struct error *err) {
     int status = 0;
-    *out = (struct contact_quantities){0};
-    for (size_t q = 0; q < CONTACT_QUANTITIES && status == 0; q++) {
-        out->asked[q] = scene->one_case->asked.of[q];
-        if (out->asked[q] && QUANTITIES[q]->create != NULL)
+    *out = (struct contact_quantities){.one_case = scene->one_case};
+    for (size_t q = 0; q < CONTACT_QUANTITIES && status == 0; q++)
+        if (has_state(scene, q))
             status = QUANTITIES[q]->create(&out->of[q], scene, err);
-    }
     if (status != 0)
         contact_quantities_clear(out);
     return status;
@@ -73,22 +76,17 @@ void contact_quantities_clear(struct contact_quantities *quantities) {
             QUANTITIES[q]->destroy(&quantities->of[q]);
 }
 
-/* Returns whether a quantity is asked for and has a state. */
-static bool is_heavy(const struct quantity_scene *scene, size_t q) {
-    return scene->one_case->asked.of[q] && QUANTITIES[q]->create != NULL;
-}
-
 double contact_quantities_bytes(const struct quantity_scene *scene) {
     double bytes = 0;
     for (size_t q = 0; q < CONTACT_QUANTITIES; q++)
-        bytes += is_heavy(scene, q) ? QUANTITIES[q]->bytes(scene) : 0;
+        bytes += has_state(scene, q) ? QUANTITIES[q]->bytes(scene) : 0;
     return bytes;
 }
 
 double contact_quantities_seconds(const struct quantity_scene *scene) {
     double seconds = 0;
     for (size_t q = 0; q < CONTACT_QUANTITIES; q++)
-        seconds += is_heavy(scene, q) ? QUANTITIES[q]->seconds(scene) : 0;
+        seconds += has_state(scene, q) ? QUANTITIES[q]->seconds(scene) : 0;
     return seconds;
 }
 
@@ -96,12 +94,13 @@ int contact_quantities_measure(const struct contact_quantities *quantities,
                                const struct measure_context *context,
                                const struct contact_pressed *pressed,
                                const struct contact_area *area, double *values, struct error *err) {
+    const struct contact_case *one_case = quantities != NULL ? quantities->one_case : NULL;
     size_t first = 0;
     int status = 0;
     for (size_t a = 0; a < QUANTITY_MEASURES_MOST; a++)
         values[a] = (double)NAN;
     for (size_t q = 0; q < CONTACT_QUANTITIES && status == 0; first += COUNTS[q++])
-        if (quantities != NULL && quantities->asked[q])
+        if (one_case != NULL && one_case->asked.of[q])
             status = QUANTITIES[q]->measure(quantities->of[q], context, pressed, area,
                                             values + first, err);
     return status;

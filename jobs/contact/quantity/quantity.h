@@ -104,7 +104,7 @@ bool quantity_is_asked(const struct contact_case *one_case, size_t number);
 
 /* The states of all quantities that a case asks for, of one grid and one thread. */
 struct contact_quantities {
-    bool asked[CONTACT_QUANTITIES_MOST];
+    const struct contact_case *one_case;                /* borrowed; NULL: nothing is asked for */
     struct quantity_state *of[CONTACT_QUANTITIES_MOST]; /* owned; NULL: nothing is kept */
 };
 int contact_quantities_create(struct contact_quantities *out, const struct quantity_scene *scene,

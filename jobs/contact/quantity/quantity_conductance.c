@@ -105,15 +105,13 @@ static int create(struct quantity_state **out, const struct quantity_scene *scen
 static int measure(struct quantity_state *state, const struct measure_context *context,
                    const struct contact_pressed *pressed, const struct contact_area *area,
                    double *values, struct error *err) {
-    static const double VALUE_MOST = 1e6;
     const struct contact_state *contact = &pressed->state;
     double own = isnan(contact->unload_stiffness) ? contact->stiffness : contact->unload_stiffness;
     double stiffness =
         state->conductance == NULL ? own : conductance_measure(state->conductance, contact->p);
-    double value = stiffness * context->rms_height / context->rms_slope;
     (void)err;
     (void)area;
-    *values = fabs(value) < VALUE_MOST ? value : (double)NAN;
+    *values = measure_stiffness(context, stiffness);
     return 0;
 }
 

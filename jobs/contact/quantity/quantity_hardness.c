@@ -44,16 +44,14 @@ static bool asked(struct contact_case *one_case, struct values *values) {
 static int measure(struct quantity_state *state, const struct measure_context *context,
                    const struct contact_pressed *pressed, const struct contact_area *area,
                    double *values, struct error *err) {
-    static const double VALUE_MOST = 1e6;
     const struct contact_state *contact = &pressed->state;
-    double stiffness = contact->unload_stiffness * context->rms_height / context->rms_slope;
     (void)state;
     (void)err;
     values[AREA] = (double)contact->yielded / context->points;
     values[LOAD] = contact->plastic_load;
     values[VOLUME] = contact->plastic_volume / context->rms_height;
     values[EDGES] = area->edges_yielded;
-    values[UNLOAD_STIFFNESS] = fabs(stiffness) < VALUE_MOST ? stiffness : (double)NAN;
+    values[UNLOAD_STIFFNESS] = measure_stiffness(context, contact->unload_stiffness);
     return 0;
 }
 

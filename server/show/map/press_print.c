@@ -43,6 +43,11 @@ static bool has_column(const struct press_report *report, const struct press_col
     return column->value >= MEASURE_COUNT || measure_is_of(&report->press->one_case, column->value);
 }
 
+/* Returns whether its errors stand in tables. */
+static bool is_uncertain(const struct press_report *report, const struct press_column *column) {
+    return column->uncertain && has_column(report, column);
+}
+
 static const struct press_column *column_of(size_t value) {
     size_t c = 0;
     while (PRESS_COLUMNS[c].value != value)
@@ -208,7 +213,7 @@ static void print_errors(FILE *file, const struct part *part, enum error_source 
     struct text_table table = {.columns = 1};
     bool known = source == ERROR_DISCRETISATION;
     for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++) {
-        bool shown = PRESS_COLUMNS[c].uncertain && has_column(part->report, &PRESS_COLUMNS[c]);
+        bool shown = is_uncertain(part->report, &PRESS_COLUMNS[c]);
         table.columns += shown;
         known = known || (shown && error_of(part, &PRESS_COLUMNS[c], source).value != NULL);
     }
@@ -216,12 +221,12 @@ static void print_errors(FILE *file, const struct part *part, enum error_source 
         return;
     table_cell(&table, "%s", column_of(PRESS_LOAD)->heading);
     for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++)
-        if (PRESS_COLUMNS[c].uncertain && has_column(part->report, &PRESS_COLUMNS[c]))
+        if (is_uncertain(part->report, &PRESS_COLUMNS[c]))
             table_cell(&table, "%s", PRESS_COLUMNS[c].heading);
     for (size_t l = 0; l < part->report->loads; l++) {
         table_number(&table, value_of(part, l, column_of(PRESS_LOAD)));
         for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++)
-            if (PRESS_COLUMNS[c].uncertain && has_column(part->report, &PRESS_COLUMNS[c])) {
+            if (is_uncertain(part->report, &PRESS_COLUMNS[c])) {
                 struct curve_error error = error_of(part, &PRESS_COLUMNS[c], source);
                 put_error(&table, &error, l);
             }
@@ -281,7 +286,7 @@ static bool add_bounds(cJSON *document, const struct part *part, double *column)
     for (size_t c = 0; c < PRESS_COLUMN_COUNT && complete; c++) {
         struct curve_error error = error_of(part, &PRESS_COLUMNS[c], ERROR_DISCRETISATION);
         char key[40];
-        if (!PRESS_COLUMNS[c].uncertain || !has_column(part->report, &PRESS_COLUMNS[c]))
+        if (!is_uncertain(part->report, &PRESS_COLUMNS[c]))
             continue;
         snprintf(key, sizeof key, "%s_error", PRESS_COLUMNS[c].key);
         for (size_t l = 0; l < part->report->loads; l++)
