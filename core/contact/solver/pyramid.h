@@ -1,5 +1,5 @@
 /* Continuation of values in a set of nodes of a surface over the whole periodic grid, by a pyramid
- * of ever coarser grids: a linear map E, and its transpose. Private to core/contact/solver.
+ * of ever coarser grids: a linear map E, and its transpose. Private to core/contact.
  *
  * Upwards, a cell of a level has the mean of what is known in its children, with the weight min(1,
  * FALL times the sum of their weights). Downwards, what is not known is interpolated from the level
