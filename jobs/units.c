@@ -27,12 +27,18 @@ struct unit_row {
 #define HEIGHT {{"rms_height", 1}}
 #define HEIGHT_SQUARED {{"rms_height", 2}}
 #define SLOPE_OVER_HEIGHT {{"rms_slope", 1}, {"rms_height", -1}}
+#define SLOPE_TIMES_HEIGHT {{"rms_slope", 1}, {"rms_height", 1}}
 #define CONDUCTANCE "G (rho1 + rho2) sqrt(m0)/(2 h'_rms)"
 #define CURVATURE {{"m4", 0.5}}
 static const struct unit_row AXES[] = {
     {"p/(E* h'_rms)", 0, NOTHING, "p", "Pa", 1, 0, {{"rms_slope", 1}}, 0},
     {"peak p/(E* h'_rms)", 0, NOTHING, "peak p", "Pa", 1, 0, {{"rms_slope", 1}}, 0},
     {"mean gap/sqrt(m0)", 0, NOTHING, "mean gap", "m", 0, 1, HEIGHT, 0},
+    {"mean gap/sqrt(m0) as the load falls", 0, NOTHING, "mean gap as the load falls", "m", 0, 1, HEIGHT, 0},
+    {"approach left/sqrt(m0)", 0, NOTHING, "approach left", "m", 0, 1, HEIGHT, 0},
+    {"tangential displacement/sqrt(m0)", 0, NOTHING, "tangential displacement", "m", 0, 1, HEIGHT, 0},
+    {"work of a cycle/(E* h'_rms sqrt(m0))", 0, NOTHING, "work of a cycle", "J/m^2", 1, 1, SLOPE_TIMES_HEIGHT, 0},
+    {"Kt sqrt(m0)/(E* h'_rms)", 0, NOTHING, "Kt", "Pa/m", 1, -1, SLOPE_OVER_HEIGHT, 0},
     {"K sqrt(m0)/(E* h'_rms)", 0, NOTHING, "K", "Pa/m", 1, -1, SLOPE_OVER_HEIGHT, 0},
     {CONDUCTANCE, 0, CURRENT, "G", "S/m^2", 0, -1, SLOPE_OVER_HEIGHT, 2},
     {CONDUCTANCE, 0, HEAT, "G", "W/(m^2 K)", 0, -1, SLOPE_OVER_HEIGHT, 2},

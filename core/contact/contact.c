@@ -335,6 +335,7 @@ static void fill_yielded(struct contact *c, double approach, double mean,
     out->plastic_load =
         out->yielded > 0 ? (double)out->yielded * f->hardness / (mean * (double)c->solver.n) : 0;
     out->plastic_volume = f->volume;
+    out->permanent_approach = f->approach;
 }
 
 static void fill_partial(struct contact *c, const struct conjugate_gradient_end *end,
@@ -508,6 +509,7 @@ int contact_press(struct contact *c, double pressure, struct contact_state *out,
     struct contact_state state = {.pressure = pressure,
                                   .unload_stiffness = NAN,
                                   .plastic_volume = c->flattening.volume,
+                                  .permanent_approach = c->flattening.approach,
                                   .depth = c->flattening.depth,
                                   .p = c->pressure,
                                   .gap = c->gap,

@@ -56,13 +56,15 @@ struct contact_state {
     double stiffness; /* d pressure/d approach, E* per length: periodic, without a hardness, -d
                          pressure/d mean_gap. Yielded nodes do not resist. INFINITY in full contact
                          of a periodic face, 0 when nothing touches; NaN without_tangent */
-    double unload_stiffness; /* the same for a falling load, under which all nodes in contact
-                                resist; NaN without a hardness or without_tangent */
-    double plastic_load;     /* share of the load that yielded nodes bear */
-    double plastic_volume;   /* mean depth, the grid's length */
-    size_t yielded;          /* nodes with p = hardness */
-    size_t nodes;            /* in contact (p > 0) */
-    size_t iterations;       /* of the conjugate gradients on this grid, 0 in full contact */
+    double unload_stiffness;   /* the same for a falling load, under which all nodes in contact
+                                  resist; NaN without a hardness or without_tangent */
+    double plastic_load;       /* share of the load that yielded nodes bear */
+    double plastic_volume;     /* mean depth, the grid's length */
+    double permanent_approach; /* by which the face as lowered touches first later than it did, the
+                                  grid's length: what is left of the approach without the load */
+    size_t yielded;            /* nodes with p = hardness */
+    size_t nodes;              /* in contact (p > 0) */
+    size_t iterations;         /* of the conjugate gradients on this grid, 0 in full contact */
     double work;        /* points x transforms over all grids, to which the time is proportional */
     double violation;   /* largest |g| inside or penetration outside, over the RMS height */
     double penetration; /* largest -g outside of the contact, over the RMS height; >= 0 */

@@ -36,7 +36,7 @@ void flattening_clear(struct flattening *f) {
 void flattening_begin(struct flattening *f, const struct conjugate_gradient *solver,
                       double hardness) {
     f->hardness = hardness;
-    f->volume = f->highest = 0;
+    f->volume = f->approach = f->highest = 0;
     f->lowered = false;
     memcpy(f->face, solver->z, solver->padded * sizeof *f->face);
     memset(f->depth, 0, solver->padded * sizeof *f->depth);
@@ -94,15 +94,19 @@ bool flattening_limit(const struct flattening *f, struct conjugate_gradient *sol
 size_t flattening_take(struct flattening *f, const struct conjugate_gradient *solver,
                        double approach, double mean, double unit) {
     struct sum sum = {0};
+    double highest = -INFINITY, left = -INFINITY; /* before and after */
     size_t yielded = 0;
     for (size_t i = 0; i < solver->n; i++) {
         bool held = solver->p[i] >= f->hardness;
         double gap = solver->u[i] - solver->z[i] + approach;
         f->depth[i] = held ? fmax(0, -gap) * unit : 0;
+        highest = fmax(highest, solver->z[i]);
+        left = fmax(left, solver->z[i] - f->depth[i] / unit);
         yielded += held;
         sum_add(&sum, f->depth[i]);
     }
     f->volume = sum_value(&sum) / (double)solver->n;
+    f->approach = (highest - left) * unit;
     f->highest = mean;
     return yielded;
 }

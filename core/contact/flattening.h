@@ -15,6 +15,7 @@ struct flattening {
     double *kept;      /* scratch of padded nodes */
     double *resisting; /* tangent with all nodes in contact held */
     double volume;     /* mean depth; 0 as long as no node has yielded */
+    double approach;   /* highest point of the face less that of the lowered one, likewise */
     double highest;    /* mean pressure of the load that made the depths */
     bool lowered;      /* the solver's heights are those of the lowered face */
 };

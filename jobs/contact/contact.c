@@ -166,12 +166,14 @@ static bool point_values(const void *of, const struct curve *curve, size_t at,
     while (model < one_case->model_count &&
            !same_text(contact_model_name(one_case->models[model]), curve->model))
         model++;
-    if (model == one_case->model_count || at >= one_case->load_count ||
+    if (model == one_case->model_count ||
         !same_number(curve->level, contact_case_finest(one_case)->points) ||
         !measure_of_curve(curve, &measure) ||
+        at >= contact_case_points(one_case, measure_row(measure)->by) ||
         !contact_rows_column(one_case, model, measure, &column))
         return false;
-    *out = (struct point_values){tally->rows.values + column + at, tally->rows.width};
+    column += contact_case_point(one_case, measure_row(measure)->by, at);
+    *out = (struct point_values){tally->rows.values + column, tally->rows.width};
     return true;
 }
 
@@ -309,6 +311,9 @@ static const struct shown_name NAMES[] = {
     {"K sqrt(m0)/(E* h'_rms)", "stiffness", "stiffness K sqrt(m0)/(E* h'_rms)"},
     {"G (rho1 + rho2) sqrt(m0)/(2 h'_rms)", "conductance",
      "conductance G (rho1 + rho2) sqrt(m0)/(2 h'_rms)"},
+    {"Kt sqrt(m0)/(E* h'_rms)", "tangential stiffness",
+     "tangential stiffness Kt sqrt(m0)/(E* h'_rms)"},
+    {"Q/(mu P)", "tangential load", "tangential load Q/(mu P)"},
     {"leak over that of the mean gap", "leak", NULL},
     {"share of directions that are open", "open share", NULL},
     {"percolates", "open directions", NULL},

@@ -66,6 +66,11 @@ struct contact_case {
     bool asperities;               /* theories by counted summits are wanted */
     double hardness;               /* over E* h', above all loads; 0: the contact is elastic */
     double yield;                  /* the same over E* */
+    bool unloads;                  /* the loads fall again, from the highest */
+    double friction;               /* coefficient; 0: nothing slips */
+    size_t slip_load;              /* the load that is held while a tangential one rises */
+    double slip_angle;             /* of the tangential load from x, in radians */
+    bool slip_measured;            /* its stiffness, of each contact: where faces have lay */
     double tolerance;              /* of solutions (contact_tolerance.h) */
     size_t pdf_count;
     size_t *pdf_loads;    /* owned: loads whose pressures are counted, rising */
@@ -93,6 +98,14 @@ static inline size_t contact_case_cell(const struct contact_case *one_case, size
 }
 static inline size_t contact_case_cells(const struct contact_case *one_case) {
     return contact_case_cell(one_case, one_case->model_count, 0, 0);
+}
+/* Return the number of points of a curve, and the load of point i; by slip loads fall. */
+static inline size_t contact_case_points(const struct contact_case *one_case, enum measure_by by) {
+    return by == BY_SLIP ? one_case->slip_load : one_case->load_count;
+}
+static inline size_t contact_case_point(const struct contact_case *one_case, enum measure_by by,
+                                        size_t i) {
+    return by == BY_SLIP ? one_case->slip_load - 1 - i : i;
 }
 /* Returns whether the case has a companion. */
 static inline bool contact_case_has(const struct contact_case *one_case,

@@ -97,7 +97,8 @@ static void check_rising(struct values *values, const char *path, size_t n, cons
     }
 }
 
-static const char LOAD_VALUES[] = "/contact/pressures/values";
+static const char LOAD_VALUES[] = "/contact/pressures/values",
+                  SLIP_PRESSURE[] = "/contact/slip/pressure";
 
 /* Reads the unit of loads. */
 static void read_load_unit(struct asked *asked, struct values *values) {
@@ -117,9 +118,9 @@ static void check_loads(const struct contact_case *one_case, struct values *valu
         }
 }
 
-/* Reads the loads; there are none where they are at fault. */
-static int read_loads(struct contact_case *out, const struct asked *asked, struct values *values,
-                      struct error *err) {
+/* Reads the loads of the study; there are none where they are at fault. */
+static int read_study_loads(struct contact_case *out, const struct asked *asked,
+                            struct values *values, struct error *err) {
     const char *path = LOAD_VALUES;
     double to = values_number(values, "/contact/pressures/to");
     double steps = values_number(values, "/contact/pressures/steps");
@@ -151,6 +152,32 @@ static int read_loads(struct contact_case *out, const struct asked *asked, struc
     out->load_count = count;
     for (size_t k = 0; k < count; k++)
         out->loads[k] = to * (double)(k + 1) / (double)count;
+    return 0;
+}
+
+/* Reads the loads, with those that friction adds. */
+static int read_loads(struct contact_case *out, const struct asked *asked, struct values *values,
+                      struct error *err) {
+    size_t before = values_fault_count(values);
+    int status = read_study_loads(out, asked, values, err);
+    if (status != 0 || !(out->friction > 0) || out->load_count == 0 ||
+        values_fault_count(values) > before)
+        return status;
+    double held = values_number(values, SLIP_PRESSURE);
+    double highest = out->loads[out->load_count - 1];
+    if (isnan(held))
+        held = highest;
+    if (held > highest || (held < highest && out->hardness > 0)) {
+        values_fault(values, SLIP_PRESSURE, "%g, and the highest load is %g; allowed: %s", held,
+                     highest, out->hardness > 0 ? "with a hardness that one" : "none above it");
+        return 0;
+    }
+    size_t room = out->load_count + CONTACT_LOADS_ADDED;
+    double *loads = realloc(out->loads, room * sizeof *loads);
+    if (loads == NULL)
+        return error_memory(err, room * sizeof *loads, "loads");
+    out->loads = loads;
+    out->slip_load = contact_loads_add(loads, &out->load_count, held);
     return 0;
 }
 
@@ -268,6 +295,8 @@ static int read_alone(struct contact_case *out, struct asked *asked, struct valu
     read_estimators(out, values);
     read_asperities(out, values);
     read_block(out, asked, values);
+    double friction = values_number(values, "/contact/friction");
+    out->friction = friction > 0 ? friction : 0;
     contact_quantities_read(out, values);
     read_load_unit(asked, values);
     int status = read_loads(out, asked, values, err);

@@ -236,20 +236,22 @@ static double mean_order(size_t n, const struct contact_error *errors) {
 }
 
 /* Adds the error of one source, `factor` times that of the measure. */
-static int put_errors(struct contact_curve_maker *maker, double factor,
+static int put_errors(struct contact_curve_maker *maker, enum measure_by by, double factor,
                       const struct contact_error *errors, struct curve_error *out,
                       struct error *err) {
-    size_t n = maker->one_case->load_count;
+    const struct contact_case *one_case = maker->one_case;
+    size_t n = contact_case_points(one_case, by);
     double *value = result_numbers(maker->result, 3 * n);
     if (value == NULL)
         return no_room(err);
     double *bound = value + n, *standard_error = bound + n;
-    for (size_t k = 0; k < n; k++) {
-        value[k] = factor * errors[k].value;
-        bound[k] = factor * errors[k].bound;
-        standard_error[k] = factor * errors[k].standard_error;
+    for (size_t i = 0; i < n; i++) {
+        const struct contact_error *at = &errors[contact_case_point(one_case, by, i)];
+        value[i] = factor * at->value;
+        bound[i] = factor * at->bound;
+        standard_error[i] = factor * at->standard_error;
     }
-    double order = mean_order(n, errors);
+    double order = mean_order(one_case->load_count, errors);
     *out = (struct curve_error){.applies = true,
                                 .value = value,
                                 .bound = bound,
@@ -269,7 +271,8 @@ static int add_errors(struct contact_curve_maker *maker, const struct row *row, 
         curve->errors[s].applies =
             contact_error_applies(maker->tally, row->measure, model, level, s);
         if (finest && contact_errors(maker->tally, row->measure, model, s, maker->errors))
-            status = put_errors(maker, row->factor, maker->errors, &curve->errors[s], err);
+            status = put_errors(maker, measure_row(row->measure)->by, row->factor, maker->errors,
+                                &curve->errors[s], err);
     }
     return status;
 }
@@ -277,16 +280,19 @@ static int add_errors(struct contact_curve_maker *maker, const struct row *row, 
 /* Adds the law difference, which is known on the finest level. */
 static int add_law(struct contact_curve_maker *maker, const struct row *row, size_t model,
                    struct curve *curve, struct error *err) {
-    size_t n = maker->one_case->load_count;
+    const struct contact_case *one_case = maker->one_case;
+    enum measure_by by = measure_row(row->measure)->by;
+    size_t n = contact_case_points(one_case, by);
     if (!companion_law_difference(maker->tally, row->measure, model, maker->differences))
         return 0;
     double *difference = result_numbers(maker->result, 2 * n);
     if (difference == NULL)
         return no_room(err);
     double *standard_error = difference + n;
-    for (size_t k = 0; k < n; k++) {
-        difference[k] = row->factor * maker->differences[k].value;
-        standard_error[k] = row->factor * maker->differences[k].standard_error;
+    for (size_t i = 0; i < n; i++) {
+        const struct estimate *at = &maker->differences[contact_case_point(one_case, by, i)];
+        difference[i] = row->factor * at->value;
+        standard_error[i] = row->factor * at->standard_error;
     }
     curve->law_difference = difference;
     curve->law_standard_error = standard_error;
@@ -298,23 +304,28 @@ static int append(struct contact_curve_maker *maker, const struct row *row, size
     const struct contact_case *one_case = maker->one_case;
     const struct theories *theories = &maker->theories;
     const struct measure *of = measure_row(row->measure);
-    struct curve curve =
-        curve_of(one_case, model, level, row->quantity, "p/(E* h'_rms)", row->y_label);
-    size_t n = one_case->load_count;
+    const bool slips = of->by == BY_SLIP;
+    struct curve curve = curve_of(one_case, model, level, row->quantity,
+                                  slips ? "Q/(mu P)" : "p/(E* h'_rms)", row->y_label);
+    size_t n = contact_case_points(one_case, of->by);
     double *x = result_numbers(maker->result, 4 * n), factor = row->factor;
     if (x == NULL)
         return no_room(err);
     double *y = x + n, *standard_error = y + n, *valueless = standard_error + n;
     if (of->cell == CELL_POINT)
         factor *= curve.points;
-    for (size_t k = 0; k < n; k++) {
+    for (size_t i = 0; i < n; i++) {
+        size_t k = contact_case_point(one_case, of->by, i);
         size_t cell = contact_case_cell(one_case, model, level, k);
         struct estimate mean = contact_mean(maker->tally, row->measure, model, level, k);
-        x[k] = one_case->loads[k];
-        y[k] = factor * mean.value;
-        standard_error[k] = factor * mean.standard_error;
-        valueless[k] = (double)contact_tally_valueless(maker->tally, row->measure, cell);
+        x[i] = slips ? 1 - one_case->loads[k] / one_case->loads[one_case->slip_load]
+                     : one_case->loads[k];
+        y[i] = factor * mean.value;
+        standard_error[i] = factor * mean.standard_error;
+        valueless[i] = (double)contact_tally_valueless(maker->tally, row->measure, cell);
     }
+    if (slips)
+        curve.pressure = one_case->loads[one_case->slip_load];
     curve.series = row->series;
     curve_set_points(&curve, n, x, y, standard_error);
     if (of->values == VALUES_REPORTED || one_case->models[model]->may_fail)

@@ -1,6 +1,7 @@
 #include "jobs/contact/contact_loads.h"
 #include "schema/json/field.h"
 #include "schema/json/json.h"
+#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -48,4 +49,36 @@ int contact_loads_fill(const cJSON *document, cJSON *parameters, struct error *e
     if (!cJSON_IsArray(json_at(document, "/contact/pressures/to")))
         cJSON_DeleteItemFromObjectCaseSensitive(pressures, "to");
     return 0;
+}
+
+enum { TENTHS = 10, HALVES = 3 };
+_Static_assert(TENTHS - 1 + HALVES + 1 == CONTACT_LOADS_ADDED, "tenths, halves and the held load");
+/* A load of the study that is so near to one that would be added stands for it: in shares of the
+ * held load, of a half, and rounding errors of a decimal. */
+static const double NEAR = 0.02, NEAR_HALF = 0.3, ROUNDING = 1e-9;
+
+/* Puts a load among rising ones, unless one is within `reach`; returns the position of that one or
+ * its own. */
+static size_t put_load(double *loads, size_t *count, double load, double reach) {
+    size_t at = 0;
+    for (size_t k = 0; k < *count; k++)
+        if (fabs(loads[k] - load) <= reach)
+            return k;
+    while (at < *count && loads[at] < load)
+        at++;
+    memmove(loads + at + 1, loads + at, (*count - at) * sizeof *loads);
+    loads[at] = load;
+    (*count)++;
+    return at;
+}
+
+size_t contact_loads_add(double *loads, size_t *count, double held) {
+    double load = held / TENTHS;
+    for (size_t tenth = 1; tenth < TENTHS; tenth++)
+        put_load(loads, count, contact_load(held, tenth - 1, TENTHS), NEAR * held);
+    for (size_t half = 0; half < HALVES; half++) {
+        load /= 2;
+        put_load(loads, count, load, NEAR_HALF * load);
+    }
+    return put_load(loads, count, held, ROUNDING * held);
 }

@@ -20,4 +20,11 @@ double contact_load(double to, size_t k, size_t count);
  * ERROR_MEMORY. */
 int contact_loads_fill(const cJSON *document, cJSON *parameters, struct error *err);
 
+/* Adds loads below `held`, which is made one of them, where rising ones are so far apart that a
+ * curve of what slips at `held` would show it: by tenths of it, then each half of the last, to an
+ * eightieth. loads: rising, of any unit, with room for so many more. Returns the position of
+ * `held`. */
+enum { CONTACT_LOADS_ADDED = 13 };
+size_t contact_loads_add(double *loads, size_t *count, double held);
+
 #endif

@@ -133,19 +133,23 @@ void contact_scene_destroy(struct contact_scene **scene) {
     *scene = NULL;
 }
 
+static struct measure_context context_of(struct contact_scene *scene, size_t model, size_t level) {
+    return (struct measure_context){.one_case = scene->one_case,
+                                    .area = scene->areas[model][level],
+                                    .finder = scene->finders[level],
+                                    .quantities = &scene->quantities[model][level],
+                                    .points =
+                                        (double)grid_points(&scene->one_case->levels[level].grid),
+                                    .rms_slope = scene->rms_slope,
+                                    .rms_height = scene->rms_height,
+                                    .scaled = contact_case_has_scale(scene->one_case)};
+}
+
 /* Puts the measures of a solved load into a cell. */
 static int measure(struct contact_scene *scene, size_t model, size_t level,
                    const struct contact_pressed *pressed, struct contact_tally *tally, size_t cell,
                    struct error *err) {
-    const struct measure_context context = {
-        .one_case = scene->one_case,
-        .area = scene->areas[model][level],
-        .finder = scene->finders[level],
-        .quantities = &scene->quantities[model][level],
-        .points = (double)grid_points(&scene->one_case->levels[level].grid),
-        .rms_slope = scene->rms_slope,
-        .rms_height = scene->rms_height,
-        .scaled = contact_case_has_scale(scene->one_case)};
+    const struct measure_context context = context_of(scene, model, level);
     double values[MEASURE_OWN];
     int status = contact_measure(&context, pressed, values, err);
     if (status != 0)
@@ -178,6 +182,46 @@ static int count_pressures(struct contact_scene *scene, size_t model, size_t lev
     return 0;
 }
 
+/* Solves one load from the last. */
+static int solve_load(struct contact_scene *scene, size_t m, size_t level, size_t k,
+                      const struct contact_stopper *stopper, struct contact_pressed *out,
+                      struct error *err) {
+    const struct contact_case *one_case = scene->one_case;
+    *out = contact_not_pressed();
+    if (stopper->stop(stopper->context) != 0)
+        return error_set(err, ERROR_STOPPED, "stopped at load %zu of %zu", k, one_case->load_count);
+    int status = one_case->models[m]->press(scene->solvers[m][level],
+                                            one_case->loads[k] * scene->rms_slope, out, err);
+    if (status != 0 && !isnan(out->reached))
+        error_context(err, "load %g, reached %.4g", one_case->loads[k],
+                      out->reached / scene->rms_slope);
+    else if (status != 0)
+        error_context(err, "load %g", one_case->loads[k]);
+    return status;
+}
+
+/* Solves all loads below the highest in falling order, and what is made of all loads together. */
+static int solve_back(struct contact_scene *scene, size_t m, size_t level,
+                      struct contact_tally *tally, const struct contact_stopper *stopper,
+                      struct error *err) {
+    const struct contact_case *one_case = scene->one_case;
+    const struct measure_context context = context_of(scene, m, level);
+    const size_t cells = contact_case_cells(one_case);
+    double *values = contact_tally_values(tally, (enum contact_measure)0) +
+                     contact_case_cell(one_case, m, level, 0);
+    int status = 0;
+    for (size_t k = one_case->load_count - 1; one_case->unloads && k-- > 0 && status == 0;) {
+        struct contact_pressed pressed;
+        status = solve_load(scene, m, level, k, stopper, &pressed, err);
+        if (status == 0)
+            contact_quantities_measure_falling(one_case, &context, &pressed.state, cells,
+                                               values + k);
+    }
+    if (status == 0)
+        contact_quantities_complete(one_case, cells, values);
+    return status;
+}
+
 /* Solves all loads of one model and level in rising order, each from the last. */
 static int solve_loads(struct contact_scene *scene, size_t m, size_t level,
                        struct contact_tally *tally, const struct contact_stopper *stopper,
@@ -190,23 +234,15 @@ static int solve_loads(struct contact_scene *scene, size_t m, size_t level,
     int status = model->begin(solver, scene->z, stopper->stop, stopper->context,
                               finest ? tally->facts[m] : unused, err);
     for (size_t k = 0; k < one_case->load_count && status == 0; k++) {
-        struct contact_pressed pressed = contact_not_pressed();
-        if (stopper->stop(stopper->context) != 0)
-            return error_set(err, ERROR_STOPPED, "stopped at load %zu of %zu", k,
-                             one_case->load_count);
-        status = model->press(solver, one_case->loads[k] * scene->rms_slope, &pressed, err);
+        struct contact_pressed pressed;
+        status = solve_load(scene, m, level, k, stopper, &pressed, err);
         if (status == 0)
             status = measure(scene, m, level, &pressed, tally,
                              contact_case_cell(one_case, m, level, k), err);
-        else if (!isnan(pressed.reached))
-            error_context(err, "load %g, reached %.4g", one_case->loads[k],
-                          pressed.reached / scene->rms_slope);
-        else
-            error_context(err, "load %g", one_case->loads[k]);
         if (status == 0 && contact_tally_counts(one_case, level))
             status = count_pressures(scene, m, level, k, &pressed.state, tally, err);
     }
-    return status;
+    return status != 0 ? status : solve_back(scene, m, level, tally, stopper, err);
 }
 
 /* Adds to an error "model layered, level 6", with the kinematics of a model that has several. */

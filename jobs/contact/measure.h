@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { MODEL_MEASURES_MOST = 5, QUANTITY_MEASURES_MOST = 16 };
+enum { MODEL_MEASURES_MOST = 5, QUANTITY_MEASURES_MOST = 24 };
 enum contact_measure {
     MEASURE_NODES, /* share of the cell, as all areas */
     MEASURE_EDGES,
@@ -56,9 +56,21 @@ enum measure_load { LOAD_STAYS, LOAD_FALLS };
 /* What it is in a cell n times as large: the same; n times it; an nth of it; without a limit in
  * large cells; or the same for each point of the grid, and its curve is for all points. */
 enum measure_cell { CELL_SAME, CELL_GROWS, CELL_SHRINKS, CELL_UNLIMITED, CELL_POINT, CELL_KINDS };
-/* What its value is over: 1, the area of the cell, E* h', the RMS height, or the stiffness
- * E* h'/RMS height. By it a value is taken from one map to another under the same force. */
-enum measure_over { OVER_ONE, OVER_AREA, OVER_PRESSURE, OVER_HEIGHT, OVER_STIFFNESS, OVER_KINDS };
+/* What its value is over: 1, the area of the cell, E* h', the RMS height, the stiffness
+ * E* h'/RMS height, or the work E* h' times the RMS height. By it a value is taken from one map to
+ * another under the same force. */
+enum measure_over {
+    OVER_ONE,
+    OVER_AREA,
+    OVER_PRESSURE,
+    OVER_HEIGHT,
+    OVER_STIFFNESS,
+    OVER_WORK,
+    OVER_KINDS
+};
+/* What its curve runs over: the loads; or the share of full slip at the load that friction is asked
+ * at, from the load below it down (contact_case_point). */
+enum measure_by { BY_LOAD, BY_SLIP };
 /* Which solved realisations have a value: some; all, or a partial result is refused; some, and its
  * curve reports how many have none. */
 enum measure_values { VALUES_SOME, VALUES_ALL, VALUES_REPORTED };
@@ -80,6 +92,7 @@ struct measure {
     enum measure_cell cell;
     enum measure_values values;
     enum measure_over over;
+    enum measure_by by;
 };
 /* Returns the row of a measure; those of the models, and numbers that no quantity takes, have one
  * of zeros, which is not shown. measure: below MEASURE_COUNT. */

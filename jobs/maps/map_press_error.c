@@ -122,7 +122,8 @@ static void convert(const struct sides *sides, struct press_row *row) {
                                         [OVER_AREA] = sides->wider,
                                         [OVER_PRESSURE] = pressure,
                                         [OVER_HEIGHT] = height,
-                                        [OVER_STIFFNESS] = sides->wider * pressure / height};
+                                        [OVER_STIFFNESS] = sides->wider * pressure / height,
+                                        [OVER_WORK] = sides->wider * pressure * height};
     for (size_t v = 0; v < PRESS_VALUES; v++)
         row->value[v] *= factors[press_measure(v)->over];
 }

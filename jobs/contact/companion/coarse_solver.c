@@ -96,6 +96,14 @@ void coarse_solver_destroy(struct coarse_solver **solver) {
     *solver = NULL;
 }
 
+static int press_load(struct coarse_solver *solver, size_t k, const struct contact_stopper *stopper,
+                      struct contact_state *out, struct error *err) {
+    const struct contact_case *one_case = solver->one_case;
+    if (stopper->stop(stopper->context) != 0)
+        return error_set(err, ERROR_STOPPED, "stopped at load %zu of %zu", k, one_case->load_count);
+    return contact_press(solver->contact, one_case->loads[k] * solver->rms_slope, out, err);
+}
+
 /* Without a solution the realisation lacks these values, and nothing else. */
 int coarse_solver_press(struct coarse_solver *solver, const double *z, double *series,
                         const struct contact_stopper *stopper, struct error *err) {
@@ -115,16 +123,21 @@ int coarse_solver_press(struct coarse_solver *solver, const double *z, double *s
     for (size_t k = 0; k < n && status == 0; k++) {
         struct contact_pressed pressed = {.stretch = 1, .open_stretch = 1};
         double values[MEASURE_OWN];
-        if (stopper->stop(stopper->context) != 0)
-            return error_set(err, ERROR_STOPPED, "stopped at load %zu of %zu", k, n);
-        status = contact_press(solver->contact, one_case->loads[k] * solver->rms_slope,
-                               &pressed.state, &reason);
+        status = press_load(solver, k, stopper, &pressed.state, &reason);
         if (status != 0)
             break;
         status = contact_measure(&context, &pressed, values, &reason);
         for (size_t a = 0; a < measure_paired(one_case) && status == 0; a++)
             series[a * n + k] = values[a];
     }
+    for (size_t k = n - 1; one_case->unloads && k-- > 0 && status == 0;) {
+        struct contact_state state;
+        status = press_load(solver, k, stopper, &state, &reason);
+        if (status == 0)
+            contact_quantities_measure_falling(one_case, &context, &state, n, series + k);
+    }
+    if (status == 0)
+        contact_quantities_complete(one_case, n, series);
     for (size_t a = 0; status == ERROR_NUMERIC && a < measure_paired(one_case) * n; a++)
         series[a] = NAN;
     return status == 0 || status == ERROR_NUMERIC

@@ -10,6 +10,7 @@
  */
 #include "core/cost.h"
 #include "jobs/contact/companion/companion.h"
+#include "jobs/contact/contact_loads.h"
 #include "jobs/contact/contact_measure.h"
 #include <gsl/gsl_cdf.h>
 #include <stdlib.h>
@@ -344,7 +345,7 @@ static bool cell_errors(const struct contact_tally *tally, enum contact_measure 
     size_t n = one_case->load_count, finest = one_case->level_count - 1;
     enum companion_name length =
         contact_case_has(one_case, COMPANION_LONGER) ? COMPANION_LONGER : COMPANION_SHORTER;
-    struct change changes[CONTACT_LOADS_MOST];
+    struct change changes[CONTACT_LOADS_MOST + CONTACT_LOADS_ADDED];
     bool any = false;
     if (!contact_case_has(one_case, COMPANION_EQUAL))
         return false;

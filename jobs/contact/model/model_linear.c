@@ -12,7 +12,8 @@ struct contact_solver {
 double linear_seconds(const struct contact_case *one_case, size_t model, const struct grid *grid) {
     (void)model;
     static const double YIELDING = 1.5; /* of the work of an elastic solution, at most */
-    return (one_case->hardness > 0 ? YIELDING : 1) *
+    double paths = one_case->unloads ? 1 + YIELDING : YIELDING;
+    return (one_case->hardness > 0 ? paths : 1) *
            cost_linear_contact(grid, one_case->tolerance, one_case->load_count);
 }
 

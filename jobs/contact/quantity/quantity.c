@@ -105,3 +105,26 @@ int contact_quantities_measure(const struct contact_quantities *quantities,
                                             values + first, err);
     return status;
 }
+
+void contact_quantities_measure_falling(const struct contact_case *one_case,
+                                        const struct measure_context *context,
+                                        const struct contact_state *state, size_t stride,
+                                        double *values) {
+    double own[QUANTITY_MEASURES_MOST];
+    for (size_t q = 0, first = MEASURE_QUANTITIES; q < CONTACT_QUANTITIES; first += COUNTS[q++]) {
+        if (!one_case->asked.of[q] || QUANTITIES[q]->measure_falling == NULL)
+            continue;
+        for (size_t a = 0; a < COUNTS[q]; a++)
+            own[a] = values[(first + a) * stride];
+        QUANTITIES[q]->measure_falling(context, state, own);
+        for (size_t a = 0; a < COUNTS[q]; a++)
+            values[(first + a) * stride] = own[a];
+    }
+}
+
+void contact_quantities_complete(const struct contact_case *one_case, size_t stride,
+                                 double *values) {
+    for (size_t q = 0; q < CONTACT_QUANTITIES; q++)
+        if (one_case->asked.of[q] && QUANTITIES[q]->complete != NULL)
+            QUANTITIES[q]->complete(one_case, stride, values);
+}

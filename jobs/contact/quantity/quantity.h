@@ -12,7 +12,8 @@
 /* All quantities: NAME and how many measures it has. NAME_QUANTITY is its struct, NAME_PARAMETERS
  * its table of parameters. Partial results hold measures in this order, so that an entry comes
  * behind all others. */
-#define CONTACT_QUANTITY_LIST(ENTRY) ENTRY(CONDUCTANCE, 1) ENTRY(LEAK, 7) ENTRY(HARDNESS, 5)
+#define CONTACT_QUANTITY_LIST(ENTRY)                                                               \
+    ENTRY(CONDUCTANCE, 1) ENTRY(LEAK, 7) ENTRY(HARDNESS, 5) ENTRY(UNLOAD, 3) ENTRY(FRICTION, 7)
 
 /* NAME_AT: its position, as in quantities_asked. NAME_MEASURE: the number of its first measure. */
 #define CONTACT_QUANTITY_POSITION(name, count) name##_AT,
@@ -29,14 +30,20 @@ _Static_assert((int)CONTACT_QUANTITY_BEHIND <= (int)MEASURE_PAIRED, "too many me
 struct measure_context; /* contact_measure.h */
 struct contact_area;    /* core/contact/area.h */
 
-/* Measures that others name: columns of tables of one map, and a bound of areas by edges. */
+/* Measures that others name: columns of tables of one map, a bound of areas by edges, and what
+ * slips after yielding. */
 enum {
     LEAK_ALONG_X = LEAK_MEASURE + 4,
     LEAK_ALONG_Y,
     PLASTIC_AREA = HARDNESS_MEASURE,
     PLASTIC_LOAD,
     PLASTIC_VOLUME,
-    EDGES_YIELDED = HARDNESS_MEASURE + 4
+    EDGES_YIELDED = HARDNESS_MEASURE + 4,
+    UNLOAD_AREA = UNLOAD_MEASURE,
+    UNLOAD_GAP,
+    SLIP_WORK = FRICTION_MEASURE + 4,
+    FRICTION_NORMAL,
+    FRICTION_RATIO
 };
 
 /* What a quantity is measured on: one grid under one model. */
@@ -77,6 +84,13 @@ struct contact_quantity {
     int (*measure)(struct quantity_state *state, const struct measure_context *context,
                    const struct contact_pressed *pressed, const struct contact_area *area,
                    double *values, struct error *err);
+    /* Measures a load below the highest, on the path of falling loads, in place of what it had
+     * there on that of rising ones. NULL where that is all the same to it. */
+    void (*measure_falling)(const struct measure_context *context,
+                            const struct contact_state *state, double *values);
+    /* Fills measures that are made of all loads together, of one realisation, model and level:
+     * values[measure * stride + load], of all measures. NULL where there are none. */
+    void (*complete)(const struct contact_case *one_case, size_t stride, double *values);
     /* Fills the scalars of a realisation; NaN: none. NULL where it has none. */
     void (*summarise)(const struct quantity_values *values, double *scalars);
 };
@@ -117,5 +131,14 @@ int contact_quantities_measure(const struct contact_quantities *quantities,
                                const struct measure_context *context,
                                const struct contact_pressed *pressed,
                                const struct contact_area *area, double *values, struct error *err);
+/* Puts the values of a load on the path of falling ones into values[measure * stride], of all
+ * measures. */
+void contact_quantities_measure_falling(const struct contact_case *one_case,
+                                        const struct measure_context *context,
+                                        const struct contact_state *state, size_t stride,
+                                        double *values);
+/* Fills the measures that are made of all loads together: contact_quantity.complete. */
+void contact_quantities_complete(const struct contact_case *one_case, size_t stride,
+                                 double *values);
 
 #endif

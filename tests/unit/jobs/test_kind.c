@@ -113,8 +113,10 @@ static void readers_and_rows_agree(void **state) {
                                           "jobs/target.c",
                                           "jobs/like/like_case.c",
                                           "jobs/contact/quantity/quantity_conductance.c",
+                                          "jobs/contact/quantity/quantity_friction.c",
                                           "jobs/contact/quantity/quantity_hardness.c",
-                                          "jobs/contact/quantity/quantity_leak.c"};
+                                          "jobs/contact/quantity/quantity_leak.c",
+                                          "jobs/contact/quantity/quantity_unload.c"};
     const char *source = getenv("RUGO_SOURCE");
     if (source == NULL) { /* it is set by tests/run-tests */
         print_message("SKIP: RUGO_SOURCE does not say where the tree is\n");

@@ -1,9 +1,11 @@
 /* Protects what studies ask of a solved contact: the conductance is the stiffness of a half-space
  * without end, and of other blocks that of half-spaces through their nodes; what yields bears the
- * hardness; leaks lie between those of both means, and close where free space does. All have the
- * errors of other curves and do not depend on how realisations are cut into blocks. A case that
- * does not ask for them keeps the bytes of its partial results. */
+ * hardness, and stays flat as the load falls; faces slip by the contact of lighter loads; leaks lie
+ * between those of both means, and close where free space does. All have the errors of other curves
+ * and do not depend on how realisations are cut into blocks. A case that does not ask for them
+ * keeps the bytes of its partial results. */
 #include "jobs/contact/contact_case_read.h"
+#include "jobs/contact/contact_loads.h"
 #include "jobs/contact/quantity/quantity.h"
 #include "tests/support/check.h"
 #include "tests/support/contact_document.h"
@@ -168,7 +170,8 @@ static char *in_blocks(const char *study, uint64_t block, size_t *bytes) {
 static void blocks_do_not_matter(void **state) {
     (void)state;
     static const char *const STUDIED[] = {
-        STUDY("\"conductance\": true, \"hardness\": 0.3, \"model\": [\"halfspace\", \"layered\"]"),
+        STUDY("\"conductance\": true, \"hardness\": 0.3, \"model\": [\"halfspace\", \"layered\"], "
+              "\"friction\": 0.3, \"unload\": true"),
         SURFACE("\"conductance\": true, \"leak\": true, \"pressures\": {\"values\": [0.1, 0.3]}")};
     for (size_t s = 0; s < 2; s++) {
         size_t one_block, four_blocks;
@@ -179,6 +182,143 @@ static void blocks_do_not_matter(void **state) {
         free(one);
         free(four);
     }
+}
+
+#define POINTS 16 /* more than any curve here has */
+
+/* Returns the value of a curve at x, which is one of its points. */
+static double value_at(const cJSON *curve, double x) {
+    for (int i = 0; i < cJSON_GetArraySize(json_at(curve, "/x")); i++)
+        if (fabs(at(curve, "/x", i) - x) < 1e-9)
+            return at(curve, "/y", i);
+    fail_msg("no point at %g", x);
+    return (double)NAN;
+}
+
+/* What sticks at Q is what touches under P - Q/mu, and the faces have moved by mu times what that
+ * raises. Each curve has all errors, and loads that the study lacks are those of all curves. */
+static void friction_slips_by_lighter_loads(void **state) {
+    (void)state;
+    static const char *const BOUNDS[] = {"/discretisation_bound", "/solver_bound", "/cell_bound"};
+    const double mu = 0.3, held = 0.1;
+    cJSON *document = solve(STUDY("\"friction\": 0.3"), 1);
+    const cJSON *stick = curve_of(document, "stick_area", "edges", "halfspace");
+    const cJSON *moved = curve_of(document, "tangential_displacement", "", "halfspace");
+    const cJSON *area = curve_of(document, "contact_area", "edges", "halfspace");
+    const cJSON *gap = curve_of(document, "mean_gap", "", "halfspace");
+    int points = cJSON_GetArraySize(json_at(stick, "/x"));
+    assert_true(points >= 12 && points < POINTS);
+    for (int i = 0; i < points; i++) {
+        double share = at(stick, "/x", i), load = held * (1 - share);
+        assert_true(i == 0 ? share <= 0.1 + 1e-9 : share > at(stick, "/x", i - 1));
+        assert_near(at(stick, "/y", i), value_at(area, load) / value_at(area, held), 1e-12, share);
+        assert_near(at(moved, "/y", i), mu * (value_at(gap, load) - value_at(gap, held)), 1e-12,
+                    share);
+        for (size_t b = 0; b < sizeof BOUNDS / sizeof *BOUNDS; b++)
+            assert_true(at(stick, BOUNDS[b], i) > 0 && at(moved, BOUNDS[b], i) > 0);
+    }
+    cJSON_Delete(document);
+}
+
+/* A lighter load may be held. A direction without waves of its own gives by the ratio of stiffness
+ * of isotropic surfaces. */
+static void a_load_is_held(void **state) {
+    (void)state;
+    static const char held[] = "\"friction\": 0.2, \"poisson\": 0.4, \"slip\": {\"pressure\": "
+                               "0.05}, \"pressures\": {\"values\": [0.02, 0.2]}";
+    char study[600];
+    snprintf(study, sizeof study, SURFACE("%s"), held);
+    cJSON *document = solve(study, 1);
+    const cJSON *moved = curve_of(document, "tangential_displacement", "", "halfspace");
+    const cJSON *gap = curve_of(document, "mean_gap", "", "halfspace");
+    const cJSON *tangential = curve_of(document, "tangential_stiffness", "", "halfspace");
+    const cJSON *normal = curve_of(document, "stiffness", "", "halfspace");
+    const double ratio = (1 - 0.4) / (1 - 0.4 / 2);
+    assert_near(json_number_at(moved, "/pressure", NAN), 0.05, 0, 0);
+    assert_near(value_at(moved, 0.6), 0.2 / ratio * (value_at(gap, 0.02) - value_at(gap, 0.05)),
+                1e-12, 0.6);
+    assert_near(value_at(tangential, 0.2), ratio * value_at(normal, 0.2), 1e-12, 0.2);
+    cJSON_Delete(document);
+}
+
+/* Surfaces with lay give less along their long waves (0.76 to 0.9 of the stiffness across the face
+ * at nu = 0.3 and a ratio of 3), as the contact itself does. */
+static void lay_has_a_direction(void **state) {
+    (void)state;
+    double ratio[2];
+    static const char *const DIRECTIONS[] = {"x", "y"};
+    for (size_t d = 0; d < 2; d++) {
+        char study[600];
+        snprintf(study, sizeof study,
+                 "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 4, "
+                 "\"anisotropy\": 3, \"points_per_wavelength\": 4}, \"contact\": {\"friction\": "
+                 "0.2, \"slip\": {\"direction\": \"%s\"}, \"pressures\": {\"values\": [0.1]}}}",
+                 DIRECTIONS[d]);
+        cJSON *document = solve(study, 2);
+        const cJSON *kept = curve_of(document, "stiffness_ratio", "", "halfspace");
+        ratio[d] = value_at(kept, 0.1);
+        assert_near(value_at(curve_of(document, "tangential_stiffness", "", "halfspace"), 0.1),
+                    ratio[d] * value_at(curve_of(document, "stiffness", "", "halfspace"), 0.1),
+                    0.05, 0.1);
+        cJSON_Delete(document);
+    }
+    if (!(ratio[0] > 0.7 && ratio[0] < 0.8 && ratio[1] > 0.84 && ratio[1] < 1))
+        fail_msg("stiffness along x %.4g, along y %.4g of that across", ratio[0], ratio[1]);
+}
+
+/* Of a sphere (F26.4): load^(2/3) is the approach, and the integral of what a cycle takes is known.
+ * The loads that are added leave 2e-3 of it at the last, where all but an eightieth slips. */
+static void a_cycle_takes_the_work_of_a_sphere(void **state) {
+    (void)state;
+    const double mu = 0.25;
+    double loads[1 + CONTACT_LOADS_ADDED] = {1}, values[MEASURE_PAIRED * POINTS];
+    struct contact_case one_case = {.loads = loads,
+                                    .load_count = 1,
+                                    .friction = mu,
+                                    .surface.dimension = 1,
+                                    .blocks = {{.poisson = 0.3}}};
+    one_case.slip_load = contact_loads_add(loads, &one_case.load_count, 1);
+    assert_int_equal(one_case.load_count, CONTACT_LOADS_ADDED);
+    for (size_t a = 0; a < MEASURE_PAIRED * POINTS; a++)
+        values[a] = 1;
+    for (size_t k = 0; k < one_case.load_count; k++) {
+        values[MEASURE_GAP * POINTS + k] = -pow(loads[k], 2. / 3);
+        values[FRICTION_NORMAL * POINTS + k] = 1.5 * cbrt(loads[k]);
+    }
+    FRICTION_QUANTITY.complete(&one_case, POINTS, values);
+    for (size_t k = 0; k < one_case.slip_load; k++) {
+        double moved = mu * (1 - pow(loads[k], 2. / 3)), tangential = mu * (1 - loads[k]);
+        double under = mu * mu * (1 - loads[k] - 0.6 * (1 - pow(loads[k], 5. / 3)));
+        double work = 4 * tangential * moved - 8 * under;
+        check_relative(values[SLIP_WORK * POINTS + k], work, 2e-3);
+    }
+}
+
+/* The load falls on a face that was flattened: more touches, and the gap stays smaller, than as it
+ * rose. What slips then is of that path. */
+static void what_yielded_unloads(void **state) {
+    (void)state;
+    cJSON *document = solve(STUDY("\"hardness\": 0.2, \"unload\": true, \"friction\": 0.2"), 2);
+    const cJSON *area = curve_of(document, "unload_area", "nodes", "halfspace");
+    const cJSON *nodes = curve_of(document, "contact_area", "nodes", "halfspace");
+    const cJSON *gap = curve_of(document, "unload_gap", "", "halfspace");
+    const cJSON *rising = curve_of(document, "mean_gap", "", "halfspace");
+    const cJSON *left = curve_of(document, "permanent_approach", "", "halfspace");
+    int last = cJSON_GetArraySize(json_at(area, "/x")) - 1;
+    for (int k = 0; k <= last; k++) {
+        double more = at(area, "/y", k) - at(nodes, "/y", k);
+        double wider = at(gap, "/y", k) - at(rising, "/y", k);
+        assert_true(k < last ? more > 0 && wider < 0 : fabs(more) < 1e-12 && fabs(wider) < 1e-9);
+        assert_true(at(left, "/y", k) >= (k > 0 ? at(left, "/y", k - 1) : 0));
+        assert_true(k < last || at(left, "/y", k) > 0);
+        assert_true(at(area, "/discretisation_bound", k) > 0);
+    }
+    cJSON_Delete(document);
+    document = solve(STUDY("\"hardness\": 0.2, \"friction\": 0.2"), 1);
+    area = curve_of(document, "unload_area", "nodes", "halfspace");
+    const cJSON *stick = curve_of(document, "stick_area", "nodes", "halfspace");
+    assert_near(value_at(stick, 0.9), value_at(area, 0.01) / value_at(area, 0.1), 1e-12, 0.9);
+    cJSON_Delete(document);
 }
 
 /* What a case without quantities holds is counted by what it has to: sums of 20 measures of the
@@ -235,6 +375,20 @@ static void what_does_not_fit_is_refused(void **state) {
         "\"hardness\": 1, \"pressure_pdf\": {\"at\": [0.1]}",
         "/contact/pressure_pdf/at: many pressures are the hardness, so that they have no density; "
         "plastic_area and plastic_load say how many");
+    refuse("\"unload\": true",
+           "/contact/unload: an elastic block comes back as it went: give /contact/hardness, too");
+    refuse("\"slip\": {\"pressure\": 0.1}",
+           "/contact/slip/pressure: nothing slips unless /contact/friction is given");
+    refuse("\"friction\": 0.1, \"slip\": {\"pressure\": 0.2}",
+           "/contact/slip/pressure: 0.2, and the highest load is 0.1; allowed: none above it");
+    refuse("\"friction\": 0.1, \"hardness\": 1, \"slip\": {\"pressure\": 0.01}",
+           "/contact/slip/pressure: 0.01, and the highest load is 0.1; allowed: with a hardness "
+           "that one");
+    refuse("\"friction\": 0.1, \"model\": [\"halfspace\", \"full\"]",
+           "/contact/friction: the model full has none; leave one of them out");
+    refuse("\"friction\": 0.1, \"coating\": {\"thickness\": 1, \"modulus\": 2}",
+           "/contact/friction: how a coating gives tangentially is not known from its contact; "
+           "leave one of them out");
     refuse("\"conductance\": true, \"resistivity\": [1, 2, 3]",
            "/contact/resistivity: [1,2,3] is not an array of 1 to 2 numbers");
 }
@@ -245,6 +399,11 @@ int main(void) {
         cmocka_unit_test(low_blocks_conduct_as_half_spaces),
         cmocka_unit_test(stiffness_may_be_omitted),
         cmocka_unit_test(what_yields_bears_the_hardness),
+        cmocka_unit_test(friction_slips_by_lighter_loads),
+        cmocka_unit_test(a_load_is_held),
+        cmocka_unit_test(lay_has_a_direction),
+        cmocka_unit_test(a_cycle_takes_the_work_of_a_sphere),
+        cmocka_unit_test(what_yielded_unloads),
         cmocka_unit_test(gaps_leak_until_they_close),
         cmocka_unit_test(blocks_do_not_matter),
         cmocka_unit_test(what_is_not_asked_for_takes_no_room),
