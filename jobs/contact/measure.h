@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { MODEL_MEASURES_MOST = 5, QUANTITY_MEASURES_MOST = 24 };
+enum { MODEL_MEASURES_MOST = 5, QUANTITY_MEASURES_MOST = 32 };
 enum contact_measure {
     MEASURE_NODES, /* share of the cell, as all areas */
     MEASURE_EDGES,

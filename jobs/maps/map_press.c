@@ -5,6 +5,7 @@
 #include "jobs/contact/model/model_linear.h"
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #define OWN(value) [PRESS_##value - PRESS_LOAD]
 static const struct measure OWN_MEASURES[PRESS_VALUES - PRESS_LOAD] = {
@@ -51,6 +52,8 @@ const struct press_column PRESS_COLUMNS[PRESS_COLUMN_COUNT] = {
     {"approach/rms", "approach", PRESS_APPROACH, false, true},
     {"gap/rms", "mean_gap", MEASURE_GAP, false, true},
     {"stiffness", "stiffness", MEASURE_STIFFNESS, false, false},
+    {"tangential", "tangential_stiffness", FRICTION_MEASURE, false, false},
+    {"left/rms", "permanent_approach", UNLOAD_APPROACH, false, true},
     {"conductance", "conductance", CONDUCTANCE_MEASURE, false, true},
     {"leak x", "leak_x", LEAK_ALONG_X, false, true},
     {"leak y", "leak_y", LEAK_ALONG_Y, false, true},
@@ -125,31 +128,43 @@ static double tolerance_of(const struct press_block *asked) {
 static void fill_case(struct map_press *press, const struct press_block *asked) {
     const struct contact_model *model = asked->model;
     double lengths = asked->lengths > 0 ? asked->lengths : model->default_height;
-    press->one_case = (struct contact_case){.surface = {.spectrum = {.scale = SCALE_RMS_SLOPE}},
-                                            .model_count = 1,
-                                            .models = {model},
-                                            .blocks = {{.model = model->block,
-                                                        .poisson = asked->poisson,
-                                                        .height = lengths * press->grid.lx,
-                                                        .layer_growth = 1.1,
-                                                        .weighting = GAP_STANDARD,
-                                                        .coating = asked->coating}},
-                                            .kinematics = FULL_DEFAULTS.kinematics,
-                                            .transition_depth = FULL_DEFAULTS.transition,
-                                            .level_count = 1,
-                                            .levels = {{.grid = press->grid, .stride = 1}},
-                                            .load_count = 1,
-                                            .nodes = true,
-                                            .edges = true,
-                                            .perimeter = true,
-                                            .stiffness = true,
-                                            .tangent = true,
-                                            .tolerance = tolerance_of(asked)};
+    press->one_case =
+        (struct contact_case){.surface = {.dimension = grid_is_profile(&press->grid) ? 1 : 2,
+                                          .spectrum = {.scale = SCALE_RMS_SLOPE}},
+                              .model_count = 1,
+                              .models = {model},
+                              .blocks = {{.model = model->block,
+                                          .poisson = asked->poisson,
+                                          .height = lengths * press->grid.lx,
+                                          .layer_growth = 1.1,
+                                          .weighting = GAP_STANDARD,
+                                          .coating = asked->coating}},
+                              .kinematics = FULL_DEFAULTS.kinematics,
+                              .transition_depth = FULL_DEFAULTS.transition,
+                              .level_count = 1,
+                              .levels = {{.grid = press->grid, .stride = 1}},
+                              .load_count = 1,
+                              .nodes = true,
+                              .edges = true,
+                              .perimeter = true,
+                              .stiffness = true,
+                              .tangent = true,
+                              .tolerance = tolerance_of(asked)};
     if (asked->hardness > 0) {
         press->one_case.yield = asked->hardness;
         press->one_case.hardness = asked->hardness / press->slope;
         contact_quantities_ask(&press->one_case, HARDNESS_MEASURE);
     }
+    if (asked->friction > 0) {
+        press->one_case.friction = asked->friction;
+        press->one_case.slip_angle = asked->angle;
+        press->one_case.slip_measured =
+            press->boundary != PRESS_OPEN && !grid_is_profile(&press->grid);
+        press->one_case.unloads = asked->hardness > 0;
+        contact_quantities_ask(&press->one_case, FRICTION_MEASURE);
+    }
+    if (press->one_case.unloads)
+        contact_quantities_ask(&press->one_case, UNLOAD_MEASURE);
     if (asked->conducts)
         contact_quantities_ask(&press->one_case, CONDUCTANCE_MEASURE);
     if (asked->leaks)
@@ -260,17 +275,21 @@ static double cell_factor(const struct map_press *press, enum measure_cell cell)
     return measure_factor(cell == CELL_UNLIMITED ? CELL_SHRINKS : cell, press->copies);
 }
 
+static struct measure_context context_of(struct map_press *press) {
+    return (struct measure_context){.one_case = &press->one_case,
+                                    .area = press->areas,
+                                    .finder = press->patches,
+                                    .quantities = &press->quantities,
+                                    .points = (double)grid_points(&press->grid),
+                                    .rms_slope = press->slope,
+                                    .rms_height = press->height,
+                                    .scaled = true,
+                                    .free_space = press->boundary == PRESS_OPEN};
+}
+
 static int measure_load(struct map_press *press, const struct contact_pressed *pressed,
                         double *value, struct error *err) {
-    const struct measure_context context = {.one_case = &press->one_case,
-                                            .area = press->areas,
-                                            .finder = press->patches,
-                                            .quantities = &press->quantities,
-                                            .points = (double)grid_points(&press->grid),
-                                            .rms_slope = press->slope,
-                                            .rms_height = press->height,
-                                            .scaled = true,
-                                            .free_space = press->boundary == PRESS_OPEN};
+    const struct measure_context context = context_of(press);
     const struct contact_state *state = &press->state;
     int status = contact_measure(&context, pressed, value, err);
     if (status != 0)
@@ -312,6 +331,40 @@ int map_press_load(struct map_press *press, double pressure, struct press_row *r
     return measure_load(press, &pressed, row->value, err);
 }
 
+/* Lets the loads fall again, and fills what is made of all loads together. */
+static int press_back(struct map_press *press, size_t loads, const double *pressures,
+                      struct press_row *rows, struct error *err) {
+    struct contact_case one_case = press->one_case;
+    const struct measure_context context = context_of(press);
+    int status = 0;
+    for (size_t l = loads - 1; one_case.unloads && l-- > 0 && status == 0;) {
+        struct contact_pressed pressed = contact_not_pressed();
+        status = model_of(press)->press(press->solver, pressures[l], &pressed, err);
+        if (status == 0)
+            contact_quantities_measure_falling(&one_case, &context, &pressed.state, 1,
+                                               rows[l].value);
+    }
+    if (status != 0 || !(one_case.friction > 0))
+        return status;
+    double *values = array_create((MEASURE_PAIRED + 1) * loads, sizeof *values);
+    if (values == NULL)
+        return error_memory(err, (MEASURE_PAIRED + 1) * loads * sizeof *values, "slip");
+    one_case.load_count = loads;
+    one_case.slip_load = loads - 1;
+    one_case.loads = values + MEASURE_PAIRED * loads;
+    for (size_t l = 0; l < loads; l++) {
+        one_case.loads[l] = rows[l].value[PRESS_LOAD];
+        for (size_t v = 0; v < MEASURE_PAIRED; v++)
+            values[v * loads + l] = rows[l].value[v];
+    }
+    contact_quantities_complete(&one_case, loads, values);
+    for (size_t l = 0; l < loads; l++)
+        for (size_t v = 0; v < MEASURE_PAIRED; v++)
+            rows[l].value[v] = values[v * loads + l];
+    free(values);
+    return 0;
+}
+
 int map_press_loads(struct map_press *press, const double *z, size_t loads, const double *pressures,
                     struct press_series *series, struct error *err) {
     int status = map_press_lift(press, z, &series->block, err);
@@ -326,7 +379,7 @@ int map_press_loads(struct map_press *press, const double *z, size_t loads, cons
         if (status != 0)
             empty_row(press, pressures[l], &series->rows[l]);
     }
-    return status;
+    return status == 0 ? press_back(press, loads, pressures, series->rows, err) : status;
 }
 
 int map_press_step(const struct map_press *press, const double *z, double load, double modulus,

@@ -24,6 +24,7 @@ struct press_block {
     double tolerance;       /* of a solution, as in studies; 0: the model's */
     double hardness;        /* over E*; 0: it is elastic */
     bool conducts, leaks;   /* these quantities are asked for */
+    double friction, angle; /* coefficient, 0: none; of the tangential load from x, radians */
     struct coating coating; /* thickness in the map's length */
 };
 
@@ -50,7 +51,7 @@ struct press_column {
     bool fold;      /* tables for people may start a line here */
     bool uncertain; /* its errors stand in tables for people */
 };
-enum { PRESS_COLUMN_COUNT = 22 };
+enum { PRESS_COLUMN_COUNT = 24 };
 extern const struct press_column PRESS_COLUMNS[PRESS_COLUMN_COUNT];
 
 /* (reported - true) lies within value +- bound; NaN: not known. */

@@ -14,11 +14,25 @@ static int no_room(const struct curve_maker *maker, struct error *err) {
     return error_memory(err, 3 * maker->loads * sizeof(double), "a curve of contact");
 }
 
+static bool by_slip(size_t value) {
+    return press_measure(value)->by == BY_SLIP;
+}
+
+/* Return the number of points of a curve, and the load of a point: by slip loads fall from the one
+ * below the highest. */
+static size_t points_of(const struct curve_maker *maker, size_t value) {
+    return maker->loads - (by_slip(value) ? 1 : 0);
+}
+
+static size_t load_of(const struct curve_maker *maker, size_t value, size_t point) {
+    return by_slip(value) ? maker->loads - 2 - point : point;
+}
+
 /* Adds an error that is known at some load. */
 static int put_error(const struct curve_maker *maker, size_t m, size_t value,
                      enum error_source source, struct curve_error *out, struct error *err) {
     const struct press_row *rows = maker->series[m].rows;
-    size_t loads = maker->loads, known = 0;
+    size_t loads = maker->loads, known = 0, points = points_of(maker, value);
     out->applies = map_press_applies(maker->count, maker->series, m, value, source);
     out->order = NAN;
     for (size_t l = 0; l < loads && out->applies; l++)
@@ -28,10 +42,11 @@ static int put_error(const struct curve_maker *maker, size_t m, size_t value,
     double *numbers = result_numbers(maker->out, 3 * loads);
     if (numbers == NULL)
         return no_room(maker, err);
-    for (size_t l = 0; l < loads; l++) {
-        numbers[l] = rows[l].error[source][value].value;
-        numbers[loads + l] = rows[l].error[source][value].bound;
-        numbers[2 * loads + l] = NAN; /* one map has no statistical error */
+    for (size_t i = 0; i < points; i++) {
+        const struct press_row *row = &rows[load_of(maker, value, i)];
+        numbers[i] = row->error[source][value].value;
+        numbers[loads + i] = row->error[source][value].bound;
+        numbers[2 * loads + i] = NAN; /* one map has no statistical error */
     }
     out->value = numbers;
     out->bound = numbers + loads;
@@ -39,25 +54,30 @@ static int put_error(const struct curve_maker *maker, size_t m, size_t value,
     return 0;
 }
 
-/* Appends a curve over the loads, whose label is NULL for want of memory. */
+/* Appends a curve, whose label is NULL for want of memory. */
 static int append(const struct curve_maker *maker, size_t m, size_t value, struct curve *curve,
                   struct error *err) {
     const struct press_series *series = &maker->series[m];
     const struct contact_model *model = series->block.model;
-    size_t loads = maker->loads;
+    size_t loads = maker->loads, points = points_of(maker, value);
+    const double highest = series->rows[loads - 1].value[PRESS_LOAD];
     double *x = result_numbers(maker->out, 3 * loads);
     if (x == NULL || curve->y_label == NULL)
         return no_room(maker, err);
-    for (size_t l = 0; l < loads; l++) {
-        x[l] = series->rows[l].value[PRESS_LOAD];
-        x[loads + l] = series->rows[l].value[value];
-        x[2 * loads + l] = NAN;
+    for (size_t i = 0; i < points; i++) {
+        const struct press_row *row = &series->rows[load_of(maker, value, i)];
+        double load = row->value[PRESS_LOAD];
+        x[i] = by_slip(value) ? 1 - load / highest : load;
+        x[loads + i] = row->value[value];
+        x[2 * loads + i] = NAN;
     }
+    if (by_slip(value))
+        curve->pressure = highest;
     curve->model = contact_model_name(model);
     if (model->kinematics != NULL)
         curve->kinematics = model->kinematics(&maker->press->one_case);
     curve->points = (double)grid_points(&maker->press->grid);
-    curve_set_points(curve, loads, x, x + loads, x + 2 * loads);
+    curve_set_points(curve, points, x, x + loads, x + 2 * loads);
     int status = 0;
     for (enum error_source s = 0; s < ERROR_SOURCES && status == 0; s++)
         status = put_error(maker, m, value, s, &curve->errors[s], err);
@@ -78,7 +98,8 @@ static int append_value(const struct curve_maker *maker, size_t value, struct er
     const char *label = measure_label(of, UNIT_CELL, 0, maker->out);
     int status = 0;
     for (size_t m = 0; m < maker->count && status == 0; m++) {
-        struct curve curve = curve_named(of->quantity, "p/(E* h'_rms)", label);
+        struct curve curve =
+            curve_named(of->quantity, by_slip(value) ? "Q/(mu P)" : "p/(E* h'_rms)", label);
         if (of->series != NULL)
             curve.series = of->series;
         if (is_shown(maker, m, value))

@@ -13,7 +13,7 @@
  * its table of parameters. Partial results hold measures in this order, so that an entry comes
  * behind all others. */
 #define CONTACT_QUANTITY_LIST(ENTRY)                                                               \
-    ENTRY(CONDUCTANCE, 1) ENTRY(LEAK, 7) ENTRY(HARDNESS, 5) ENTRY(UNLOAD, 3) ENTRY(FRICTION, 7)
+    ENTRY(CONDUCTANCE, 1) ENTRY(LEAK, 7) ENTRY(HARDNESS, 5) ENTRY(UNLOAD, 3) ENTRY(FRICTION, 8)
 
 /* NAME_AT: its position, as in quantities_asked. NAME_MEASURE: the number of its first measure. */
 #define CONTACT_QUANTITY_POSITION(name, count) name##_AT,
@@ -41,8 +41,12 @@ enum {
     EDGES_YIELDED = HARDNESS_MEASURE + 4,
     UNLOAD_AREA = UNLOAD_MEASURE,
     UNLOAD_GAP,
-    SLIP_WORK = FRICTION_MEASURE + 4,
+    UNLOAD_APPROACH,
+    SLIP_STICK_EDGES = FRICTION_MEASURE + 1,
+    SLIP_DISPLACEMENT = FRICTION_MEASURE + 3,
+    SLIP_WORK,
     FRICTION_NORMAL,
+    FRICTION_APPROACH,
     FRICTION_RATIO
 };
 

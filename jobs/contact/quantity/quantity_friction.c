@@ -14,9 +14,19 @@ struct quantity_state {
     struct held *held; /* of surfaces with lay */
 };
 
-/* Its measures, in this order. Two are hidden: the stiffness across the face on the path that
- * slips, and of isotropic surfaces the ratio of both. */
-enum { STIFFNESS, STICK_EDGES, STICK_NODES, DISPLACEMENT, WORK, NORMAL, RATIO, FRICTION_MEASURES };
+/* Its measures, in this order. Hidden are the stiffness across the face and the approach, up to a
+ * constant, on the path that slips, and of isotropic surfaces the ratio of both stiffnesses. */
+enum {
+    STIFFNESS,
+    STICK_EDGES,
+    STICK_NODES,
+    DISPLACEMENT,
+    WORK,
+    NORMAL,
+    APPROACH,
+    RATIO,
+    FRICTION_MEASURES
+};
 
 _Static_assert((int)FRICTION_MEASURE + WORK == (int)SLIP_WORK &&
                    (int)FRICTION_MEASURE + RATIO == (int)FRICTION_RATIO,
@@ -127,13 +137,21 @@ static double isotropic_ratio(const struct contact_case *one_case) {
     return one_case->surface.dimension == 1 ? 1 : (1 - poisson) / (1 - poisson / 2);
 }
 
+/* Returns the approach up to a constant, over the RMS height. In a cell it is what the mean gap
+ * closes by, in free space that of far points. area: NULL on the path of falling loads. */
+static double approach_of(const struct measure_context *context, const struct contact_state *state,
+                          const struct contact_area *area) {
+    bool corrected = area != NULL && !(context->one_case->hardness > 0);
+    double gap = corrected ? area->mean_gap : state->mean_gap;
+    return (context->free_space ? state->approach : -gap) / context->rms_height;
+}
+
 static int measure(struct quantity_state *state, const struct measure_context *context,
                    const struct contact_pressed *pressed, const struct contact_area *area,
                    double *values, struct error *err) {
     const struct contact_state *contact = &pressed->state;
     const struct contact_case *one_case = context->one_case;
     double normal = one_case->hardness > 0 ? contact->unload_stiffness : contact->stiffness;
-    (void)area;
     values[RATIO] = isotropic_ratio(one_case);
     if (state != NULL && state->held != NULL) {
         static const double RESIDUAL = 1e-3; /* its square is the error */
@@ -145,6 +163,7 @@ static int measure(struct quantity_state *state, const struct measure_context *c
         values[RATIO] = held.ratio;
     }
     values[NORMAL] = measure_stiffness(context, normal);
+    values[APPROACH] = approach_of(context, contact, area);
     values[STIFFNESS] = values[RATIO] * values[NORMAL];
     return 0;
 }
@@ -152,6 +171,7 @@ static int measure(struct quantity_state *state, const struct measure_context *c
 static void measure_falling(const struct measure_context *context,
                             const struct contact_state *state, double *values) {
     values[NORMAL] = measure_stiffness(context, state->stiffness);
+    values[APPROACH] = approach_of(context, state, NULL);
 }
 
 /* Returns the integral of the displacement over the tangential load between two loads, from the
@@ -162,10 +182,10 @@ static double integral(double width, const double of[2], const double slope[2]) 
 
 static void complete(const struct contact_case *one_case, size_t stride, double *values) {
     const bool yields = one_case->hardness > 0;
-    const double *gap = values + (yields ? (size_t)UNLOAD_GAP : MEASURE_GAP) * stride;
     const double *nodes = values + (yields ? (size_t)UNLOAD_AREA : MEASURE_NODES) * stride;
     const double *edges = values + MEASURE_EDGES * stride;
     double *own = values + FRICTION_MEASURE * stride;
+    const double *approach = own + APPROACH * stride;
     const size_t top = one_case->slip_load;
     const double ratio = own[RATIO * stride + top], mu = one_case->friction;
     double under = 0; /* the curve of displacement */
@@ -173,7 +193,7 @@ static void complete(const struct contact_case *one_case, size_t stride, double 
         double load = mu * (one_case->loads[top] - one_case->loads[k]);
         double ends[2], slopes[2];
         for (size_t e = 0; e < 2; e++) {
-            ends[e] = mu / ratio * (gap[k + 1 - e] - gap[top]);
+            ends[e] = mu / ratio * (approach[top] - approach[k + 1 - e]);
             slopes[e] = 1 / (ratio * own[NORMAL * stride + k + 1 - e]);
         }
         under += integral(mu * (one_case->loads[k + 1] - one_case->loads[k]), ends, slopes);
@@ -312,6 +332,17 @@ static const struct measure MEASURES[FRICTION_MEASURES] = {
                 .cell = CELL_SAME,
                 .values = VALUES_SOME,
                 .over = OVER_STIFFNESS},
+    [APPROACH] = {.series = "",
+                  .shown = never_shown,
+                  .kept = never_kept,
+                  .order = 1,
+                  .theories = THEORIES_NONE,
+                  .solver = SOLVER_SMOOTH,
+                  .field = FIELD_GAP,
+                  .load = LOAD_STAYS,
+                  .cell = CELL_SAME,
+                  .values = VALUES_SOME,
+                  .over = OVER_HEIGHT},
     [RATIO] = {.quantity = "stiffness_ratio",
                .series = "",
                .y_label = "Kt/Kn",

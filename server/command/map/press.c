@@ -154,7 +154,7 @@ struct press_options {
     const char *coating; /* NULL: none */
     double lengths;      /* height of the block in lengths of the map, 0: not given */
     double tolerance;    /* likewise */
-    int boundary, format, without_error;
+    int boundary, format, without_error, along_y;
     bool leak;
     unsigned threads; /* 0: as many processors as are allotted */
     struct press_words words;
@@ -179,6 +179,10 @@ static const struct option_row OPTIONS[] = {
      "in place of it: E* = E/(1 - nu^2), or that of two elastic bodies"},
     {"hardness", 0, OPTION_TEXT, 0, 0, AT(words.hardness), "H", NULL,
      "pressure at which the block yields, such as 2GPa; without it, it is elastic"},
+    {"friction", 0, OPTION_NUMBER, 1e-3, 10, AT(words.friction), "MU", NULL,
+     "coefficient of friction: what sticks, and how far the face gives, as a tangential load rises "
+     "under the highest load; loads below it are added"},
+    {"direction", 0, OPTION_CHOICE, 0, 0, AT(along_y), "x|y", "x", "of the tangential load"},
     {"resistivity", 0, OPTION_TEXT, 0, 0, AT(words.resistivity), "RHO[,RHO]", NULL,
      "electric resistivity of both bodies, or of each, in ohm m: the conductance of the contact"},
     {"conductivity", 0, OPTION_TEXT, 0, 0, AT(words.conductivity), "K[,K]", NULL,
@@ -496,11 +500,22 @@ static int order_models(struct press_order *order, struct error *err) {
                                                 .tolerance = options->tolerance,
                                                 .hardness = order->loads.hardness,
                                                 .conducts = order->loads.resistivity > 0,
+                                                .friction = options->words.friction,
+                                                .angle = options->along_y ? M_PI / 2 : 0,
                                                 .leaks = options->leak};
     if (order->loads.resistivity > 0 && options->coating != NULL)
         return error_set(err, ERROR_INPUT,
                          "--%s and --coating: what passes a coating is not known from its contact",
                          order->loads.heat ? "conductivity" : "resistivity");
+    if (options->words.friction > 0 && options->coating != NULL)
+        return error_set(err, ERROR_INPUT,
+                         "--friction and --coating: how a coating gives tangentially is not known "
+                         "from its contact");
+    for (size_t m = 0; m < order->model_count && options->words.friction > 0; m++)
+        if (order->blocks[m].model->block_of != NULL)
+            return error_set(err, ERROR_INPUT,
+                             "--friction: the model %s has none; leave one of them out",
+                             contact_model_name(order->blocks[m].model));
     for (size_t m = 0; m < order->model_count && order->loads.hardness > 0; m++)
         if (!order->blocks[m].model->yields)
             return error_set(err, ERROR_INPUT,

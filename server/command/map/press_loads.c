@@ -73,19 +73,10 @@ static int parse_conduction(struct press_loads *out, const struct press_words *w
     return 0;
 }
 
-int press_loads_parse(struct press_loads *out, const struct press_words *words, struct error *err) {
+/* Reads the values of the loads; those of forces when it is known whether the map is a profile. */
+static int parse_values(struct press_loads *out, const struct press_words *words,
+                        struct error *err) {
     const char *loads = words->loads;
-    int given = (loads != NULL) + (words->pressure != NULL) + (words->force != NULL);
-    *out = (struct press_loads){.kind = LOADS_REDUCED, .force = words->force};
-    if (given > 1)
-        return error_set(err, ERROR_INPUT, "--loads, --pressure, --force: give one of the three");
-    int status = parse_modulus(out, words, err);
-    if (status == 0)
-        status = parse_hardness(out, words, err);
-    if (status == 0)
-        status = parse_conduction(out, words, err);
-    if (status != 0)
-        return status;
     if (words->pressure == NULL && words->force == NULL)
         return rising_numbers(loads != NULL ? loads : REDUCED, PRESS_LOADS_MOST, out->value,
                               &out->count)
@@ -111,6 +102,25 @@ int press_loads_parse(struct press_loads *out, const struct press_words *words, 
                            words->pressure, PRESS_LOADS_MOST);
 }
 
+int press_loads_parse(struct press_loads *out, const struct press_words *words, struct error *err) {
+    int given = (words->loads != NULL) + (words->pressure != NULL) + (words->force != NULL);
+    *out = (struct press_loads){.kind = LOADS_REDUCED, .force = words->force};
+    if (given > 1)
+        return error_set(err, ERROR_INPUT, "--loads, --pressure, --force: give one of the three");
+    int status = parse_modulus(out, words, err);
+    if (status == 0)
+        status = parse_hardness(out, words, err);
+    if (status == 0)
+        status = parse_conduction(out, words, err);
+    if (status != 0)
+        return status;
+    status = parse_values(out, words, err);
+    if (status == 0 && words->friction > 0 && out->kind != LOADS_FORCE)
+        contact_loads_add(out->value, &out->count, out->value[out->count - 1]);
+    out->slips = words->friction > 0;
+    return status;
+}
+
 int press_loads_of_map(struct press_loads *loads, const struct height_map *map, struct error *err) {
     if (loads->kind != LOADS_FORCE)
         return 0;
@@ -120,12 +130,13 @@ int press_loads_of_map(struct press_loads *loads, const struct height_map *map, 
                          "--unit and --z-unit");
     bool profile = grid_is_profile(&map->grid);
     const char *unit = profile ? "N/m" : "N";
-    return quantities_parse(loads->force, unit, PRESS_LOADS_MOST, loads->value, &loads->count)
-               ? 0
-               : error_set(err, ERROR_INPUT,
-                           "--force %.40s: not up to %d rising forces with units, such as %s",
-                           loads->force, PRESS_LOADS_MOST,
-                           profile ? "10N/m, as a profile has them" : "10mN,20mN");
+    if (!quantities_parse(loads->force, unit, PRESS_LOADS_MOST, loads->value, &loads->count))
+        return error_set(
+            err, ERROR_INPUT, "--force %.40s: not up to %d rising forces with units, such as %s",
+            loads->force, PRESS_LOADS_MOST, profile ? "10N/m, as a profile has them" : "10mN,20mN");
+    if (loads->slips)
+        contact_loads_add(loads->value, &loads->count, loads->value[loads->count - 1]);
+    return 0;
 }
 
 double press_loads_mean(const struct press_loads *loads, size_t load, double slope, double area) {

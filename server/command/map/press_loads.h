@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/map/height_map.h"
+#include "jobs/contact/contact_loads.h"
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -13,21 +14,24 @@ enum { PRESS_LOADS_MOST = 1000 };
 struct press_words {
     const char *loads, *pressure, *force, *modulus, *effective_modulus;
     const char *hardness, *resistivity, *conductivity;
-    double poisson;
+    double poisson, friction; /* friction 0: none */
 };
 
 struct press_loads {
     enum press_load_kind { LOADS_REDUCED, LOADS_PRESSURE, LOADS_FORCE } kind;
     size_t count;
-    double value[PRESS_LOADS_MOST]; /* rising: p/(E* h'), Pa, or N (of a profile N/m) */
-    double modulus;                 /* E* in Pa; 0: not known */
-    double hardness;                /* over E*; 0: it is elastic */
-    double resistivity;             /* of both bodies together, ohm m or m K/W; 0: not known */
-    bool heat;                      /* to heat, else to current */
-    const char *force;              /* the words, read when it is known whether it is a profile's */
+    double value[PRESS_LOADS_MOST +
+                 CONTACT_LOADS_ADDED]; /* rising: p/(E* h'), Pa, or N (of a profile N/m) */
+    double modulus;                    /* E* in Pa; 0: not known */
+    double hardness;                   /* over E*; 0: it is elastic */
+    double resistivity;                /* of both bodies together, ohm m or m K/W; 0: not known */
+    bool heat;                         /* to heat, else to current */
+    bool slips;                        /* friction adds loads */
+    const char *force; /* the words, read when it is known whether it is a profile's */
 };
 
-/* ERROR_INPUT names the option, its value and what is allowed. */
+/* Friction adds loads below the highest (contact_loads_add). ERROR_INPUT names the option, its
+ * value and what is allowed. */
 int press_loads_parse(struct press_loads *out, const struct press_words *words, struct error *err);
 /* Reads forces, N of a surface and N/m of a profile. ERROR_INPUT also where the map has no unit. */
 int press_loads_of_map(struct press_loads *loads, const struct height_map *map, struct error *err);

@@ -236,6 +236,104 @@ static void print_errors(FILE *file, const struct part *part, enum error_source 
     table_clear(&table);
 }
 
+/* --- what slips under the highest load --- */
+
+/* Columns by the share of the load of full slip, Q/(mu P). */
+static const struct slip_column {
+    const char *heading, *key, *quantity, *series;
+    enum { SLIP_SHARE, SLIP_LENGTH, SLIP_WORK_DONE } kind;
+} SLIP_COLUMNS[] = {
+    {"stick edges", "stick_edges", "stick_area", "edges", SLIP_SHARE},
+    {"stick nodes", "stick_nodes", "stick_area", "nodes", SLIP_SHARE},
+    {"displacement", "tangential_displacement", "tangential_displacement", "", SLIP_LENGTH},
+    {"work a cycle", "slip_work", "slip_work", "", SLIP_WORK_DONE}};
+enum { SLIP_COLUMN_COUNT = sizeof SLIP_COLUMNS / sizeof *SLIP_COLUMNS };
+
+/* Returns NULL where the model has no such curve. */
+static const struct curve *slip_curve(const struct part *part, const struct slip_column *column) {
+    const struct case_result *result = part->report->result;
+    for (size_t c = 0; c < result->curve_count; c++)
+        if (same_text(result->curves[c].quantity, column->quantity) &&
+            same_text(result->curves[c].series, column->series) &&
+            same_text(result->curves[c].model, part->model))
+            return &result->curves[c];
+    return NULL;
+}
+
+/* Returns the sum of the bounds of a value by all sources that are known; NaN: none is. */
+static double bound_at(const struct curve *curve, size_t point) {
+    double sum = NAN;
+    for (size_t s = 0; s < ERROR_SOURCES; s++) {
+        double own = fabs(number_at(curve->errors[s].value, point)) +
+                     number_at(curve->errors[s].bound, point);
+        if (!isnan(own))
+            sum = isnan(sum) ? own : sum + own;
+    }
+    return sum;
+}
+
+/* Returns the scale to SI units; 0: not known. */
+static double slip_scale(const struct press_report *report, const struct slip_column *column) {
+    const struct map_press *press = report->press;
+    double length = report->metres ? press->height : 0;
+    double work = length * report->map_area * press->slope * report->modulus;
+    return column->kind == SLIP_LENGTH ? length : column->kind == SLIP_WORK_DONE ? work : 0;
+}
+
+/* Heads a column, with its unit where it is known; returns what its values are multiplied by. */
+static double head_slip(struct text_table *table, const struct part *part,
+                        const struct slip_column *column, const struct curve *curve) {
+    bool profile = grid_is_profile(&part->report->press->map);
+    const char *si = column->kind == SLIP_LENGTH ? "m" : profile ? "J/m" : "J";
+    double scale = slip_scale(part->report, column), most = curve->y[curve->n - 1];
+    char unit[24];
+    if (!(scale > 0)) {
+        table_cell(table, "%s%s", column->heading,
+                   column->kind == SLIP_LENGTH      ? "/rms"
+                   : column->kind == SLIP_WORK_DONE ? "/(E* h' rms)"
+                                                    : "");
+        return 1;
+    }
+    scale /= unit_readable(si, scale * most, unit, sizeof unit);
+    table_cell(table, "%s, %s", column->heading, unit);
+    return scale;
+}
+
+/* Prints what slips, with the sums of the bounds of its errors, where friction is asked for. */
+static void print_slip(FILE *file, const struct part *part) {
+    const struct curve *curves[SLIP_COLUMN_COUNT], *first = slip_curve(part, SLIP_COLUMNS);
+    const struct press_block *block = &part->series->block;
+    struct text_table table = {.columns = 1};
+    double scales[SLIP_COLUMN_COUNT];
+    for (size_t c = 0; c < SLIP_COLUMN_COUNT; c++) {
+        curves[c] = slip_curve(part, &SLIP_COLUMNS[c]);
+        table.columns += curves[c] != NULL ? 2 : 0;
+        first = first != NULL ? first : curves[c];
+    }
+    if (first == NULL || first->n == 0)
+        return;
+    table_cell(&table, "Q/(mu P)");
+    for (size_t c = 0; c < SLIP_COLUMN_COUNT; c++)
+        if (curves[c] != NULL) {
+            scales[c] = head_slip(&table, part, &SLIP_COLUMNS[c], curves[c]);
+            table_cell(&table, "+-");
+        }
+    for (size_t i = 0; i < first->n; i++) {
+        table_number(&table, first->x[i]);
+        for (size_t c = 0; c < SLIP_COLUMN_COUNT; c++)
+            if (curves[c] != NULL) {
+                table_number(&table, curves[c]->y[i] * scales[c]);
+                table_cell(&table, "%.2g", bound_at(curves[c], i) * scales[c]);
+            }
+    }
+    fprintf(file,
+            "\ntangential load Q along %s under p/(E* h') = %.4g, friction %.4g; +- errors that "
+            "are known\n\n",
+            block->angle > 0 ? "y" : "x", first->pressure, block->friction);
+    table_print(&table, file);
+    table_clear(&table);
+}
+
 static void print_part(FILE *file, const struct part *part) {
     struct text_table table = {0};
     print_heading(file, part);
@@ -255,6 +353,7 @@ static void print_part(FILE *file, const struct part *part) {
     table_print(&table, file);
     table_clear(&table);
     print_physical(file, part);
+    print_slip(file, part);
     for (size_t s = 0; s < ERROR_SOURCES && part->report->with_errors; s++)
         print_errors(file, part, (enum error_source)s);
 }
@@ -381,6 +480,36 @@ static bool add_scales(cJSON *document, const struct press_report *report) {
            cJSON_AddItemToObject(document, "rms_height", json_number(press->height));
 }
 
+/* Adds what slips, and its errors by source, where friction is asked for. */
+static bool add_slip(cJSON *document, const struct part *part) {
+    const struct press_block *block = &part->series->block;
+    bool complete = true;
+    if (!(block->friction > 0))
+        return true;
+    cJSON *slip = cJSON_AddObjectToObject(document, "slip");
+    complete = cJSON_AddNumberToObject(slip, "friction", block->friction) != NULL &&
+               cJSON_AddStringToObject(slip, "direction", block->angle > 0 ? "y" : "x") != NULL;
+    for (size_t c = 0; c < SLIP_COLUMN_COUNT && complete; c++) {
+        const struct curve *curve = slip_curve(part, &SLIP_COLUMNS[c]);
+        char key[48];
+        if (curve == NULL)
+            continue;
+        if (!cJSON_HasObjectItem(slip, "load"))
+            complete = cJSON_AddItemToObject(slip, "load", json_number(curve->pressure)) &&
+                       cJSON_AddItemToObject(slip, "share", json_numbers(curve->x, curve->n));
+        complete = complete && cJSON_AddItemToObject(slip, SLIP_COLUMNS[c].key,
+                                                     json_numbers(curve->y, curve->n));
+        double *bounds = complete ? array_create(curve->n, sizeof *bounds) : NULL;
+        for (size_t i = 0; i < curve->n && bounds != NULL; i++)
+            bounds[i] = bound_at(curve, i);
+        snprintf(key, sizeof key, "%s_error", SLIP_COLUMNS[c].key);
+        complete =
+            bounds != NULL && cJSON_AddItemToObject(slip, key, json_numbers(bounds, curve->n));
+        free(bounds);
+    }
+    return complete;
+}
+
 static bool add_part(cJSON *document, const struct part *part, double *column) {
     double full_contact = part->series->full_contact / part->report->press->slope;
     bool complete = cJSON_AddItemToObject(document, "full_contact", json_number(full_contact));
@@ -388,7 +517,8 @@ static bool add_part(cJSON *document, const struct part *part, double *column) {
         if (has_column(part->report, &PRESS_COLUMNS[c]))
             complete =
                 add_column(document, PRESS_COLUMNS[c].key, part, &PRESS_COLUMNS[c], 1, column);
-    return complete && add_errors(document, part, column) && add_physical(document, part, column);
+    return complete && add_errors(document, part, column) && add_physical(document, part, column) &&
+           add_slip(document, part);
 }
 
 static bool add_model(cJSON *document, const struct part *part) {

@@ -1,6 +1,7 @@
 /* Protects: the contact of one map by the models of studies: against Hertz, mirrored and open; its
  * error by the points; what is refused; its curves; that what a model asks for is as in studies. */
 #include "core/full/full.h"
+#include "jobs/contact/contact_loads.h"
 #include "jobs/maps/map_press_curves.h"
 #include "jobs/maps/map_press_error.h"
 #include "tests/support/check.h"
@@ -55,6 +56,76 @@ static void open_map_is_pressed(void **state) {
     /* Johnson's strain of the face under its pressures, nothing around: FORMULAS.md, F14.5. */
     check_close(row.value[MEASURE_EDGES_STRETCHED],
                 row.value[MEASURE_EDGES] - 0.4 / 0.7 * 4.0 / 3 * 8 / 50 / 36, 1e-15);
+}
+
+/* A sphere on a flat sticks within c/a = (1 - s)^(1/3), and its displacement and the work of a
+ * cycle are Mindlin's (F26.4): mesh errors of 60 points, 18 across the contact at the lightest
+ * load. */
+static void a_sphere_slips(void **state) {
+    (void)state;
+    enum { LOADS = 13 };
+    const double mu = 0.25, nu = 0.3, full = 4.0 / 3 * 8 / 50 / 36;
+    struct press_series series = {
+        .block = {.model = model_named("halfspace"), .poisson = nu, .friction = mu},
+        .rows = array_create(LOADS, sizeof *series.rows)};
+    struct error err = {0};
+    struct map_press press = {0};
+    struct height_map map = summit(3.02, 2.93);
+    double pressures[LOADS + 1] = {full};
+    size_t loads = 1;
+    assert_non_null(series.rows);
+    contact_loads_add(pressures, &loads, full);
+    assert_int_equal(loads, LOADS);
+    if (map_press_begin(&press, &map, PRESS_OPEN, &err) != 0 ||
+        map_press_loads(&press, map.z, loads, pressures, &series, &err) != 0)
+        fail_msg("%s", err.text);
+    for (size_t l = 3; l + 1 < loads; l++) {
+        const double *value = series.rows[l].value;
+        double share = 1 - pressures[l] / full, apart = 1 - pow(1 - share, 2.0 / 3);
+        double moved = mu * (1 - nu / 2) / (1 - nu) * 4.0 / 50 * apart;
+        double under = share - 0.6 * (1 - pow(1 - share, 5.0 / 3));
+        double work =
+            mu * full * mu * (1 - nu / 2) / (1 - nu) * 4.0 / 50 * (4 * share * apart - 8 * under);
+        check_close(value[SLIP_STICK_EDGES], pow(1 - share, 2.0 / 3), 0.005);
+        check_relative(value[SLIP_DISPLACEMENT] * press.height, moved, 0.01);
+        if (share > 0.4)
+            check_relative(value[SLIP_WORK] * press.slope * press.height, work, 0.02);
+    }
+    free(series.rows);
+    map_press_clear(&press);
+    height_map_clear(&map);
+}
+
+/* After yielding the loads fall again, on every grid that is pressed: what slips is stiffer than an
+ * elastic face, and the approach that is left is that of the highest load. */
+static void a_face_slips_after_yielding(void **state) {
+    (void)state;
+    enum { LOADS = 3 };
+    const double pressures[LOADS] = {0.002, 0.004, 0.006};
+    struct press_row rows[2][LOADS];
+    for (int hard = 0; hard < 2; hard++) {
+        struct press_series series = {.block = {.model = model_named("halfspace"),
+                                                .poisson = 0.3,
+                                                .friction = 0.2,
+                                                .hardness = hard ? 0.02 : 0},
+                                      .rows = rows[hard]};
+        struct error err = {0};
+        struct map_press press = {0};
+        struct height_map map = summit(3.02, 2.93);
+        if (map_press_begin(&press, &map, PRESS_PERIODIC, &err) != 0 ||
+            map_press_loads(&press, map.z, LOADS, pressures, &series, &err) != 0)
+            fail_msg("%s", err.text);
+        map_press_clear(&press);
+        height_map_clear(&map);
+    }
+    for (size_t l = 0; l + 1 < LOADS; l++) {
+        const double *soft = rows[1][l].value, *elastic = rows[0][l].value;
+        assert_true(soft[SLIP_DISPLACEMENT] > 0 &&
+                    soft[SLIP_DISPLACEMENT] < elastic[SLIP_DISPLACEMENT]);
+        assert_true(soft[UNLOAD_AREA] > soft[MEASURE_NODES]);
+        assert_true(soft[UNLOAD_APPROACH] < rows[1][l + 1].value[UNLOAD_APPROACH]);
+        assert_true(isnan(elastic[UNLOAD_APPROACH]));
+    }
 }
 
 /* A quarter of a summit in a corner, mirrored, is a summit, whose neighbours are twelve units off:
@@ -220,6 +291,8 @@ static void tolerances_are_those_of_the_solvers(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(open_map_is_pressed),
+        cmocka_unit_test(a_sphere_slips),
+        cmocka_unit_test(a_face_slips_after_yielding),
         cmocka_unit_test(mirrored_map_is_pressed),
         cmocka_unit_test(points_make_an_error),
         cmocka_unit_test(full_model_is_pressed),

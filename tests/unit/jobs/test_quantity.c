@@ -282,7 +282,7 @@ static void a_cycle_takes_the_work_of_a_sphere(void **state) {
     for (size_t a = 0; a < MEASURE_PAIRED * POINTS; a++)
         values[a] = 1;
     for (size_t k = 0; k < one_case.load_count; k++) {
-        values[MEASURE_GAP * POINTS + k] = -pow(loads[k], 2. / 3);
+        values[FRICTION_APPROACH * POINTS + k] = pow(loads[k], 2. / 3);
         values[FRICTION_NORMAL * POINTS + k] = 1.5 * cbrt(loads[k]);
     }
     FRICTION_QUANTITY.complete(&one_case, POINTS, values);
