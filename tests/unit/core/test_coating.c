@@ -5,6 +5,7 @@
 #include "core/contact/edge/edge.h"
 #include "core/full/full.h"
 #include "tests/support/check.h"
+#include "tests/support/coated_elasticity.h"
 #include "tests/support/contact_scene.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,86 +19,6 @@ static const struct block COATED = {.model = MODEL_HALFSPACE,
 
 static const double MODULI[] = {0.01, 0.2, 0.5, 1, 2, 10, 100};
 enum { MODULI_COUNT = sizeof MODULI / sizeof *MODULI };
-
-/* --- the equations of elasticity, in displacements --- */
-
-enum { UNKNOWNS = 8 };
-
-/* Displacements X sin(x) and Z cos(x) of k = 1, and the stresses that act on a plane of depth. */
-struct field {
-    long double x, z, shear, normal;
-};
-
-/* The solutions of Navier's equations are (A + B s) exp(sign s) and, as the equations require,
- * (-sign A + (3 - 4 nu - sign s) B) exp(sign s), here for the A or the B of 1. s: depth from where
- * the exponential is 1, mu: shear modulus. */
-static struct field field_of(int sign, bool second, long double s, long double mu, long double nu) {
-    long double e = expl(sign * s), lambda = 2 * mu * nu / (1 - 2 * nu), x, dx, z, dz;
-    x = second ? s * e : e;
-    dx = second ? e + sign * s * e : sign * e;
-    z = second ? (3 - 4 * nu - sign * s) * e : -sign * e;
-    dz = second ? sign * z - sign * e : sign * z;
-    return (struct field){x, z, mu * (dx - z), lambda * (x + dz) + 2 * mu * dz};
-}
-
-static void solve(size_t n, long double a[UNKNOWNS][UNKNOWNS + 1]) {
-    for (size_t c = 0; c < n; c++) {
-        size_t pivot = c;
-        for (size_t r = c + 1; r < n; r++)
-            pivot = fabsl(a[r][c]) > fabsl(a[pivot][c]) ? r : pivot;
-        for (size_t j = 0; j <= UNKNOWNS; j++) {
-            long double t = a[c][j];
-            a[c][j] = a[pivot][j];
-            a[pivot][j] = t;
-        }
-        for (size_t r = 0; r < n; r++) {
-            long double by = r == c ? 0 : a[r][c] / a[c][c];
-            for (size_t j = c; j <= UNKNOWNS; j++)
-                a[r][j] -= by * a[c][j];
-        }
-    }
-}
-
-/* S E* under k = 1: pressure 1 and no shear at the face, all four continuous at the interface, and
- * nothing far below, or neither Z nor shear at the far side. */
-static double direct(const struct block *block) {
-    long double t = block->coating.thickness, nu[2] = {block->coating.poisson, block->poisson};
-    long double mu[2], far = block->height, a[UNKNOWNS][UNKNOWNS + 1] = {{0}};
-    bool infinite = isinf(block->height);
-    size_t n = infinite ? 6 : 8;
-    mu[1] = (1 - nu[1]) / 2;
-    mu[0] = block->coating.modulus * mu[1] * (1 + nu[1]) / (1 + nu[0]);
-    for (size_t c = 0; c < n; c++) {
-        size_t layer = c / 4;
-        int sign = c % 4 < 2 ? -1 : 1;
-        long double top = layer == 0 ? 0 : t, bottom = layer == 0 || infinite ? t : far;
-        long double from = sign < 0 ? top : bottom;
-        if (layer == 0) {
-            struct field face = field_of(sign, c % 2, -from, mu[0], nu[0]);
-            a[0][c] = face.normal;
-            a[1][c] = face.shear;
-        }
-        struct field at = field_of(sign, c % 2, t - from, mu[layer], nu[layer]);
-        long double side = layer == 0 ? 1 : -1;
-        a[2][c] = side * at.x;
-        a[3][c] = side * at.z;
-        a[4][c] = side * at.shear;
-        a[5][c] = side * at.normal;
-        if (layer == 1 && !infinite) {
-            struct field low = field_of(sign, c % 2, far - from, mu[1], nu[1]);
-            a[6][c] = low.z;
-            a[7][c] = low.shear;
-        }
-    }
-    a[0][UNKNOWNS] = -1;
-    solve(n, a);
-    long double z = 0;
-    for (size_t c = 0; c < 4; c++) {
-        int sign = c < 2 ? -1 : 1;
-        z += a[c][UNKNOWNS] / a[c][c] * field_of(sign, c % 2, sign < 0 ? 0 : -t, mu[0], nu[0]).z;
-    }
-    return (double)z;
-}
 
 static struct block coated(double thickness, double modulus, double nu1, double nu2,
                            double height) {
@@ -119,7 +40,7 @@ static void solves_the_equations_of_both_layers(void **state) {
                 for (size_t p = 0; p < 9; p++) {
                     struct block block = coated(THICKNESS[t], MODULI[m], POISSON[p / 3],
                                                 POISSON[p % 3], THICKNESS[t] + BELOW[b]);
-                    double error = coating_compliance(1, &block) / direct(&block) - 1;
+                    double error = coating_compliance(1, &block) / coated_elasticity(&block) - 1;
                     most = fmax(most, fabs(error));
                     assert_true(fabs(error) <= 1e-11);
                     if (MODULI[m] <= 10 && block.height > 0.1)
