@@ -12,10 +12,15 @@
  * and nothing in out, where nothing is known of the source. */
 bool contact_errors(const struct contact_tally *tally, enum contact_measure measure, size_t model,
                     enum error_source source, struct contact_error *out);
-/* Returns the bound of a solution's error over the value, for a tolerance of its solver, by how
- * many nodes in contact and patches the value is of, in all realisations (F15.16). */
-double contact_errors_solver(enum measure_solver solver, double tolerance, double nodes,
-                             double patches);
+/* What solutions hold, in all realisations, on which the error of their solver depends. */
+struct solver_counts {
+    double tolerance;
+    double nodes, open, patches; /* nodes in contact and others; patches: NaN where not known */
+};
+/* Returns the bound of the error that the tolerance of a solver leaves in a value (F15.16). Gaps
+ * are over the RMS height. */
+double contact_errors_solver(enum measure_solver solver, const struct solver_counts *of,
+                             double value);
 /* Returns whether the source bears on a measure of a model. */
 bool contact_error_applies(const struct contact_tally *tally, enum contact_measure measure,
                            size_t model, size_t level, enum error_source source);

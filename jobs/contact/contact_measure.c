@@ -58,11 +58,11 @@ static const struct measure NO_MEASURE = {.shown = never_shown, .kept = never_ke
         stretch_fraction(area.perimeter, open_now),                                                \
         "contact_area", "perimeter", "A/A0", AREA, 1, COUNTED, PRESSURE, FALLS, SAME, SOME, AREA)  \
     ROW(GAP, true, true, area.mean_gap / context->rms_height,                                      \
-        "mean_gap", "", "mean gap/sqrt(m0)", GAP, 2, SMOOTH, GAP, STAYS, SAME, ALL, HEIGHT)        \
+        "mean_gap", "", "mean gap/sqrt(m0)", GAP, 2, GAP, GAP, STAYS, SAME, ALL, HEIGHT)        \
     ROW(STIFFNESS, one_case->stiffness, true,                                                      \
         measure_stiffness(context, state->stiffness),                      \
         "stiffness", "", "K sqrt(m0)/(E* h'_rms)", NONE,                                           \
-        2, COUNTED, GAP, FALLS, SAME, REPORTED, STIFFNESS)                                         \
+        2, STIFFNESS, GAP, FALLS, SAME, REPORTED, STIFFNESS)                                         \
     ROW(PATCHES, true, false, (double)patches.count,                                               \
         "patch_count", "cell", "patches", NONE, 1, PATCHES, PRESSURE, STAYS, GROWS, SOME, ONE)     \
     ROW(PATCH_MEAN, true, false, now * patches.mean / context->points,                             \

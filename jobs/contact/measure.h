@@ -45,10 +45,18 @@ enum measure_theories {
     THEORIES_PLASTIC,
     THEORIES_KINDS
 };
-/* How the solver's tolerance changes it: smoothly with the forces; by counted points, one of which
- * may fall on either side; by patches, which such a point may join or divide; or by points in bins
- * of pressure. */
-enum measure_solver { SOLVER_SMOOTH, SOLVER_COUNTED, SOLVER_PATCHES, SOLVER_BINNED };
+/* How the solver's tolerance changes it: smoothly with the forces; as a gap, which is closed within
+ * a length; by counted points, one of which may fall on either side; as a stiffness, to which few
+ * open points matter as much as few in contact; by patches, which such a point may join or divide;
+ * or by points in bins of pressure. */
+enum measure_solver {
+    SOLVER_SMOOTH,
+    SOLVER_GAP,
+    SOLVER_COUNTED,
+    SOLVER_STIFFNESS,
+    SOLVER_PATCHES,
+    SOLVER_BINNED
+};
 /* The field of a solution that it is measured on. */
 enum measure_field { FIELD_NONE, FIELD_PRESSURE, FIELD_GAP };
 /* Whether it falls with the load where that is light. */

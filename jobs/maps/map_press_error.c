@@ -185,10 +185,14 @@ static void solver_errors(const struct errors *errors, size_t m) {
         for (size_t v = 0; v < PRESS_VALUES; v++)
             if (applies(errors, m, v, ERROR_SOLVER)) {
                 const double *value = series->rows[l].value;
-                double share =
-                    contact_errors_solver(press_measure(v)->solver, series->tolerance,
-                                          value[PRESS_CONTACT_NODES], value[MEASURE_PATCHES]);
-                put(&series->rows[l], ERROR_SOLVER, v, 0, share * fabs(value[v]));
+                double nodes = value[PRESS_CONTACT_NODES];
+                const struct solver_counts of = {.tolerance = series->tolerance,
+                                                 .nodes = nodes,
+                                                 .open = (double)grid_points(&errors->press->map) -
+                                                         nodes,
+                                                 .patches = value[MEASURE_PATCHES]};
+                put(&series->rows[l], ERROR_SOLVER, v, 0,
+                    contact_errors_solver(press_measure(v)->solver, &of, value[v]));
             }
 }
 

@@ -254,9 +254,9 @@ static void bound_named_mesh(struct summing *summing) {
 static void bound_solver(struct summing *summing) {
     struct contact_sum *sum = &summing->out->sum;
     const struct contact_case *base = component_case(summing->answer->of[ROLE_BASE]);
-    const double share = contact_errors_solver(SOLVER_BINNED, base->tolerance, 0, 0);
+    const struct solver_counts of = {.tolerance = base->tolerance};
     for (size_t b = 0; b < summing->bins; b++)
-        sum->solver[b] = share * fabs(sum->value[b]);
+        sum->solver[b] = contact_errors_solver(SOLVER_BINNED, &of, sum->value[b]);
     contact_errors_near_bins(summing->bins, sum->solver);
 }
 

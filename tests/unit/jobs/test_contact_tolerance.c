@@ -97,6 +97,12 @@ static void stored_cases_keep_theirs(void **state) {
     study_destroy(&study);
 }
 
+static double bound_of(enum measure_solver solver, double tolerance, double nodes, double open,
+                       double value) {
+    const struct solver_counts of = {tolerance, nodes, open, nodes / 10};
+    return contact_errors_solver(solver, &of, value);
+}
+
 /* Bounds fall with the tolerance and with the number of nodes, down to a part of the tolerance. One
  * node of some that are counted is always within. */
 static void bounds_fall(void **state) {
@@ -104,17 +110,34 @@ static void bounds_fall(void **state) {
     for (enum measure_solver solver = SOLVER_SMOOTH; solver <= SOLVER_PATCHES; solver++) {
         double before = INFINITY;
         for (double nodes = 10; nodes < 1e9; nodes *= 10) {
-            double bound = contact_errors_solver(solver, 1e-4, nodes, nodes / 10);
+            double bound = bound_of(solver, 1e-4, nodes, nodes, 1);
             assert_true(bound <= before && bound <= 0.1);
-            assert_true(bound >= contact_errors_solver(solver, 1e-5, nodes, nodes / 10));
+            assert_true(bound >= bound_of(solver, 1e-5, nodes, nodes, 1));
+            check_relative(bound_of(solver, 1e-4, nodes, 10 * nodes, -2), 2 * bound, 1e-12);
             before = bound;
         }
         assert_true(before < 0.005 && before > 1e-4);
-        check_relative(contact_errors_solver(solver, 1e-6, 0, 0), 1e-3, 1e-12);
+        check_relative(bound_of(solver, 1e-6, 0, 0, 1), 1e-3, 1e-12);
+        assert_true(isnan(bound_of(solver, 1e-4, 1000, 1000, (double)NAN)));
     }
-    assert_true(contact_errors_solver(SOLVER_COUNTED, 1e-4, 1000, 100) > 1.0 / 1000);
-    assert_true(contact_errors_solver(SOLVER_SMOOTH, 1e-4, 1e6, 1e5) < 0.002);
-    check_relative(contact_errors_solver(SOLVER_BINNED, 1e-4, 1e6, 1e5), 0.1, 1e-12);
+    assert_true(bound_of(SOLVER_COUNTED, 1e-4, 1000, 1000, 1) > 1.0 / 1000);
+    assert_true(bound_of(SOLVER_SMOOTH, 1e-4, 1e6, 1e6, 1) < 0.002);
+    check_relative(bound_of(SOLVER_BINNED, 1e-4, 1e6, 1e6, 1), 0.1, 1e-12);
+}
+
+/* Near full contact few nodes are open. They decide the stiffness, and gaps are closed within a
+ * length, not within a share. */
+static void open_nodes_decide_near_full_contact(void **state) {
+    (void)state;
+    double half = bound_of(SOLVER_STIFFNESS, 1e-4, 1000, 1000, 1);
+    check_relative(bound_of(SOLVER_STIFFNESS, 1e-4, 1000, 10, 1), 100 * half, 1e-12);
+    check_relative(bound_of(SOLVER_STIFFNESS, 1e-4, 1000, 0, 1), 1000 * half, 1e-12);
+    check_relative(bound_of(SOLVER_COUNTED, 1e-4, 1000, 10, 1), half, 1e-12);
+    double gap = bound_of(SOLVER_GAP, 1e-4, 1000, 10, 1e-6);
+    assert_true(gap > 3e-6 && gap < 4e-6);
+    check_relative(bound_of(SOLVER_GAP, 1e-4, 1000, 10, 0), gap, 1e-12);
+    check_relative(bound_of(SOLVER_GAP, 1e-4, 1000, 9000, 2),
+                   bound_of(SOLVER_SMOOTH, 1e-4, 1000, 9000, 2), 1e-12);
 }
 
 int main(void) {
@@ -124,6 +147,7 @@ int main(void) {
         cmocka_unit_test(realisations_do_not_matter),
         cmocka_unit_test(stored_cases_keep_theirs),
         cmocka_unit_test(bounds_fall),
+        cmocka_unit_test(open_nodes_decide_near_full_contact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -218,9 +218,12 @@ static void curves_say_what_is_known(void **state) {
     assert_false(gap->errors[ERROR_BLOCK].applies || gap->errors[ERROR_CELL].applies ||
                  gap->errors[ERROR_MISSING].applies || gap->law_difference != NULL);
     assert_true(solver->value[1] == 0);
-    double share = contact_errors_solver(SOLVER_SMOOTH, 1e-8,
-                                         pressed.rows[0][1].value[PRESS_CONTACT_NODES], NAN);
-    check_relative(solver->bound[1], share * gap->y[1], 1e-12);
+    double nodes = pressed.rows[0][1].value[PRESS_CONTACT_NODES];
+    const struct solver_counts of = {.tolerance = 1e-8,
+                                     .nodes = nodes,
+                                     .open = (double)grid_points(&press.map) - nodes,
+                                     .patches = NAN};
+    check_relative(solver->bound[1], contact_errors_solver(SOLVER_GAP, &of, gap->y[1]), 1e-12);
     assert_true(isnan(solver->standard_error[1]) && isnan(gap->standard_error[1]));
     for (size_t s = 0; s < ERROR_SOURCES; s++)
         assert_false(load->errors[s].applies);
