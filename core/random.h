@@ -16,12 +16,15 @@ enum random_stream {
     STREAM_AMPLITUDES = 3
 };
 
+enum { COUNTER_BIT = 60 };
+
 /* Selects random numbers. Plain data that may be copied. */
 struct random_key {
     uint64_t seed;
     uint64_t sequence; /* 0; or the case's number, where cases share no random numbers; with one of
                           the three highest bits, and a number from bit 40 on, for surfaces beside
-                          the realisations */
+                          the realisations; with the fourth highest, COUNTER_BIT, for the counter
+                          faces of all these */
     uint64_t realisation;
 };
 

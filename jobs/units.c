@@ -104,11 +104,19 @@ static bool has_loads_in_pascal(const struct case_result *result) {
     return unit != NULL && same_text(unit->text, "Pa");
 }
 
-/* Young's modulus is 1 unless given, in a unit that nobody knows. */
+/* Young's modulus is 1 unless given, in a unit that nobody knows. The counter body is rigid unless
+ * it has one. */
 static double modulus_of(const struct case_result *result, double length) {
     double young = number_of(result, "/contact/young"), nu = number_of(result, "/contact/poisson");
+    double counter = number_of(result, "/counter_surface/young");
+    double counter_nu = number_of(result, "/counter_surface/poisson");
     bool known = young != 1 && (!isnan(length) || has_loads_in_pascal(result));
-    return known ? young / (1 - nu * nu) : (double)NAN;
+    if (!known)
+        return NAN;
+    if (isnan(counter))
+        return young / (1 - nu * nu);
+    counter_nu = isnan(counter_nu) ? nu : counter_nu;
+    return 1 / ((1 - nu * nu) / young + (1 - counter_nu * counter_nu) / counter);
 }
 
 /* Returns the sum of the resistivities of both bodies, from an array of one for both or of two. */

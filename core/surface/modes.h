@@ -10,6 +10,7 @@
 enum spectrum_type { RUGO_SPECTRA(SPECTRUM_TYPE) };
 #undef SPECTRUM_TYPE
 struct translation;
+struct counter_face;
 enum spectrum_scale {
     SCALE_NONE,       /* m0 = 1 */
     SCALE_RMS_HEIGHT, /* sqrt(m00) = value */
@@ -38,6 +39,9 @@ struct spectrum {
     /* The law by which heights are translated from a Gaussian field (translation.h), borrowed;
      * NULL: the surface itself has the spectrum. It must be of this shape of spectrum. */
     const struct translation *translation;
+    /* A second face (counter_face.h), borrowed: modes and moments are those of the sum of both, and
+     * the scale above is of the first alone. NULL: there is one face. */
+    const struct counter_face *counter;
 };
 
 /* The discrete spectrum on a grid: power P(mx, my) = |Z|^2, mean square height = sum over all modes

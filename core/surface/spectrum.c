@@ -1,5 +1,6 @@
 #include "core/surface/spectrum.h"
 #include "core/sum.h"
+#include "core/surface/counter_face.h"
 #include "core/surface/spectrum_density.h"
 #include "core/surface/transform.h"
 #include "core/surface/translation/translation.h"
@@ -252,8 +253,9 @@ static int modes_scale(struct modes *modes, const struct spectrum *s, struct err
     return 0;
 }
 
-int modes_create(struct modes **out, const struct spectrum *spectrum, const struct grid *grid,
-                 struct error *err) {
+/* Makes the modes of the first face. */
+static int face_modes_create(struct modes **out, const struct spectrum *spectrum,
+                             const struct grid *grid, struct error *err) {
     int status = grid_check(grid, err);
     if (status == 0)
         status = spectrum_check(spectrum, grid, err);
@@ -286,6 +288,66 @@ int modes_create(struct modes **out, const struct spectrum *spectrum, const stru
     }
     *out = modes;
     return 0;
+}
+
+static void powers_add(struct modes *sum, const struct modes *face) {
+    long mode_y = (long)face->mode_y;
+    size_t rows = 2 * sum->mode_y + 1;
+    for (size_t mx = 0; mx <= face->mode_x; mx++)
+        for (long my = -mode_y; my <= mode_y; my++)
+            sum->power[mx * rows + (size_t)(my + (long)sum->mode_y)] += modes_power(face, mx, my);
+}
+
+static double power_of(const struct modes *modes) {
+    struct moments moments;
+    modes_moments(modes, &moments);
+    return moments.m00;
+}
+
+/* Makes the modes of the sum of two faces on the same grid. */
+static int modes_add(struct modes **out, const struct modes *one, const struct modes *other,
+                     struct error *err) {
+    struct modes *sum = array_create(1, sizeof *sum);
+    if (sum == NULL)
+        return error_memory(err, sizeof *sum, "a discrete spectrum");
+    *sum = (struct modes){.grid = one->grid};
+    sum->mode_x = one->mode_x > other->mode_x ? one->mode_x : other->mode_x;
+    sum->mode_y = one->mode_y > other->mode_y ? one->mode_y : other->mode_y;
+    size_t rows = 2 * sum->mode_y + 1, count = (sum->mode_x + 1) * rows;
+    sum->power = array_create(count, sizeof *sum->power);
+    if (sum->power == NULL) {
+        modes_destroy(&sum);
+        return error_memory(err, count * sizeof(double), "a discrete spectrum");
+    }
+    powers_add(sum, one);
+    powers_add(sum, other);
+    for (size_t a = 0; a < count; a++)
+        if (sum->power[a] > 0)
+            sum->count += modes_weight(&sum->grid, a / rows);
+    double power = power_of(one), more = power_of(other);
+    sum->clipped = (one->clipped * power + other->clipped * more) / (power + more);
+    *out = sum;
+    return 0;
+}
+
+int modes_create(struct modes **out, const struct spectrum *spectrum, const struct grid *grid,
+                 struct error *err) {
+    if (spectrum->counter == NULL)
+        return face_modes_create(out, spectrum, grid, err);
+    const struct spectrum *counter = &spectrum->counter->spectrum;
+    struct modes *one = NULL, *other = NULL;
+    if (spectrum->translation != NULL || counter->translation != NULL || counter->counter != NULL)
+        return error_set(err, ERROR_INPUT,
+                         "two faces with a translated one, or a third one; allowed: two that are "
+                         "not translated");
+    int status = face_modes_create(&one, spectrum, grid, err);
+    if (status == 0)
+        status = face_modes_create(&other, counter, grid, err);
+    if (status == 0)
+        status = modes_add(out, one, other, err);
+    modes_destroy(&one);
+    modes_destroy(&other);
+    return status;
 }
 
 void modes_destroy(struct modes **modes) {

@@ -1,4 +1,5 @@
 #include "core/surface/surface.h"
+#include "core/surface/counter_face.h"
 #include "core/surface/nongaussian.h"
 #include "core/surface/surface_options.h"
 #include "core/surface/transform.h"
@@ -7,8 +8,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The counter face of a surface, and the sum of both. */
+struct sum_of_faces {
+    struct generator *counter; /* owned, as all below */
+    struct modes *modes;       /* prescribed */
+    struct modes *drawn;       /* of the last run */
+    struct transform *transform;
+    double *z; /* of the counter face */
+};
+
 struct generator {
-    struct modes *modes;
+    struct modes *modes; /* of the first face, as all below */
     struct transform *transform;
     struct nongaussian *nongaussian; /* NULL: Gaussian heights */
     struct modes *drawn;             /* spectrum of the last draw, where amplitudes are random; else
@@ -18,6 +28,7 @@ struct generator {
     uint64_t *words;    /* mode_x + 1, as row_drawn */
     double *row_drawn;  /* amplitudes of a row, where they are random; else NULL */
     double *gaussian;   /* borrowed: where the Gaussian field is kept; NULL: nowhere */
+    struct sum_of_faces *sum; /* owned; NULL: there is one face */
 };
 
 static void amplitudes_fill(struct generator *g) {
@@ -49,8 +60,8 @@ static int arrays_create(struct generator *g, bool random, struct error *err) {
 }
 
 /* Allocates the spectrum of a draw, which is that of the mean until something is drawn. */
-static int drawn_create(struct generator *g, struct error *err) {
-    size_t count = (g->modes->mode_x + 1) * (2 * g->modes->mode_y + 1);
+static int drawn_create(struct modes **out, const struct modes *modes, struct error *err) {
+    size_t count = (modes->mode_x + 1) * (2 * modes->mode_y + 1);
     struct modes *drawn = array_create(1, sizeof *drawn);
     double *power = array_create(count, sizeof *power);
     if (drawn == NULL || power == NULL) {
@@ -58,28 +69,30 @@ static int drawn_create(struct generator *g, struct error *err) {
         free(power);
         return error_memory(err, count * sizeof *power, "a drawn spectrum");
     }
-    memcpy(power, g->modes->power, count * sizeof *power);
-    *drawn = *g->modes;
+    memcpy(power, modes->power, count * sizeof *power);
+    *drawn = *modes;
     drawn->power = power;
-    g->drawn = drawn;
+    *out = drawn;
     return 0;
 }
 
-int generator_create(struct generator **out, const struct spectrum *spectrum,
-                     const struct grid *grid, const struct surface_options *options,
-                     struct error *err) {
+static int face_create(struct generator **out, const struct spectrum *spectrum,
+                       const struct grid *grid, const struct surface_options *options,
+                       struct error *err) {
     struct generator *g = array_create(1, sizeof *g);
     if (g == NULL)
         return error_memory(err, sizeof *g, "a generator");
     bool random = options->amplitudes == AMPLITUDES_RANDOM;
     bool iterated = surface_is_iterated(options);
-    int status = modes_create(&g->modes, spectrum, grid, err);
+    struct spectrum face = *spectrum;
+    face.counter = NULL;
+    int status = modes_create(&g->modes, &face, grid, err);
     if (status == 0)
         status = transform_create(&g->transform, grid, g->modes->mode_x, g->modes->mode_y, err);
     if (status == 0)
         status = arrays_create(g, random, err);
     if (status == 0 && random)
-        status = drawn_create(g, err);
+        status = drawn_create(&g->drawn, g->modes, err);
     if (status == 0 && iterated)
         status = nongaussian_create(&g->nongaussian, random ? g->drawn : g->modes, options, err);
     if (status != 0) {
@@ -90,11 +103,7 @@ int generator_create(struct generator **out, const struct spectrum *spectrum,
     return 0;
 }
 
-int generator_set_team(struct generator *generator, struct team *team, struct error *err) {
-    return transform_set_team(generator->transform, team, err);
-}
-
-void generator_destroy(struct generator **generator) {
+static void face_destroy(struct generator **generator) {
     struct generator *g = *generator;
     if (g == NULL)
         return;
@@ -110,11 +119,79 @@ void generator_destroy(struct generator **generator) {
     *generator = NULL;
 }
 
+/* Adds the counter face of the spectrum. */
+static int sum_create(struct sum_of_faces *sum, const struct spectrum *spectrum,
+                      const struct grid *grid, const struct surface_options *options,
+                      struct error *err) {
+    struct surface_options counter = spectrum->counter->options;
+    counter.stop = options->stop;
+    counter.stop_context = options->stop_context;
+    int status = modes_create(&sum->modes, spectrum, grid, err);
+    if (status == 0)
+        status = drawn_create(&sum->drawn, sum->modes, err);
+    if (status == 0)
+        status =
+            transform_create(&sum->transform, grid, sum->modes->mode_x, sum->modes->mode_y, err);
+    if (status == 0)
+        status = face_create(&sum->counter, &spectrum->counter->spectrum, grid, &counter, err);
+    if (status != 0)
+        return status;
+    sum->z = array_create(grid_points(grid), sizeof *sum->z);
+    return sum->z != NULL ? 0
+                          : error_memory(err, grid_points(grid) * sizeof *sum->z, "a counter face");
+}
+
+static void sum_destroy(struct sum_of_faces **sum) {
+    struct sum_of_faces *gone = *sum;
+    if (gone == NULL)
+        return;
+    face_destroy(&gone->counter);
+    modes_destroy(&gone->modes);
+    modes_destroy(&gone->drawn);
+    transform_destroy(&gone->transform);
+    free(gone->z);
+    free(gone);
+    *sum = NULL;
+}
+
+int generator_create(struct generator **out, const struct spectrum *spectrum,
+                     const struct grid *grid, const struct surface_options *options,
+                     struct error *err) {
+    struct generator *g = NULL;
+    int status = face_create(&g, spectrum, grid, options, err);
+    if (status == 0 && spectrum->counter != NULL) {
+        g->sum = array_create(1, sizeof *g->sum);
+        status = g->sum != NULL ? sum_create(g->sum, spectrum, grid, options, err)
+                                : error_memory(err, sizeof *g->sum, "a counter face");
+    }
+    if (status != 0)
+        generator_destroy(&g);
+    else
+        *out = g;
+    return status;
+}
+
+void generator_destroy(struct generator **generator) {
+    if (*generator != NULL)
+        sum_destroy(&(*generator)->sum);
+    face_destroy(generator);
+}
+
+int generator_set_team(struct generator *generator, struct team *team, struct error *err) {
+    struct sum_of_faces *sum = generator->sum;
+    int status = transform_set_team(generator->transform, team, err);
+    if (status == 0 && sum != NULL)
+        status = transform_set_team(sum->counter->transform, team, err);
+    return status == 0 && sum != NULL ? transform_set_team(sum->transform, team, err) : status;
+}
+
 const struct modes *generator_modes(const struct generator *generator) {
-    return generator->modes;
+    return generator->sum != NULL ? generator->sum->modes : generator->modes;
 }
 
 const struct modes *generator_drawn(const struct generator *generator) {
+    if (generator->sum != NULL)
+        return generator->sum->drawn;
     return generator->drawn != NULL ? generator->drawn : generator->modes;
 }
 
@@ -133,6 +210,11 @@ double generator_bytes(const struct grid *grid, size_t mode_x, size_t mode_y,
     if (!surface_is_iterated(options))
         return bytes;
     return bytes + nongaussian_bytes(grid, mode_x, mode_y, options);
+}
+
+double generator_sum_bytes(const struct grid *grid, size_t mode_x, size_t mode_y) {
+    double band = (double)(mode_x + 1) * (double)(2 * mode_y + 1);
+    return sizeof(double) * 2 * band + transform_bytes(grid, mode_x);
 }
 
 /* Random words are numbered by wave vectors alone (in units of 2 pi/L). So a wave has the same
@@ -219,16 +301,16 @@ static void spectrum_draw(struct generator *g, struct random_key key) {
     }
 }
 
-/* Computes the powers of the last draw; modes without power stay without. */
-static void drawn_measure(struct generator *g) {
-    struct modes *drawn = g->drawn;
+/* Computes the powers of a draw; modes without power stay without. */
+static void drawn_measure(struct modes *drawn, const struct modes *prescribed,
+                          struct transform *transform) {
     size_t rows = 2 * drawn->mode_y + 1, ny = drawn->grid.ny;
-    const double complex *spectrum = transform_spectrum(g->transform);
+    const double complex *spectrum = transform_spectrum(transform);
     for (size_t mx = 0; mx <= drawn->mode_x; mx++)
         for (size_t row = 0; row < rows; row++) {
             double complex mode =
                 spectrum[mx * ny + column_row((long)row - (long)drawn->mode_y, ny)];
-            bool any = g->modes->power[mx * rows + row] > 0;
+            bool any = prescribed->power[mx * rows + row] > 0;
             drawn->power[mx * rows + row] =
                 any ? creal(mode) * creal(mode) + cimag(mode) * cimag(mode) : 0;
         }
@@ -241,6 +323,8 @@ void generator_keep_gaussian(struct generator *g, double *gaussian) {
 void generator_aim(struct generator *g, const struct surface_aim *aim) {
     if (g->nongaussian != NULL)
         nongaussian_aim(g->nongaussian, aim);
+    if (g->sum != NULL)
+        generator_aim(g->sum->counter, aim);
 }
 
 /* Computes heights from the spectrum, those of a translated surface strip by strip in cache. */
@@ -262,16 +346,50 @@ static void heights_fill(struct generator *g, double *z) {
     }
 }
 
-int generator_run(struct generator *g, struct random_key key, double *z,
-                  struct surface_report *report, struct error *err) {
+static int face_run(struct generator *g, struct random_key key, double *z,
+                    struct surface_report *report, struct error *err) {
     spectrum_draw(g, key);
     if (g->drawn != NULL)
-        drawn_measure(g);
+        drawn_measure(g->drawn, g->modes, g->transform);
     heights_fill(g, z);
     if (g->nongaussian != NULL)
         return nongaussian_run(g->nongaussian, g->transform, key, z, report, err);
     if (report != NULL)
         *report = (struct surface_report){.end = END_DIRECT};
+    return 0;
+}
+
+/* Returns the report of both faces: iterations of both, and of the rest the larger of each. */
+static struct surface_report report_of_both(const struct surface_report *a,
+                                            const struct surface_report *b) {
+    return (struct surface_report){.iterations = a->iterations + b->iterations,
+                                   .end = a->end > b->end ? a->end : b->end,
+                                   .eps_h = fmax(a->eps_h, b->eps_h),
+                                   .eps_s = fmax(a->eps_s, b->eps_s),
+                                   .eps_s0 = fmax(a->eps_s0, b->eps_s0),
+                                   .eps_s_amplitude = fmax(a->eps_s_amplitude, b->eps_s_amplitude),
+                                   .eps_s0_amplitude =
+                                       fmax(a->eps_s0_amplitude, b->eps_s0_amplitude)};
+}
+
+int generator_run(struct generator *g, struct random_key key, double *z,
+                  struct surface_report *report, struct error *err) {
+    struct sum_of_faces *sum = g->sum;
+    struct surface_report own, counter;
+    if (sum == NULL)
+        return face_run(g, key, z, report, err);
+    int status = face_run(g, key, z, &own, err);
+    key.sequence ^= UINT64_C(1) << COUNTER_BIT;
+    if (status == 0)
+        status = face_run(sum->counter, key, sum->z, &counter, err);
+    if (status != 0)
+        return status;
+    for (size_t i = 0; i < grid_points(&g->modes->grid); i++)
+        z[i] += sum->z[i];
+    transform_forward(sum->transform, z);
+    drawn_measure(sum->drawn, sum->modes, sum->transform);
+    if (report != NULL)
+        *report = report_of_both(&own, &counter);
     return 0;
 }
 

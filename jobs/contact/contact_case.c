@@ -76,7 +76,7 @@ struct contact_options contact_case_options(const struct contact_case *one_case)
 double contact_case_least_seconds(const struct contact_case *one_case) {
     const struct surface_case *surface = &one_case->surface;
     double seconds =
-        1e-9 * cost_generation(&surface->options, NULL) * (double)grid_points(&surface->grid);
+        1e-9 * surface_case_nanoseconds(surface, NULL) * (double)grid_points(&surface->grid);
     for (size_t l = 0; l < one_case->level_count; l++)
         for (size_t m = 0; m < one_case->model_count; m++)
             seconds += fmax(1, one_case->models[m]->times_linear) *

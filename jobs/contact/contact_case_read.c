@@ -5,14 +5,16 @@
 #include "jobs/contact/contact_loads.h"
 #include "jobs/contact/quantity/quantity.h"
 #include "jobs/like/like_parameters.h"
+#include "jobs/surface/other_law.h"
+#include "jobs/surface/surface_counter.h"
 #include "jobs/surface/surface_parameters.h"
 #include "jobs/target.h"
 #include <math.h>
 #include <stdlib.h>
 
-const struct parameter_table *const CONTACT_TABLES[] = {&CONTACT_PARAMETERS, &SURFACE_PARAMETERS,
-                                                        &LIKE_PARAMETERS, &TARGET_PARAMETERS,
-                                                        CONTACT_QUANTITY_TABLES NULL};
+const struct parameter_table *const CONTACT_TABLES[] = {
+    &CONTACT_PARAMETERS, &SURFACE_PARAMETERS, &COUNTER_PARAMETERS,
+    &LIKE_PARAMETERS,    &TARGET_PARAMETERS,  CONTACT_QUANTITY_TABLES NULL};
 
 static const double ROUNDING = 1e-9; /* relative: of numbers that should be equal */
 enum { BINS_MOST = 10000, PRESSURE_CELLS_MOST = 1000000 };
@@ -29,6 +31,7 @@ struct asked {
     double fine; /* in fine_unit; INFINITY; NaN: by transition_depth */
     int fine_unit;
     double modulus; /* E* in Pa of loads in Pa; 0: loads are in E* h' */
+    struct counter_body counter;
 };
 
 static const char FINE_HEIGHT[] = "/contact/block_fine_height";
@@ -104,8 +107,11 @@ static const char LOAD_VALUES[] = "/contact/pressures/values",
 static void read_load_unit(struct asked *asked, struct values *values) {
     double young = values_number(values, "/contact/young");
     double nu = values_number(values, "/contact/poisson");
+    double compliance = (1 - nu * nu) / young;
+    if (!isnan(asked->counter.young))
+        compliance += (1 - pow(asked->counter.poisson, 2)) / asked->counter.young;
     if (values_choice(values, "/contact/pressures/unit") == LOAD_UNIT_PASCAL)
-        asked->modulus = young / (1 - nu * nu);
+        asked->modulus = isnan(asked->counter.young) ? young / (1 - nu * nu) : 1 / compliance;
 }
 
 /* Checks loads in E* h'. */
@@ -287,6 +293,51 @@ static int read_kept(struct contact_case *out, struct values *values, struct err
     return 0;
 }
 
+static const char COUNTER_YOUNG[] = "/counter_surface/young";
+
+/* Checks what a second face, or its body, excludes. An elastic counter body adds its compliance to
+ * that of the block. The sum is one E*, with which all results scale, where both are infinite
+ * half-spaces. */
+static void check_counter(const struct contact_case *one_case, const struct asked *asked,
+                          struct values *values) {
+    bool elastic = !isnan(asked->counter.young);
+    if (!asked->counter.given)
+        return;
+    if (values_is_given(values, "/surface/like/file"))
+        values_fault(values, "/surface/like/file",
+                     "a surface like a measured one is compared with it as one face; allowed: "
+                     "one of like and counter_surface");
+    for (size_t m = 0; m < one_case->model_count; m++) {
+        const struct contact_model *model = one_case->models[m];
+        if (!model->counter_faces)
+            values_fault(values, "/contact/model",
+                         "the model %s has the shape of one rough face, and counter_surface is a "
+                         "second one; allowed: halfspace, layered",
+                         contact_model_name(model));
+        else if (elastic && (model->elements || isfinite(asked->height)))
+            values_fault(values, COUNTER_YOUNG,
+                         "%g: below an elastic counter body the block must be an infinite "
+                         "half-space, and %s has a height; leave young out, or take the model "
+                         "halfspace without block_height",
+                         asked->counter.young, contact_model_name(model));
+    }
+    if (elastic && one_case->model_count > 0 && block_is_coated(&one_case->blocks[0]))
+        values_fault(values, COUNTER_YOUNG,
+                     "%g: a coating is on a block with a rigid counter body; leave young out",
+                     asked->counter.young);
+}
+
+/* Checks what rests on one face alone, of two faces that have no fault. */
+static void check_faces(const struct surface_case *surface, struct values *values) {
+    static const char path[] = "/contact/law_difference";
+    if (surface->counter == NULL || surface_case_gaussian(surface))
+        return;
+    if (values_choice(values, path) != COMPANION_NONE)
+        values_fault(values, path,
+                     "the other law of heights is not known of two faces whose heights are not "
+                     "Gaussian; allowed: \"none\"");
+}
+
 /* Reads all that needs no surface. */
 static int read_alone(struct contact_case *out, struct asked *asked, struct values *values,
                       struct error *err) {
@@ -298,6 +349,7 @@ static int read_alone(struct contact_case *out, struct asked *asked, struct valu
     double friction = values_number(values, "/contact/friction");
     out->friction = friction > 0 ? friction : 0;
     contact_quantities_read(out, values);
+    check_counter(out, asked, values);
     read_load_unit(asked, values);
     int status = read_loads(out, asked, values, err);
     if (status == 0)
@@ -623,7 +675,13 @@ int contact_case_read(struct contact_case *out, const cJSON *parameters, double 
     if (status == 0)
         status = surface_case_fill(&out->surface, values, &surface, err);
     if (status == 0)
+        status = surface_counter_fill(&out->surface, parameters, values, &surface, err);
+    if (status == 0) {
+        double poisson = values_number(values, "/contact/poisson");
+        asked.counter = surface_counter_body(parameters, values, poisson);
+        check_faces(&out->surface, values);
         status = like_case_fill(&out->like, values, surface, err);
+    }
     if (status == 0)
         status = read_alone(out, &asked, values, err);
     if (status == 0 && surface != NULL && fits_memory(surface, memory_limit, values))

@@ -29,8 +29,7 @@ static bool is_one_wave(const struct contact_case *one_case, const struct modes 
 
 /* Returns whether theories of Gaussian isotropic asperities apply. */
 static bool has_asperities(const struct contact_case *one_case, const struct moments *moments) {
-    return one_case->surface.dimension == 2 &&
-           one_case->surface.options.heights.type == HEIGHTS_GAUSSIAN &&
+    return one_case->surface.dimension == 2 && surface_case_gaussian(&one_case->surface) &&
            translated_case_applies(&one_case->surface, moments);
 }
 
@@ -107,7 +106,7 @@ static int put_translated(struct theory_list *list, const struct translated_surf
 static int put_summits(struct theory_list *list, const struct modes *modes,
                        const struct moments *moments, struct error *err) {
     struct translated_case translated;
-    if (list->one_case->surface.dimension != 2 ||
+    if (list->one_case->surface.dimension != 2 || list->one_case->surface.counter != NULL ||
         !translated_case_applies(&list->one_case->surface, moments))
         return 0;
     int status = translated_case_create(&translated, &list->one_case->surface, modes, err);

@@ -9,7 +9,8 @@
 /* Areas as they are under load need a surface with a scale, and a strain of the face that is that
  * of one material (F22.6). */
 static bool has_stretched(const struct contact_case *one_case) {
-    return one_case->edges && contact_case_has_scale(one_case) && !contact_case_is_coated(one_case);
+    return one_case->edges && contact_case_has_scale(one_case) &&
+           !contact_case_is_coated(one_case) && one_case->surface.counter == NULL;
 }
 
 static double stretched(const struct measure_context *context, double edges, double open) {

@@ -180,9 +180,10 @@ int contact_scalars_measure(struct contact_tally *tally, const struct roughness 
     return status;
 }
 
-static void theories(const struct contact_case *one_case, const struct moments *moments,
-                     double *theory) {
+static int theories(const struct contact_case *one_case, const struct moments *moments,
+                    double *theory, struct error *err) {
     struct height_moments heights;
+    bool known;
     for (size_t a = 0; a < CONTACT_SCALAR_COUNT; a++)
         theory[a] = NAN;
     /* A single wave has alpha = 1, and no light-load line. */
@@ -193,10 +194,12 @@ static void theories(const struct contact_case *one_case, const struct moments *
     theory[CONTACT_SCALAR_RMS_SLOPE] = moments->rms_slope;
     if (!surface_case_exact(&one_case->surface))
         theory[CONTACT_SCALAR_NAYAK_ALPHA] = moments->nayak_alpha;
-    if (heights_moments(&one_case->surface.options.heights, &heights, NULL) == 0) {
+    int status = surface_case_heights(&one_case->surface, &heights, &known, err);
+    if (status == 0 && known) {
         theory[CONTACT_SCALAR_SKEWNESS] = heights.skewness;
         theory[CONTACT_SCALAR_KURTOSIS] = heights.kurtosis;
     }
+    return status;
 }
 
 /* --- scalars of the tally --- */
@@ -371,8 +374,7 @@ static int add_scalars(const struct contact_case *one_case, const struct moments
                        double *column, struct case_result *out, struct error *err) {
     double theory[CONTACT_SCALAR_COUNT];
     size_t count = scalar_count();
-    int status = 0;
-    theories(one_case, moments, theory);
+    int status = theories(one_case, moments, theory, err);
     for (size_t a = 0; a < count && status == 0; a++) {
         struct origin origin = origin_of(a);
         bool own = origin.model != NULL;

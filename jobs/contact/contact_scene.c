@@ -332,18 +332,20 @@ static double plain_bytes(const struct contact_case *one_case) {
 static double area_scatter(const struct contact_case *one_case) {
     const struct surface_case *surface = &one_case->surface;
     bool affine = surface->spectrum.type == SPECTRUM_SELF_AFFINE;
-    double ratio = surface->wavelength_ratio;
-    struct height_moments moments;
-    if (heights_moments(&surface->options.heights, &moments, NULL) != 0)
+    double ratio = surface->wavelength_ratio * surface_case_times_longest(surface) *
+                   surface_case_times_shortest(surface);
+    struct height_moments moments = {0};
+    bool known;
+    if (surface_case_heights(surface, &moments, &known, NULL) != 0 || !known)
         moments.skewness = 0;
-    return cost_area_scatter(
-        &(struct area_scatter){.dimension = surface->dimension,
-                               .fixed = surface->options.amplitudes == AMPLITUDES_FIXED,
-                               .long_waves = surface_case_mean_side(surface),
-                               .ratio = ratio > 1 ? ratio : 1,
-                               .hurst = affine ? surface->spectrum.hurst : NAN,
-                               .skewness = moments.skewness,
-                               .load = one_case->loads[0]});
+    return cost_area_scatter(&(struct area_scatter){
+        .dimension = surface->dimension,
+        .fixed = surface->options.amplitudes == AMPLITUDES_FIXED && surface->counter == NULL,
+        .long_waves = surface_case_mean_side(surface) / surface_case_times_longest(surface),
+        .ratio = ratio > 1 ? ratio : 1,
+        .hurst = affine ? surface->spectrum.hurst : NAN,
+        .skewness = moments.skewness,
+        .load = one_case->loads[0]});
 }
 
 void contact_case_estimate(const struct contact_case *one_case, struct study_cost *out) {
@@ -359,7 +361,7 @@ void contact_case_estimate(const struct contact_case *one_case, struct study_cos
     out->ny = finest->ny;
     out->memory_bytes = surface_case_bytes(surface) + plain_bytes(one_case) +
                         companions_bytes(one_case) + contact_tally_bytes(one_case) + PROCESS_BYTES;
-    out->seconds = 1e-4 + 1e-9 * cost_generation(&surface->options, &surface->grid) *
+    out->seconds = 1e-4 + 1e-9 * surface_case_nanoseconds(surface, &surface->grid) *
                               (double)grid_points(&surface->grid);
     out->kept = contact_kept_cost(one_case, out->seconds);
     for (size_t l = 0; l < one_case->level_count; l++)

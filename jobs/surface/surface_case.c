@@ -1,4 +1,5 @@
 #include "jobs/surface/surface_case.h"
+#include "core/cost.h"
 #include "core/surface/acf_spectrum.h"
 #include "jobs/surface/surface_parameters.h"
 #include <math.h>
@@ -556,16 +557,24 @@ int surface_case_read(struct surface_case *out, const cJSON *parameters, struct 
     return status;
 }
 
+static void face_clear(struct surface_case *face) {
+    free(face->table);
+    height_table_destroy(&face->height_table);
+    translation_destroy(&face->translation);
+}
+
 void surface_case_clear(struct surface_case *surface) {
-    free(surface->table);
-    height_table_destroy(&surface->height_table);
-    translation_destroy(&surface->translation);
+    face_clear(surface);
+    if (surface->counter != NULL)
+        face_clear(surface->counter);
+    free(surface->counter);
+    free(surface->counter_face);
     *surface = (struct surface_case){0};
 }
 
 /* Returns the highest wave number along a side of so many points and lambda_s. */
 static size_t side_band(const struct spectrum *spectrum, size_t points, double length) {
-    double highest = length;
+    double highest = length / spectrum->wavelength_short;
     if (spectrum->type == SPECTRUM_EXPONENTIAL_ACF)
         highest = (double)points;
     else if (spectrum->type == SPECTRUM_TABLE)
@@ -575,11 +584,20 @@ static size_t side_band(const struct spectrum *spectrum, size_t points, double l
     return highest < (double)nyquist ? (size_t)highest : nyquist;
 }
 
+static struct surface_band band_of(const struct spectrum *spectrum, const struct grid *grid,
+                                   int dimension) {
+    return (struct surface_band){side_band(spectrum, grid->nx, grid->lx),
+                                 dimension == 1 ? 0 : side_band(spectrum, grid->ny, grid->ly)};
+}
+
 struct surface_band surface_case_band(const struct surface_case *surface) {
-    const struct grid *grid = &surface->grid;
-    return (struct surface_band){
-        side_band(&surface->spectrum, grid->nx, grid->lx),
-        surface->dimension == 1 ? 0 : side_band(&surface->spectrum, grid->ny, grid->ly)};
+    struct surface_band band = band_of(&surface->spectrum, &surface->grid, surface->dimension);
+    if (surface->counter == NULL)
+        return band;
+    struct surface_band other =
+        band_of(&surface->counter->spectrum, &surface->grid, surface->dimension);
+    return (struct surface_band){other.x > band.x ? other.x : band.x,
+                                 other.y > band.y ? other.y : band.y};
 }
 
 struct surface_band surface_case_own_band(const struct surface_case *surface) {
@@ -594,14 +612,60 @@ struct surface_band surface_case_sampled_band(const struct surface_case *surface
 }
 
 double surface_case_bytes(const struct surface_case *surface) {
+    const struct grid *grid = &surface->grid;
     struct surface_band band = surface_case_band(surface);
-    return generator_bytes(&surface->grid, band.x, band.y, &surface->options);
+    double bytes = generator_bytes(grid, band.x, band.y, &surface->options);
+    if (surface->counter == NULL)
+        return bytes;
+    return bytes + generator_bytes(grid, band.x, band.y, &surface->counter->options) +
+           generator_sum_bytes(grid, band.x, band.y);
+}
+
+double surface_case_nanoseconds(const struct surface_case *surface, const struct grid *grid) {
+    double own = cost_generation(&surface->options, grid);
+    return surface->counter == NULL ? own : own + cost_generation(&surface->counter->options, grid);
+}
+
+/* Adds the cumulants of independent heights: moments of their sum. */
+static struct height_moments add_heights(const struct height_moments *a, double a_height,
+                                         const struct height_moments *b, double b_height) {
+    double m0 = a_height * a_height + b_height * b_height;
+    double x = a_height / sqrt(m0), y = b_height / sqrt(m0);
+    struct height_moments out = *a;
+    out.skewness = a->skewness * pow(x, 3) + b->skewness * pow(y, 3);
+    out.kurtosis = 3 + (a->kurtosis - 3) * pow(x, 4) + (b->kurtosis - 3) * pow(y, 4);
+    return out;
+}
+
+int surface_case_heights(const struct surface_case *surface, struct height_moments *out,
+                         bool *known, struct error *err) {
+    const struct surface_case *counter = surface->counter;
+    struct height_moments own, other;
+    struct moments of_own, of_other;
+    struct spectrum face = surface->spectrum;
+    *known = heights_moments(&surface->options.heights, &own, NULL) == 0 &&
+             (counter == NULL || heights_moments(&counter->options.heights, &other, NULL) == 0);
+    if (*known && surface_case_gaussian(surface))
+        counter = NULL;
+    if (*known && counter == NULL)
+        *out = own;
+    if (!*known || counter == NULL)
+        return 0;
+    face.counter = NULL;
+    int status = spectrum_moments(&face, &surface->grid, &of_own, err);
+    if (status == 0)
+        status = spectrum_moments(&counter->spectrum, &surface->grid, &of_other, err);
+    if (status == 0)
+        *out = add_heights(&own, of_own.rms_height, &other, of_other.rms_height);
+    return status;
 }
 
 void surface_case_estimate(const struct surface_case *surface, struct study_cost *out) {
     struct height_moments heights;
-    bool gaussian = surface->options.heights.type == HEIGHTS_GAUSSIAN;
-    bool known = !gaussian && heights_moments(&surface->options.heights, &heights, NULL) == 0;
+    bool known = false;
+    if (!surface_case_gaussian(surface) &&
+        surface_case_heights(surface, &heights, &known, NULL) != 0)
+        known = false; /* of a sum, without memory */
     surface_law_estimate(surface->translation, out);
     out->wavelength_ratio = surface->ratio_solved ? surface->wavelength_ratio : 0;
     out->hurst = surface->hurst_solved ? surface->spectrum.hurst : 0;
@@ -676,8 +740,9 @@ static bool rectangle_of(const struct surface_case *surface, double points, cons
     return true;
 }
 
-bool surface_case_grid(const struct surface_case *surface, double points, const char *path,
+bool surface_case_grid(const struct surface_case *surface, double points_of_wave, const char *path,
                        struct values *values, struct grid *out) {
+    double points = points_of_wave * surface_case_times_shortest(surface);
     bool profile = surface->dimension == 1;
     double length = surface->length_ratio * surface->wavelength_ratio;
     if (!surface_case_is_square(surface))

@@ -2,6 +2,8 @@
 #ifndef RUGO_JOBS_SURFACE_SURFACE_CASE_H
 #define RUGO_JOBS_SURFACE_SURFACE_CASE_H
 
+#include "core/surface/counter_face.h"
+#include "core/surface/height_moments.h"
 #include "core/surface/surface.h"
 #include "jobs/surface/surface_law.h"
 #include "schema/study/values.h"
@@ -22,6 +24,10 @@ struct surface_case {
     struct height_table *height_table;   /* owned: samples or quantiles of heights; NULL: none */
     struct translation *translation;     /* owned: that of the spectrum; NULL: none */
     const char *heights_name;            /* of the theory curves of heights */
+    /* A second face that this one is pressed on (surface_counter.h), with its wavelengths in
+     * lambda_s of this one and no grid: owned; NULL: there is one face. */
+    struct surface_case *counter;
+    struct counter_face *counter_face; /* owned: the same, for generators */
 };
 /* Highest wave numbers along x and y, in units of 2 pi over that side; y of profiles is 0. */
 struct surface_band {
@@ -46,15 +52,29 @@ void surface_case_clear(struct surface_case *surface);
 static inline bool surface_case_translated(const struct surface_case *surface) {
     return surface->spectrum.translation != NULL;
 }
+/* Returns whether the heights are Gaussian, and so is their sum with those of a counter face. */
+static inline bool surface_case_gaussian(const struct surface_case *surface) {
+    return surface->options.heights.type == HEIGHTS_GAUSSIAN &&
+           (surface->counter == NULL || surface->counter->options.heights.type == HEIGHTS_GAUSSIAN);
+}
+/* Returns whether surfaces, or one of two faces, are made by iteration. */
+static inline bool surface_case_iterated(const struct surface_case *surface) {
+    return surface_is_iterated(&surface->options) ||
+           (surface->counter != NULL && surface_is_iterated(&surface->counter->options));
+}
 /* Returns whether the generated surfaces have no waves outside the prescribed band. */
 static inline bool surface_case_band_limited(const struct surface_case *surface) {
-    return surface->options.heights.type == HEIGHTS_GAUSSIAN ||
-           (surface->options.keep == KEEP_SPECTRUM && !surface_case_translated(surface));
+    const struct surface_case *counter = surface->counter;
+    bool own = surface->options.heights.type == HEIGHTS_GAUSSIAN ||
+               (surface->options.keep == KEEP_SPECTRUM && !surface_case_translated(surface));
+    return own && (counter == NULL || counter->options.heights.type == HEIGHTS_GAUSSIAN ||
+                   counter->options.keep == KEEP_SPECTRUM);
 }
-/* Returns whether each surface has the prescribed spectrum exactly; with random amplitudes only
- * their mean has. */
+/* Returns whether each surface has the prescribed spectrum exactly; with random amplitudes, and of
+ * the sum of two faces, only their mean has. */
 static inline bool surface_case_exact(const struct surface_case *surface) {
-    return surface_case_band_limited(surface) && surface->options.amplitudes == AMPLITUDES_FIXED;
+    return surface_case_band_limited(surface) && surface->options.amplitudes == AMPLITUDES_FIXED &&
+           surface->counter == NULL;
 }
 /* Returns the highest wave numbers of the spectrum on the grid: at most nx/2 and ny/2. */
 struct surface_band surface_case_band(const struct surface_case *surface);
@@ -89,16 +109,35 @@ static inline double surface_case_longest(const struct surface_case *surface) {
     return surface->dimension == 1 ? surface->grid.lx : fmax(surface->grid.lx, surface->grid.ly);
 }
 
-/* Returns the peak bytes of a generator of the surface, with heights on its grid. */
+/* Returns how many times as long as the longest wave of the first face that of both is. */
+static inline double surface_case_times_longest(const struct surface_case *surface) {
+    return surface->counter != NULL
+               ? fmax(1, surface->length_ratio / surface->counter->length_ratio)
+               : 1;
+}
+/* Returns how many times as short as lambda_s the shortest wave of both faces is. */
+static inline double surface_case_times_shortest(const struct surface_case *surface) {
+    bool banded =
+        surface->counter != NULL && surface->counter->spectrum.type == SPECTRUM_SELF_AFFINE;
+    return banded ? fmax(1, 1 / surface->counter->spectrum.wavelength_short) : 1;
+}
+
+/* Return the peak bytes of a generator of the surface, with heights on its grid, and the
+ * nanoseconds of a point, by the tolerance on a grid where it is not NULL. */
 double surface_case_bytes(const struct surface_case *surface);
+double surface_case_nanoseconds(const struct surface_case *surface, const struct grid *grid);
+/* Fills moments of the heights, of two faces of their sum; false, and untouched, where they are not
+ * known. ERROR_MEMORY and ERROR_INPUT as spectrum_moments. */
+int surface_case_heights(const struct surface_case *surface, struct height_moments *out,
+                         bool *known, struct error *err);
 
 /* Returns the points a side for `points`, at least that: if it is no integer, rounded up to an even
  * number without prime factors above 7. */
 size_t surface_case_side(double points);
-/* Makes the grid of the cell with at least so many points a shortest wave, as far apart along x as
- * along y. Sides of p by q parts of equal length have p n by q n points, n rounded as above. If the
- * grid would be too large, or sides that need rounding are no simple ratio, adds a fault at `path`
- * and returns false; *out is then unchanged. */
+/* Makes the grid of the cell with at least so many points a shortest wave (of both faces), as far
+ * apart along x as along y. Sides of p by q parts of equal length have p n by q n points, n rounded
+ * as above. If the grid would be too large, or sides that need rounding are no simple ratio, adds a
+ * fault at `path` and returns false; *out is then unchanged. */
 bool surface_case_grid(const struct surface_case *surface, double points, const char *path,
                        struct values *values, struct grid *out);
 /* A grid has at most 2^31 points. */

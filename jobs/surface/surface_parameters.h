@@ -14,5 +14,7 @@ enum heights_given { GIVEN_SAMPLES = HEIGHTS_TABLE, GIVEN_QUANTILES };
 enum spectrum_given { SPECTRUM_GIVEN_ACF = 100 };
 
 extern const struct parameter_table SURFACE_PARAMETERS;
+/* Those of a second face that the first is pressed on, and of its body: kinds of contact. */
+extern const struct parameter_table COUNTER_PARAMETERS;
 
 #endif

@@ -3,7 +3,9 @@
 #include "jobs/surface/other_law.h"
 
 bool translated_case_applies(const struct surface_case *surface, const struct moments *gaussian) {
-    if (surface->spectrum.type == SPECTRUM_EXPONENTIAL_ACF)
+    const struct surface_case *counter = surface->counter;
+    if (surface->spectrum.type == SPECTRUM_EXPONENTIAL_ACF ||
+        (counter != NULL && counter->spectrum.type == SPECTRUM_EXPONENTIAL_ACF))
         return false; /* m2 and m4 grow without limit on finer grids */
     if (surface->dimension == 1)
         return gaussian->nayak_alpha > 1;

@@ -69,7 +69,7 @@ static bool choose_grids(const struct contact_case *one_case, struct companion_p
         !scale_grid(&one_case->surface.grid, out->length, &surface->grid))
         return false;
     out->band = surface_case_sampled_band(surface);
-    if (!surface_is_iterated(&surface->options) && surface_band_fits(out->band, &out->level.grid)) {
+    if (!surface_case_iterated(surface) && surface_band_fits(out->band, &out->level.grid)) {
         surface->grid = out->level.grid;
         out->level.stride = 1;
     }
@@ -77,7 +77,7 @@ static bool choose_grids(const struct contact_case *one_case, struct companion_p
 }
 
 static double cell_seconds(const struct contact_case *one_case, const struct companion_plan *plan) {
-    return 1e-9 * cost_generation(&plan->surface.options, NULL) *
+    return 1e-9 * surface_case_nanoseconds(&plan->surface, NULL) *
                (double)grid_points(&plan->surface.grid) +
            coarse_solver_seconds(one_case, &plan->level.grid);
 }
@@ -129,7 +129,8 @@ static void set_draws(const struct contact_case *usual, struct companion_plan *o
 static bool plan_longer(const struct contact_case *one_case, struct companion_plan *out) {
     const struct contact_case usual = with_usual_loads(one_case);
     const struct surface_case *surface = &one_case->surface;
-    double longest = fmax(surface->length_ratio, surface->length_ratio_y);
+    double longest =
+        fmax(surface->length_ratio, surface->length_ratio_y) / surface_case_times_longest(surface);
     double most = surface->dimension == 1 ? PROFILE_WAVES : SURFACE_WAVES;
     struct companion_plan plan;
     if (!set_length(&usual, 2, out))
@@ -142,13 +143,18 @@ static bool plan_longer(const struct contact_case *one_case, struct companion_pl
     return true;
 }
 
-static bool holds_waves(const struct contact_case *one_case, double length) {
-    const double waves[] = {length * one_case->surface.length_ratio,
-                            length * one_case->surface.length_ratio_y};
+static bool face_holds_waves(const struct surface_case *face, double length) {
+    const double waves[] = {length * face->length_ratio, length * face->length_ratio_y};
     for (size_t side = 0; side < 2; side++)
         if (!(waves[side] >= 1 && fabs(waves[side] - round(waves[side])) <= ROUNDING * waves[side]))
             return false;
     return true;
+}
+
+static bool holds_waves(const struct contact_case *one_case, double length) {
+    const struct surface_case *surface = &one_case->surface;
+    return face_holds_waves(surface, length) &&
+           (surface->counter == NULL || face_holds_waves(surface->counter, length));
 }
 
 /* Where longer cells would be too large, takes a quarter or half, whichever first holds whole

@@ -77,13 +77,14 @@ struct contact_model {
     int rank; /* of completeness: the highest in a case is the reference for model errors */
     enum block_model block; /* its compliance locates edges of contact between nodes */
     bool elements;          /* finite elements: layers of them, and mortar functions for the gap */
-    bool may_fail;   /* to find a solution: a note gives the reason, and loads from there on have no
-                      * values */
-    bool stretches;  /* areas are reported as they are under load */
-    bool yields;     /* presses under a hardness (contact_case.yield) */
-    bool coatings;   /* its block may have a coating */
-    bool free_space; /* presses maps that do not repeat, too: on the block's compliance there */
-    double times_linear;   /* least time over that of a linear model; 0: 1 */
+    bool may_fail;  /* to find a solution: a note gives the reason, and loads from there on have no
+                     * values */
+    bool stretches; /* areas are reported as they are under load */
+    bool yields;    /* presses under a hardness (contact_case.yield) */
+    bool coatings;  /* its block may have a coating */
+    bool counter_faces;  /* presses the sum of two rough faces */
+    bool free_space;     /* presses maps that do not repeat, too: on the block's compliance there */
+    double times_linear; /* least time over that of a linear model; 0: 1 */
     double default_height; /* of the block, in lengths of the cell; INFINITY */
     double tolerance;      /* of a solution for which none is prescribed; 0: that of core/contact */
     size_t curve_count;    /* of its own */

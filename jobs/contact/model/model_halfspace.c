@@ -6,6 +6,7 @@ const struct contact_model HALFSPACE_MODEL = {
     .rank = 0,
     .yields = true,
     .coatings = true,
+    .counter_faces = true,
     .free_space = true,
     .block = MODEL_HALFSPACE,
     .default_height = INFINITY,

@@ -7,6 +7,7 @@ const struct contact_model LAYERED_MODEL = {
     .block = MODEL_LAYERED,
     .elements = true,
     .coatings = true,
+    .counter_faces = true,
     .default_height = 1.5,
     .bytes = linear_bytes,
     .seconds = linear_seconds,

@@ -69,7 +69,7 @@ static void paths_each(const char *source, const char *file,
     fclose(text);
 }
 
-enum { ROWS_MOST = 256 };
+enum { ROWS_MOST = 512 };
 static bool read_rows[ROWS_MOST]; /* of all kinds, in their order */
 static size_t paths_found;
 
@@ -103,11 +103,29 @@ static bool has_no_effect(const char *path) {
     return false;
 }
 
+/* A second face is read as the first is, where its row has a twin there (surface_counter.h). */
+static bool twin_is_read(const char *path) {
+    static const char COUNTER[] = "/counter_surface/";
+    char twin[200];
+    size_t before = 0;
+    if (strncmp(path, COUNTER, sizeof COUNTER - 1) != 0)
+        return false;
+    snprintf(twin, sizeof twin, "/surface/%s", path + sizeof COUNTER - 1);
+    for (size_t k = 0; JOB_KINDS[k] != NULL; k++) {
+        size_t index;
+        if (parameter_find(JOB_KINDS[k]->tables, twin, &index) != NULL && read_rows[before + index])
+            return true;
+        before += parameter_count(JOB_KINDS[k]->tables);
+    }
+    return false;
+}
+
 /* In both directions: readers ask for rows alone, and every row is read by one of them. */
 static void readers_and_rows_agree(void **state) {
     (void)state;
     static const char *const READERS[] = {"jobs/surface/surface_case.c",
                                           "jobs/surface/surface_law.c",
+                                          "jobs/surface/surface_counter.c",
                                           "jobs/contact/contact_case_read.c",
                                           "jobs/statistics/statistics_case.c",
                                           "jobs/target.c",
@@ -132,7 +150,7 @@ static void readers_and_rows_agree(void **state) {
     size_t before = 0;
     for (size_t k = 0; JOB_KINDS[k] != NULL; k++) {
         for (size_t p = 0; (row = parameter_row(JOB_KINDS[k]->tables, p)) != NULL; p++)
-            if (!read_rows[before + p] && !has_no_effect(row->path))
+            if (!read_rows[before + p] && !has_no_effect(row->path) && !twin_is_read(row->path))
                 fail_msg("nobody reads %s", row->path);
         before += parameter_count(JOB_KINDS[k]->tables);
     }

@@ -354,6 +354,8 @@ static void refuses_what_it_does_not_answer(void **state) {
          "leave it out, or take \"counted\""},
         {",\"pressure_pdf\":{\"at\":[0.123]}", "/contact/pressure_pdf/at", "none of the study's"},
         {",\"cell_error\":\"none\"", "/contact/cell_error", "whose length is left out"},
+        {"},\"counter_surface\":{\"hurst\":0.5,\"wavelength_ratio\":4,\"rms_slope\":1",
+         "/counter_surface", "one rough face"},
         {",\"levels\":[4,8]", "/contact/levels", "give one level"}};
     for (size_t a = 0; a < sizeof REFUSED / sizeof *REFUSED; a++) {
         struct fault_list faults = {0};

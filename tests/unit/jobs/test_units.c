@@ -149,6 +149,30 @@ static void what_is_not_known_has_no_unit(void **state) {
     }
 }
 
+/* E* of two bodies: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2; the second has the Poisson's ratio of
+ * the first unless given. */
+static void two_bodies_have_one_modulus(void **state) {
+    (void)state;
+    static const struct {
+        double young, poisson, modulus;
+    } CASES[] = {{NAN, NAN, 1e11}, {75e9, NAN, 5e10}, {1e11, 0, 5e10}};
+    for (size_t n = 0; n < sizeof CASES / sizeof *CASES; n++) {
+        struct study_result study = built_study("contact", "units", 1);
+        struct case_result *one = &study.cases[0];
+        double metres, modulus;
+        built_parameter(one, "/surface/unit", NULL, 2e-6);
+        built_parameter(one, "/contact/young", NULL, 75e9);
+        built_parameter(one, "/contact/poisson", NULL, 0.5);
+        if (!isnan(CASES[n].young))
+            built_parameter(one, "/counter_surface/young", NULL, CASES[n].young);
+        if (!isnan(CASES[n].poisson))
+            built_parameter(one, "/counter_surface/poisson", NULL, CASES[n].poisson);
+        units_scales(one, &metres, &modulus);
+        check_relative(modulus, CASES[n].modulus, 1e-14);
+        study_result_clear(&study);
+    }
+}
+
 static char *printed(const struct study_result *study,
                      bool (*print)(FILE *file, const struct study_result *study)) {
     char *text = NULL;
@@ -217,6 +241,7 @@ int main(void) {
         cmocka_unit_test(statistics_have_heights_and_curvatures),
         cmocka_unit_test(conductance_is_of_current_or_heat),
         cmocka_unit_test(what_is_not_known_has_no_unit),
+        cmocka_unit_test(two_bodies_have_one_modulus),
         cmocka_unit_test(documents_keep_units),
         cmocka_unit_test(differences_have_common_units),
     };
