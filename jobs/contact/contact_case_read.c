@@ -325,6 +325,12 @@ static void check_counter(const struct contact_case *one_case, const struct aske
         values_fault(values, COUNTER_YOUNG,
                      "%g: a coating is on a block with a rigid counter body; leave young out",
                      asked->counter.young);
+    if (elastic && one_case->friction > 0 &&
+        asked->counter.poisson != values_number(values, "/contact/poisson"))
+        values_fault(values, "/counter_surface/poisson",
+                     "%g: how both bodies give along the face is known of one Poisson's ratio, "
+                     "that of /contact/poisson; allowed with friction: the same, or none",
+                     asked->counter.poisson);
 }
 
 /* Checks what rests on one face alone, of two faces that have no fault. */

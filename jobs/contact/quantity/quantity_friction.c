@@ -73,6 +73,11 @@ static const struct parameter ROWS[] = {
 };
 const struct parameter_table FRICTION_PARAMETERS = {"contact", ROWS, sizeof ROWS / sizeof *ROWS};
 
+static bool has_lay(const struct surface_case *surface) {
+    return surface->spectrum.anisotropy > 1 ||
+           (surface->counter != NULL && surface->counter->spectrum.anisotropy > 1);
+}
+
 /* The load that is held is found among the loads, which are read behind (contact_case_read.c). */
 static bool asked(struct contact_case *one_case, struct values *values) {
     bool slips = one_case->friction > 0;
@@ -85,7 +90,7 @@ static bool asked(struct contact_case *one_case, struct values *values) {
         if (surface_case_dimension(values) == 1)
             values_fault(values, DIRECTION, "\"y\": profiles have one direction, x");
     }
-    one_case->slip_measured = slips && one_case->surface.spectrum.anisotropy > 1;
+    one_case->slip_measured = slips && has_lay(&one_case->surface);
     for (size_t m = 0; slips && m < one_case->model_count; m++)
         if (one_case->models[m]->elements && one_case->models[m]->block_of != NULL)
             values_fault(values, FRICTION, "the model %s has none; leave one of them out",

@@ -384,6 +384,10 @@ static void what_does_not_fit_is_refused(void **state) {
     refuse("\"friction\": 0.1, \"hardness\": 1, \"slip\": {\"pressure\": 0.01}",
            "/contact/slip/pressure: 0.01, and the highest load is 0.1; allowed: with a hardness "
            "that one");
+    refuse("\"friction\": 0.1}, \"counter_surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4, "
+           "\"rms_slope\": 0.1, \"young\": 1, \"poisson\": 0.2",
+           "/counter_surface/poisson: 0.2: how both bodies give along the face is known of one "
+           "Poisson's ratio, that of /contact/poisson; allowed with friction: the same, or none");
     refuse("\"friction\": 0.1, \"model\": [\"halfspace\", \"full\"]",
            "/contact/friction: the model full has none; leave one of them out");
     refuse("\"friction\": 0.1, \"coating\": {\"thickness\": 1, \"modulus\": 2}",
