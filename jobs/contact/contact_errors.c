@@ -10,11 +10,13 @@ static const double TOLERANCES_MOST = 1000;
  * to 1.5 were measured at tolerances of 1e-5 to 1e-3. They do so at random, which is counted by
  * SPREAD deviations. A share of so many nodes has an effect of so many times as much on counts, of
  * a part of it on areas by edges and gaps, and that of so many patches on patches. Open nodes are
- * closed within some tolerances of the RMS height, however small their gaps. Measured by
- * tests/validation/jobs/test_contact_errors.c and test_random_contacts.c. */
+ * closed within some tolerances of the RMS height, however small their gaps. Flows go
+ * with the cube of gaps, and through few nodes. Measured by
+ * tests/validation/jobs/test_contact_errors.c, test_random_contacts.c and
+ * test_quantity_errors.c. */
 static const double WRONG = 2, SPREAD = 3;
 static const double COUNTED_PART = 3, SMOOTH_PART = 0.3, SMOOTH_TOLERANCES = 5, PATCHES_PART = 1;
-static const double OPEN_TOLERANCES = 3;
+static const double OPEN_TOLERANCES = 3, FLOW_PART = 45;
 
 static const struct contact_error UNKNOWN = {NAN, NAN, NAN, NAN, NAN};
 
@@ -193,10 +195,13 @@ double contact_errors_solver(enum measure_solver solver, const struct solver_cou
     double wrong = WRONG * of->tolerance * of->nodes, most = wrong + SPREAD * sqrt(wrong);
     double smooth = SMOOTH_TOLERANCES * of->tolerance + SMOOTH_PART * most / of->nodes;
     double counted = COUNTED_PART * most / of->nodes;
-    const double shares[] = {
-        [SOLVER_SMOOTH] = smooth,   [SOLVER_GAP] = smooth,
-        [SOLVER_COUNTED] = counted, [SOLVER_STIFFNESS] = counted,
-        [SOLVER_BINNED] = INFINITY, [SOLVER_PATCHES] = PATCHES_PART * most / of->patches};
+    const double shares[] = {[SOLVER_SMOOTH] = smooth,
+                             [SOLVER_GAP] = smooth,
+                             [SOLVER_COUNTED] = counted,
+                             [SOLVER_STIFFNESS] = counted,
+                             [SOLVER_FLOW] = FLOW_PART / COUNTED_PART * counted,
+                             [SOLVER_BINNED] = INFINITY,
+                             [SOLVER_PATCHES] = PATCHES_PART * most / of->patches};
     /* fmin ignores the NaN of no nodes */
     double bound = fmin(TOLERANCES_MOST * of->tolerance, shares[solver]) * fabs(value);
     if (solver == SOLVER_STIFFNESS)

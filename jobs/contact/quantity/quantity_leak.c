@@ -116,7 +116,7 @@ static bool is_shown(const struct contact_case *one_case, size_t model) {
 #define LEAK_ROW(name, label)                                                                      \
     {                                                                                              \
         .quantity = "leak", .series = (name), .y_label = (label), .shown = is_shown,               \
-        .kept = is_asked, .order = 2, .theories = THEORIES_NONE, .solver = SOLVER_COUNTED,         \
+        .kept = is_asked, .order = 2, .theories = THEORIES_NONE, .solver = SOLVER_FLOW,            \
         .field = FIELD_GAP, .load = LOAD_STAYS, .cell = CELL_SAME, .values = VALUES_REPORTED,      \
         .over = OVER_ONE                                                                           \
     }
