@@ -43,6 +43,7 @@ extern const struct parameter_table *const CONTACT_TABLES[];
 struct contact_case {
     struct surface_case surface; /* with the grid on which realisations are generated */
     struct like_case like;       /* a measured surface that these resemble */
+    bool two_faces;              /* the flat has a rough face, too, which is in the surface */
     struct surface_band band;    /* by which realisations are sampled on other grids */
     size_t model_count;
     const struct contact_model *models[CONTACT_MODELS_MOST]; /* in the order given */

@@ -623,6 +623,7 @@ static int set_yield(struct contact_case *out, struct values *values, struct err
 static int set_on_surface(struct contact_case *out, const struct asked *asked,
                           struct values *values, struct error *err) {
     out->band = surface_case_sampled_band(&out->surface);
+    out->two_faces = out->surface.counter != NULL;
     set_levels(out, asked, values);
     check_pairs(out, values);
     size_t before = values_fault_count(values);

@@ -10,7 +10,7 @@
  * of one material (F22.6). */
 static bool has_stretched(const struct contact_case *one_case) {
     return one_case->edges && contact_case_has_scale(one_case) &&
-           !contact_case_is_coated(one_case) && one_case->surface.counter == NULL;
+           !contact_case_is_coated(one_case) && !one_case->two_faces;
 }
 
 static double stretched(const struct measure_context *context, double edges, double open) {

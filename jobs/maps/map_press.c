@@ -131,6 +131,7 @@ static void fill_case(struct map_press *press, const struct press_block *asked) 
     press->one_case =
         (struct contact_case){.surface = {.dimension = grid_is_profile(&press->grid) ? 1 : 2,
                                           .spectrum = {.scale = SCALE_RMS_SLOPE}},
+                              .two_faces = asked->two_faces,
                               .model_count = 1,
                               .models = {model},
                               .blocks = {{.model = model->block,

@@ -6,7 +6,7 @@
 struct contact_solver {
     struct contact *contact;
     double poisson;
-    bool coated;
+    bool strains; /* sideways, as one bare face does */
 };
 
 double linear_seconds(const struct contact_case *one_case, size_t model, const struct grid *grid) {
@@ -29,7 +29,7 @@ int linear_create(struct contact_solver **out, const struct contact_case *one_ca
     if (solver == NULL)
         return error_memory(err, sizeof *solver, "a contact solver");
     solver->poisson = one_case->blocks[model].poisson;
-    solver->coated = block_is_coated(&one_case->blocks[model]);
+    solver->strains = !block_is_coated(&one_case->blocks[model]) && !one_case->two_faces;
     int status = contact_create(&solver->contact, compliance, &options, err);
     if (status != 0)
         linear_destroy(&solver);
@@ -57,8 +57,8 @@ int linear_begin(struct contact_solver *solver, const double *z, int (*stop)(voi
 
 int linear_press(struct contact_solver *solver, double pressure, struct contact_pressed *out,
                  struct error *err) {
-    /* Of a coated face it is not known (F22.6). */
-    out->open_stretch = solver->coated ? (double)NAN : stretch_open(solver->poisson, pressure);
+    /* Of a coated face, and of two rough faces, it is not known (F22.6, F25.5). */
+    out->open_stretch = solver->strains ? stretch_open(solver->poisson, pressure) : (double)NAN;
     return contact_press(solver->contact, pressure, &out->state, err);
 }
 

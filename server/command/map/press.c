@@ -1,7 +1,9 @@
-/* rugo press FILE: the contact of a height map in a file with a rigid flat. */
+/* rugo press FILE: the contact of a height map in a file with a rigid flat, or with a second map.
+ */
 #include "core/file.h"
 #include "core/nodal/step_folder.h"
 #include "jobs/allotment.h"
+#include "jobs/maps/map_counter.h"
 #include "jobs/maps/map_press_curves.h"
 #include "jobs/maps/map_press_error.h"
 #include "schema/result/csv.h"
@@ -152,6 +154,7 @@ enum { CONTACT_NODES_FEW = 50 };
 struct press_options {
     const char *model;
     const char *coating; /* NULL: none */
+    const char *counter; /* file of a second map; NULL: the flat is smooth */
     double lengths;      /* height of the block in lengths of the map, 0: not given */
     double tolerance;    /* likewise */
     int boundary, format, without_error, along_y;
@@ -198,6 +201,9 @@ static const struct option_row OPTIONS[] = {
      "a layer of another material on the block (halfspace, layered): its thickness, such as 200nm, "
      "its modulus over that of the block or in Pa, and its ratio of Poisson (the block's): "
      "200nm,0.5 or 1um,4GPa,0.4"},
+    {"counter", 0, OPTION_TEXT, 0, 0, AT(counter), "FILE", NULL,
+     "a second map, prepared as the first, that it is pressed on, turned over about y (halfspace, "
+     "layered); --effective-modulus for two elastic bodies"},
     {"height", 0, OPTION_NUMBER, 1e-3, 1e3, AT(lengths), "LENGTHS", NULL,
      "height of the block in lengths of the map (infinite; of meshes 1.5)"},
     {"tolerance", 0, OPTION_NUMBER, 1e-12, 1e-2, AT(tolerance), "T", NULL,
@@ -247,14 +253,15 @@ static enum press_boundary boundary_of(const struct press_order *order) {
 }
 
 /* A map is taken as periodic where the option says so; this warns of the jumps at its seam. */
-static void warn_of_seam(const struct press_order *order) {
-    const struct seam *seam = &order->record.seam;
+static void warn_of_seam(const struct press_order *order, const char *path,
+                         const struct preparation_record *record) {
+    const struct seam *seam = &record->seam;
     if (order->options->boundary == ASKED_PERIODIC && seam_is_rough(seam))
         fprintf(
             stderr,
             "rugo press: warning: %s: contact takes the map as periodic, and its seam is rougher "
             "than the roughest place inside: %.3g times across x, %.3g times across y\n",
-            order->path, seam->x, seam->y);
+            path, seam->x, seam->y);
 }
 
 /* Gives the blocks the coating, whose thickness is in the map's lengths. */
@@ -273,6 +280,80 @@ static int take_coating(struct press_order *order, const struct height_map *map,
     return status;
 }
 
+/* Reads and prepares a map that is to be pressed. */
+static int read_whole(struct height_map *map, struct preparation_record *record, const char *path,
+                      const struct press_order *order, const struct map_options *options,
+                      struct error *err) {
+    struct error holes = {0};
+    int status = map_options_read(map, record, path, options, err);
+    if (status == 0 && height_map_check_whole(map, &holes) != 0)
+        return error_set(err, ERROR_INPUT, "%s: %s; --fill fills them", path, holes.text);
+    if (status == 0)
+        warn_of_seam(order, path, record);
+    return status;
+}
+
+/* Notes the second face in the record of the first, and warns where they are no independent
+ * faces. */
+static void note_counter(struct press_order *order, const struct map_counter *counter) {
+    const char *path = order->options->counter;
+    const struct map_correlation *facing = &counter->facing, *held = &counter->as_held;
+    struct preparation_record *record = &order->record;
+    preparation_note(record, "counter face", "%.100s, turned over about y", path);
+    if (counter->cropped)
+        preparation_note(record, "both faces", "cropped to %zu by %zu points", counter->nx,
+                         counter->ny);
+    preparation_note(record, "correlation", "%.3f, of independent faces 0 +- %.3f", facing->value,
+                     facing->deviation);
+    if (counter->cropped)
+        fprintf(stderr,
+                "rugo press: %s, %s: cropped to the first %zu by %zu points, which both have\n",
+                order->path, path, counter->nx, counter->ny);
+    if (map_correlation_stands_out(facing))
+        fprintf(stderr,
+                "rugo press: warning: %s, %s: the faces are correlated by %.3g as they are "
+                "pressed, where independent ones are by 0 +- %.2g\n",
+                order->path, path, facing->value, facing->deviation);
+    if (map_correlation_stands_out(held))
+        fprintf(stderr,
+                "rugo press: warning: %s, %s: the files hold heights with a correlation of %.3g, "
+                "where independent faces have 0 +- %.2g; are they of one face?\n",
+                order->path, path, held->value, held->deviation);
+}
+
+/* Reads the second face and adds it to the map. It repeats where both do. */
+static int take_counter(struct press_order *order, struct height_map *map,
+                        const struct map_options *options, struct error *err) {
+    const char *path = order->options->counter;
+    struct map_options own = *options;
+    struct preparation_record record = {0};
+    struct height_map counter = {0};
+    struct map_counter sum;
+    own.name = NULL;
+    for (size_t m = 0; m < order->model_count; m++)
+        if (!order->blocks[m].model->counter_faces)
+            return error_set(err, ERROR_INPUT,
+                             "--counter %.60s: the model %s has the shape of one rough face", path,
+                             contact_model_name(order->blocks[m].model));
+    int status = read_whole(&counter, &record, path, order, &own, err);
+    if (status == 0 && record.boundary == BOUNDARY_OPEN &&
+        order->record.boundary != record.boundary) {
+        order->record.boundary = BOUNDARY_OPEN;
+        order->record.boundary_by = record.boundary_by;
+    }
+    bool periodic = order->record.boundary == BOUNDARY_PERIODIC;
+    if (status == 0)
+        status = map_counter_add(map, &counter, periodic, &sum, err);
+    if (status == 0)
+        note_counter(order, &sum);
+    else
+        error_context(err, "--counter %.60s", path);
+    height_map_clear(&counter);
+    for (size_t m = 0; m < order->model_count; m++)
+        order->blocks[m].two_faces = true;
+    return status;
+}
+
 static int read_map(struct height_map *map, struct press_order *order, struct error *err) {
     static const int ASKED[] = {[ASKED_AUTO] = ASK_BOUNDARY_AUTO,
                                 [ASKED_OPEN] = ASK_BOUNDARY_OPEN,
@@ -280,16 +361,14 @@ static int read_map(struct height_map *map, struct press_order *order, struct er
                                 [ASKED_PERIODIC] = ASK_BOUNDARY_PERIODIC};
     struct map_options options = order->options->map;
     options.words.boundary = ASKED[order->options->boundary];
-    int status = map_options_read(map, &order->record, order->path, &options, err);
-    struct error holes = {0};
-    if (status == 0 && height_map_check_whole(map, &holes) != 0)
-        return error_set(err, ERROR_INPUT, "%s: %s; --fill fills them", order->path, holes.text);
+    int status = read_whole(map, &order->record, order->path, order, &options, err);
+    if (status == 0 && order->options->counter != NULL)
+        status = take_counter(order, map, &options, err);
     if (status == 0)
         status = press_loads_of_map(&order->loads, map, err);
     if (status != 0)
         return status;
     order->boundary = boundary_of(order);
-    warn_of_seam(order);
     status = take_coating(order, map, err);
     for (size_t m = 0; m < order->model_count && status == 0; m++)
         status = map_press_check(order->boundary, order->blocks[m].model, err);
