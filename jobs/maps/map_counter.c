@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double SPACING = 1e-6;      /* relative difference of spacings that are equal */
-static const double DEVIATIONS = 3;      /* of a correlation that chance does not explain */
+static const double SPACING = 1e-6; /* relative difference of spacings that are equal */
+static const double DEVIATIONS = 3; /* of a correlation beyond which faces are not independent */
 static const double SAME_HEIGHTS = 0.99; /* correlation of maps of one face */
 
 bool map_correlation_stands_out(const struct map_correlation *correlation) {

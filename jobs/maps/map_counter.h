@@ -11,7 +11,7 @@
 struct map_correlation {
     double value, deviation;
 };
-/* Returns whether a correlation is more than independent faces have by chance: beyond three
+/* Returns whether a correlation is more than independent faces have: beyond three
  * standard deviations, or of heights that are the same. */
 bool map_correlation_stands_out(const struct map_correlation *correlation);
 

@@ -40,6 +40,11 @@ static const char LINEAR[] =
     " \"contact\": {\"model\": [\"layered\", \"halfspace\"],"
     " \"levels\": [2, 4], \"block_height\": {\"lengths\": 1}, \"pressures\": {\"values\": [0.1]},"
     " \"pressure_pdf\": {\"at\": [0.1], \"bins\": [0.2, 1, 4], \"pairs\": \"counted\"}}}";
+static const char TWO_FACES[] =
+    "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 2, \"length_ratio\": 1,"
+    " \"points_per_wavelength\": 4}, \"counter_surface\": {\"spectrum\": {\"type\": \"table\","
+    " \"wave_number\": [3, 6], \"density\": [1, 2]}}, \"contact\": {\"pressures\": {\"values\": "
+    "[0.1]}}}";
 static const char FULL[] =
     "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 2, \"length_ratio\": 1,"
     " \"points_per_wavelength\": 4, \"rms_slope\": 0.3}, \"contact\": {\"model\": [\"full\"],"
@@ -142,6 +147,7 @@ static void statistics(void **state) {
 static void contact(void **state) {
     (void)state;
     each_step((struct work){.kind = "contact", .text = LINEAR, .count = 2});
+    each_step((struct work){.kind = "contact", .text = TWO_FACES, .count = 2});
     each_step((struct work){.kind = "contact", .text = FULL, .count = 1});
 }
 

@@ -3,6 +3,7 @@
 #include "tests/support/check.h"
 
 #include "jobs/maps/map_characterisation.h"
+#include "jobs/maps/map_counter.h"
 #include "jobs/maps/map_preparation.h"
 #include "jobs/maps/map_press_curves.h"
 #include "jobs/maps/map_press_error.h"
@@ -118,8 +119,25 @@ static void maps_are_characterised(void **state) {
     check("periodic", characterise, (struct work){.boundary = BOUNDARY_PERIODIC});
 }
 
+/* A map faces itself. */
+static int add_counter(void *context, struct error *err) {
+    struct work *work = context;
+    struct height_map one = {.grid = {SIDE, SIDE, 10, 10}}, other = one;
+    struct map_counter counter;
+    double heights[2][POINTS];
+    memcpy(heights[0], HEIGHTS, sizeof HEIGHTS);
+    memcpy(heights[1], HEIGHTS, sizeof HEIGHTS);
+    one.z = heights[0];
+    other.z = heights[1];
+    int status = map_counter_add(&one, &other, true, &counter, err);
+    if (status == 0)
+        expect_same(work, one.z[5] + counter.facing.value);
+    return status;
+}
+
 static void maps_are_pressed(void **state) {
     (void)state;
+    check("counter", add_counter, (struct work){.pressed = PRESS_PERIODIC});
     check("open", press_map, (struct work){.pressed = PRESS_OPEN, .model = "halfspace"});
     check("mirrored", press_map, (struct work){.pressed = PRESS_MIRRORED, .model = "layered"});
     check("full", press_map, (struct work){.pressed = PRESS_PERIODIC, .model = "full"});
