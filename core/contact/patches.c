@@ -8,17 +8,20 @@
 struct patch_finder {
     struct grid grid;
     bool open;       /* its sides do not meet */
-    ptrdiff_t *link; /* grid_points: of a root minus the nodes of its patch; else nearer to it */
+    ptrdiff_t *own;  /* grid_points: takes memory where none is lent */
+    ptrdiff_t *link; /* that, or what was lent: of a root minus the nodes of its patch; else nearer
+                        to it */
 };
+_Static_assert(sizeof(ptrdiff_t) <= sizeof(double), "links do not fit into lent doubles");
 
 int patch_finder_create(struct patch_finder **out, const struct grid *grid, struct error *err) {
     size_t n = grid_points(grid);
     struct patch_finder *finder = array_create(1, sizeof *finder);
     if (finder != NULL) {
         finder->grid = *grid;
-        finder->link = array_create(n, sizeof *finder->link);
+        finder->own = finder->link = array_create(n, sizeof *finder->own);
     }
-    if (finder == NULL || finder->link == NULL) {
+    if (finder == NULL || finder->own == NULL) {
         patch_finder_destroy(&finder);
         return error_memory(err, n * sizeof(ptrdiff_t), "contact patches");
     }
@@ -33,13 +36,17 @@ void patch_finder_open(struct patch_finder *finder) {
 void patch_finder_destroy(struct patch_finder **finder) {
     if (*finder == NULL)
         return;
-    free((*finder)->link);
+    free((*finder)->own);
     free(*finder);
     *finder = NULL;
 }
 
 double patch_finder_bytes(const struct grid *grid) {
     return sizeof(ptrdiff_t) * (double)grid_points(grid);
+}
+
+void patch_finder_lend(struct patch_finder *finder, double *scratch) {
+    finder->link = scratch != NULL ? (ptrdiff_t *)(void *)scratch : finder->own;
 }
 
 static void join(ptrdiff_t *link, size_t i, size_t j) {
@@ -89,4 +96,5 @@ void patches_find(struct patch_finder *finder, const double *p, struct patches *
     }
     out->mean = out->count > 0 ? nodes / (double)out->count : NAN;
     out->second = out->count > 0 ? squares / nodes : NAN;
+    finder->link = finder->own;
 }

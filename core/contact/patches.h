@@ -16,7 +16,11 @@ int patch_finder_create(struct patch_finder **out, const struct grid *grid, stru
 /* Joins nothing across the sides from then on. */
 void patch_finder_open(struct patch_finder *finder);
 void patch_finder_destroy(struct patch_finder **finder);
+/* Returns the bytes that patches_find touches where the caller lends no memory. */
 double patch_finder_bytes(const struct grid *grid);
+/* Lends the next patches_find grid_points doubles, whose values are lost. NULL, the initial value:
+ * it takes memory of its own, which stays untouched as long as some is lent. */
+void patch_finder_lend(struct patch_finder *finder, double *scratch);
 /* A node is in contact where p > 0. sizes (NULL: not wanted) gets the nodes of each patch, room for
  * grid_points. */
 void patches_find(struct patch_finder *finder, const double *p, struct patches *out, size_t *sizes);

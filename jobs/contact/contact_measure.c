@@ -141,6 +141,7 @@ int contact_measure(const struct measure_context *context, const struct contact_
     struct contact_area area;
     struct patches patches;
     contact_area(context->area, state, &area);
+    patch_finder_lend(context->finder, state->scratch);
     patches_find(context->finder, state->p, &patches, NULL);
     /* Edges lie within the cells of outer nodes in contact, near which hardly any pressure acts. */
     double open_now = area.nodes < 1 ? (1 - now * area.nodes) / (1 - area.nodes) : 1;

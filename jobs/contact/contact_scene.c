@@ -314,7 +314,6 @@ static double plain_bytes(const struct contact_case *one_case) {
     double bytes = 8.0 * (double)grid_points(&contact_case_finest(one_case)->grid);
     for (size_t l = 0; l < one_case->level_count; l++) {
         const struct grid *grid = &one_case->levels[l].grid;
-        bytes += patch_finder_bytes(grid);
         for (size_t m = 0; m < one_case->model_count; m++) {
             const struct quantity_scene quantities = quantity_scene_of(one_case, m, l);
             bytes += contact_quantities_bytes(&quantities);

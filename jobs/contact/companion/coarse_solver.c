@@ -150,9 +150,8 @@ double coarse_solver_bytes(const struct contact_case *one_case, const struct gri
     const struct block block = {.model = MODEL_HALFSPACE, .height = INFINITY};
     const struct quantity_scene scene = quantity_scene_of(one_case, grid, 1);
     const struct contact_options options = contact_case_options(one_case);
-    return contact_quantities_bytes(&scene) + patch_finder_bytes(grid) +
-           contact_bytes(grid, &block, &options) + area_workspace_bytes(grid, &block) +
-           compliance_bytes(grid, &block);
+    return contact_quantities_bytes(&scene) + contact_bytes(grid, &block, &options) +
+           area_workspace_bytes(grid, &block) + compliance_bytes(grid, &block);
 }
 
 double coarse_solver_seconds(const struct contact_case *one_case, const struct grid *grid) {

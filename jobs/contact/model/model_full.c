@@ -1,4 +1,5 @@
 /* The model "full": finite elements on the rough geometry itself (core/full). */
+#include "core/contact/patches.h"
 #include "core/cost.h"
 #include "core/full/full.h"
 #include "jobs/contact/contact_case.h"
@@ -120,7 +121,8 @@ static double bytes(const struct contact_case *one_case, size_t model, const str
     const struct block *block = &one_case->blocks[model];
     struct full_options options = full_model_options(one_case, grid);
     struct full_size size = cost_full_size(grid, block, &options, one_case->rms_slope);
-    return cost_full_bytes(grid, block, &options, &size);
+    /* its states lend patches no memory */
+    return cost_full_bytes(grid, block, &options, &size) + patch_finder_bytes(grid);
 }
 
 static double seconds(const struct contact_case *one_case, size_t model, const struct grid *grid) {
