@@ -23,9 +23,21 @@ double cost_random_amplitudes(const struct grid *grid, size_t mode_x, size_t mod
 /* Returns the factor by which work on this many points slows down beyond the processor's caches. */
 double cost_caches(double points);
 
-/* CPU seconds of a linear model (core/contact) for a series of loads of one surface. tolerance is
- * that of contact_options. */
+/* CPU seconds of a linear model (core/contact) for a series of loads of one surface, by which
+ * companions are planned. Values depend on such a plan: it does not follow what solvers take.
+ * tolerance is that of contact_options. */
 double cost_linear_contact(const struct grid *grid, double tolerance, size_t loads);
+/* What a linear model solves of one surface. */
+struct linear_work {
+    const struct grid *grid; /* borrowed */
+    size_t mode_x, mode_y;   /* highest waves of the surface */
+    bool elements;           /* MODEL_LAYERED */
+    bool tangent;            /* is computed; of elements always */
+    double tolerance;        /* that of contact_options */
+    size_t loads, densities; /* in a rising series, and those whose pressures are counted */
+};
+/* CPU seconds of all loads, with their areas and patches, as estimated. */
+double cost_linear_loads(const struct linear_work *of);
 
 /* The number of equations of the finite elements (core/full) on a grid, and the iterations to solve
  * them. Fitted to profiles of 64 to 8192 points and surfaces of 8 x 8 to 64 x 64, RMS slopes of

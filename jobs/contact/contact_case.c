@@ -73,6 +73,21 @@ struct contact_options contact_case_options(const struct contact_case *one_case)
     return options;
 }
 
+double contact_case_linear_seconds(const struct contact_case *one_case, const struct grid *grid,
+                                   bool elements, size_t densities) {
+    const struct grid *own = &one_case->surface.grid;
+    double longer_x = grid->lx / own->lx, longer_y = grid->ly / own->ly;
+    return cost_linear_loads(
+        &(struct linear_work){.grid = grid,
+                              .mode_x = (size_t)(longer_x * (double)one_case->band.x),
+                              .mode_y = (size_t)(longer_y * (double)one_case->band.y),
+                              .elements = elements,
+                              .tangent = one_case->stiffness,
+                              .tolerance = one_case->tolerance,
+                              .loads = one_case->load_count,
+                              .densities = densities});
+}
+
 double contact_case_least_seconds(const struct contact_case *one_case) {
     const struct surface_case *surface = &one_case->surface;
     double seconds =

@@ -138,7 +138,11 @@ bool contact_case_stretches(const struct contact_case *one_case, size_t model);
 
 /* Returns how the case has linear models solved. */
 struct contact_options contact_case_options(const struct contact_case *one_case);
-/* Returns the least CPU seconds of a realisation, without its companions. A choice that changes
+/* Returns the CPU seconds of a linear model on a grid of any length, as estimated, with so many
+ * densities of pressure. */
+double contact_case_linear_seconds(const struct contact_case *one_case, const struct grid *grid,
+                                   bool elements, size_t densities);
+/* Returns the least planned seconds of a realisation, without its companions. A choice that changes
  * values must not depend on whether memory suffices for a better estimate. */
 double contact_case_least_seconds(const struct contact_case *one_case);
 

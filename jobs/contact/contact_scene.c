@@ -294,7 +294,8 @@ int contact_scene_solve(struct contact_scene *scene, const struct contact_surfac
 
 /* --- the cost of a case, estimated before anything ran --- */
 
-/* Curves of a model and level: areas by four or five estimators, and eight other quantities. */
+/* Curves of a model and level, beside those of quantities that the case asks for: areas by four or
+ * five estimators, and eight others. */
 enum { LEVEL_CURVES = 13 };
 
 /* A few realisations may take a second already; a worker that is lost then loses no more than
@@ -304,9 +305,9 @@ enum { RUNS_MOST = 20 };
 static double case_seconds(const struct contact_case *one_case) {
     size_t solved = one_case->model_count * one_case->level_count;
     size_t densities = one_case->model_count * one_case->pdf_count;
-    return publishing_cost(LEVEL_CURVES * solved + densities,
-                           LEVEL_CURVES * solved * one_case->load_count +
-                               densities * one_case->pressure.count);
+    size_t curves = (LEVEL_CURVES + one_case->asked.measures) * solved;
+    return publishing_cost(curves + densities,
+                           curves * one_case->load_count + densities * one_case->pressure.count);
 }
 
 /* Returns the bytes of a scene and its compliances, without the surface itself and companions. */

@@ -156,6 +156,12 @@ double coarse_solver_bytes(const struct contact_case *one_case, const struct gri
 
 double coarse_solver_seconds(const struct contact_case *one_case, const struct grid *grid) {
     const struct quantity_scene scene = quantity_scene_of(one_case, grid, INFINITY);
+    return contact_case_linear_seconds(one_case, grid, false, 0) +
+           contact_quantities_seconds(&scene);
+}
+
+double coarse_solver_planned_seconds(const struct contact_case *one_case, const struct grid *grid) {
+    const struct quantity_scene scene = quantity_scene_of(one_case, grid, INFINITY);
     return cost_linear_contact(grid, one_case->tolerance, one_case->load_count) +
            contact_quantities_seconds(&scene);
 }

@@ -30,5 +30,8 @@ int coarse_solver_press(struct coarse_solver *solver, const double *z, double *s
 double coarse_solver_bytes(const struct contact_case *one_case, const struct grid *grid);
 /* Returns the mean CPU seconds of all loads on a 3 GHz core. */
 double coarse_solver_seconds(const struct contact_case *one_case, const struct grid *grid);
+/* Returns the seconds by which companions are planned (cost_linear_contact), with those of
+ * quantities. */
+double coarse_solver_planned_seconds(const struct contact_case *one_case, const struct grid *grid);
 
 #endif

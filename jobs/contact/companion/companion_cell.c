@@ -76,10 +76,19 @@ static bool choose_grids(const struct contact_case *one_case, struct companion_p
     return out->level.stride > 0 || surface_band_fits(out->band, &out->level.grid);
 }
 
-static double cell_seconds(const struct contact_case *one_case, const struct companion_plan *plan) {
+static double generation_seconds(const struct companion_plan *plan) {
     return 1e-9 * surface_case_nanoseconds(&plan->surface, NULL) *
-               (double)grid_points(&plan->surface.grid) +
-           coarse_solver_seconds(one_case, &plan->level.grid);
+           (double)grid_points(&plan->surface.grid);
+}
+
+static double cell_seconds(const struct contact_case *one_case, const struct companion_plan *plan) {
+    return generation_seconds(plan) + coarse_solver_seconds(one_case, &plan->level.grid);
+}
+
+/* Returns the seconds by which draws are planned. */
+static double planned_seconds(const struct contact_case *one_case,
+                              const struct companion_plan *plan) {
+    return generation_seconds(plan) + coarse_solver_planned_seconds(one_case, &plan->level.grid);
 }
 
 static double cell_bytes(const struct contact_case *one_case, const struct companion_plan *plan) {
@@ -110,14 +119,14 @@ static struct contact_case with_usual_loads(const struct contact_case *one_case)
 static double affordable(const struct contact_case *usual, const struct companion_plan *plan) {
     double seconds =
         fmax(FIRST_SECONDS, FIRST_SHARE * USUAL_STUDY * contact_case_least_seconds(usual));
-    return fmin(DRAWS_MOST, floor(seconds / cell_seconds(usual, plan)));
+    return fmin(DRAWS_MOST, floor(seconds / planned_seconds(usual, plan)));
 }
 
 /* The first realisations have as many draws as a fixed amount of work allows. From then on
  * the time is a share of that of the case. */
 static void set_draws(const struct contact_case *usual, struct companion_plan *out) {
     double draws = affordable(usual, out);
-    uint64_t interval = subset_interval(cell_seconds(usual, out),
+    uint64_t interval = subset_interval(planned_seconds(usual, out),
                                         TIME_SHARE * contact_case_least_seconds(usual), 1);
     out->series = 1;
     out->draws = draws >= FIRST ? (uint64_t)llround(draws / FIRST) : 1;

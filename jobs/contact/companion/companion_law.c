@@ -46,7 +46,9 @@ static bool law_plan(const struct contact_case *one_case, struct companion_plan 
     out->series = SERIES;
     out->pairs[out->pair_count++] = (struct companion_pair){.of = OTHER, .less = OWN};
     double allowed = fmax(TIME_SHARE * contact_case_least_seconds(one_case), TIME_FLOOR);
-    out->due = subset_each(subset_interval(law_seconds(one_case, out), allowed, 1));
+    double planned = other_law_seconds(&one_case->surface) +
+                     SERIES * coarse_solver_planned_seconds(one_case, &out->level.grid);
+    out->due = subset_each(subset_interval(planned, allowed, 1));
     return true;
 }
 

@@ -1,6 +1,5 @@
 #include "jobs/contact/model/model_linear.h"
 #include "core/contact/stretch.h"
-#include "core/cost.h"
 #include <stdlib.h>
 
 struct contact_solver {
@@ -10,11 +9,11 @@ struct contact_solver {
 };
 
 double linear_seconds(const struct contact_case *one_case, size_t model, const struct grid *grid) {
-    (void)model;
     static const double YIELDING = 1.5; /* of the work of an elastic solution, at most */
     double paths = one_case->unloads ? 1 + YIELDING : YIELDING;
+    bool elements = one_case->blocks[model].model == MODEL_LAYERED;
     return (one_case->hardness > 0 ? paths : 1) *
-           cost_linear_contact(grid, one_case->tolerance, one_case->load_count);
+           contact_case_linear_seconds(one_case, grid, elements, one_case->pdf_count);
 }
 
 double linear_bytes(const struct contact_case *one_case, size_t model, const struct grid *grid) {

@@ -1,4 +1,5 @@
 /* What surfaces are said to cost before they run, beside what they take. */
+#include "core/contact/contact.h"
 #include "core/cost.h"
 #include "tests/support/check.h"
 #include <stdlib.h>
@@ -70,10 +71,70 @@ static void sizes_do_not_matter_without_a_tolerance(void **state) {
     assert_true(cost_generation(&options, NULL) == cost);
 }
 
+/* value is within a factor of what is expected. */
+static void check_factor(double value, double expected, double factor) {
+    assert_true(value < factor * expected && value > expected / factor);
+}
+
+/* Returns the points x transforms of ten loads on a surface. */
+static double work_of(const struct grid *grid, const struct contact_options *options) {
+    enum { LOADS = 10 };
+    const struct block block = {.model = MODEL_HALFSPACE, .height = INFINITY, .layer_growth = 1};
+    const struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
+                                      .hurst = 0.8,
+                                      .wavelength_long = grid->lx / 8,
+                                      .wavelength_rolloff = grid->lx / 8,
+                                      .wavelength_short = 1,
+                                      .scale = SCALE_RMS_SLOPE,
+                                      .scale_value = 1};
+    struct generator *generator;
+    struct compliance *compliance;
+    struct contact *contact;
+    struct contact_state state;
+    double *z = array_create(grid_points(grid), sizeof *z), work = 0;
+    assert_non_null(z);
+    assert_int_equal(generator_create(&generator, &spectrum, grid, &SURFACE_DEFAULTS, NULL), 0);
+    assert_int_equal(generator_run(generator, (struct random_key){7, 0, 0}, z, NULL, NULL), 0);
+    assert_int_equal(compliance_create(&compliance, grid, &block, NULL), 0);
+    assert_int_equal(contact_create(&contact, compliance, options, NULL), 0);
+    assert_int_equal(contact_begin(contact, z, NULL), 0);
+    for (int k = 1; k <= LOADS; k++) {
+        assert_int_equal(contact_press(contact, 0.03 * k, &state, NULL), 0);
+        work += state.work;
+    }
+    contact_destroy(&contact);
+    compliance_destroy(&compliance);
+    generator_destroy(&generator);
+    free(z);
+    return work;
+}
+
+/* The estimate of contact falls with the tolerance, and without stiffness, as the transforms do:
+ * within 1.4, as a surface is one of many, and areas take the same time at any tolerance. */
+static void contact_costs_what_it_takes(void **state) {
+    (void)state;
+    static const struct grid GRIDS[] = {{2048, 1, 256, 256}, {128, 128, 16, 16}};
+    for (size_t g = 0; g < sizeof GRIDS / sizeof *GRIDS; g++) {
+        struct contact_options options = CONTACT_DEFAULTS;
+        struct linear_work linear = {
+            .grid = &GRIDS[g], .tangent = true, .tolerance = 1e-8, .loads = 10};
+        double work = work_of(&GRIDS[g], &options), cost = cost_linear_loads(&linear);
+        options.tolerance = linear.tolerance = 1e-4;
+        double loose = work_of(&GRIDS[g], &options) / work;
+        check_factor(cost_linear_loads(&linear) / cost, loose, 1.4);
+        options.without_tangent = true;
+        linear.tangent = false;
+        double secant = work_of(&GRIDS[g], &options) / work;
+        assert_true(secant < 0.9 * loose);
+        check_factor(cost_linear_loads(&linear) / cost, secant, 1.4);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tolerances_cost_what_they_take),
         cmocka_unit_test(sizes_do_not_matter_without_a_tolerance),
+        cmocka_unit_test(contact_costs_what_it_takes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
