@@ -238,7 +238,7 @@ static void tolerances_leave_what_they_say(void **state) {
     size_t within[VALUES] = {0}, beyond[VALUES] = {0};
     for (size_t a = 0; a < 40 * effort(); a++) {
         struct random_contact of;
-        struct load_values loose[LOADS_MOST], exact[LOADS_MOST];
+        struct load_values loose[LOADS_MOST] = {0}, exact[LOADS_MOST] = {0};
         struct error err = {0};
         draw(next_word(&seeds), 6, &of);
         of.tolerance = 1e-4;
