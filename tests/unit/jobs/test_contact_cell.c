@@ -148,7 +148,8 @@ static double companions_first_seconds_but(const struct contact_case *one_case,
     return companions_first_seconds(&without);
 }
 
-/* The first eight realisations have the work of a second, or half the time of twenty realisations
+/* The first eight realisations have the work of a second by the cost that plans them, and at most a
+ * quarter more by that of what is run; or half the time of twenty realisations
  * beside dear models; the others a tenth of the time of the case. What is drawn does not depend on
  * the loads that are listed. */
 static void they_cost_little(void **state) {
@@ -171,7 +172,7 @@ static void they_cost_little(void **state) {
         double beside = companions_seconds_but(&one_case, COMPANION_LAW);
         assert_true(beside > 0 && beside <= 0.14 * (cost.seconds - beside));
         double first = companions_first_seconds_but(&one_case, COMPANION_LAW);
-        assert_true(first > 0 && first <= fmax(1, 0.5 * 20 * cost.seconds));
+        assert_true(first > 0 && first <= fmax(1.25, 0.5 * 20 * cost.seconds));
         const struct companion_plan *plan = &one_case.companions[COMPANION_LONGER];
         assert_true(companion_draws(plan, 0) > 0 && companion_draws(plan, 6) > 0);
         assert_true(companion_draws(plan, 0) * 8 >= 4);
