@@ -102,7 +102,7 @@ static void a_face_slips_after_yielding(void **state) {
     (void)state;
     enum { LOADS = 3 };
     const double pressures[LOADS] = {0.002, 0.004, 0.006};
-    struct press_row rows[2][LOADS];
+    struct press_row rows[2][LOADS] = {0};
     for (int hard = 0; hard < 2; hard++) {
         struct press_series series = {.block = {.model = model_named("halfspace"),
                                                 .poisson = 0.3,
