@@ -23,13 +23,12 @@ static int check_nothing(const struct study_kind *kind, const cJSON *parameters,
     return 0;
 }
 
-enum { KINDS_MOST = 16, DOCUMENTS_MOST = 10000 };
+enum { KINDS_MOST = 16 };
 struct verdict_fixture {
     struct study_kind kinds[KINDS_MOST];
     const struct study_kind *table[KINDS_MOST + 1]; /* of these */
     size_t kind_count, documents, accepted;
-    FILE *file;                    /* a document a line */
-    bool verdicts[DOCUMENTS_MOST]; /* of the reader */
+    FILE *file; /* a document a line, behind the reader's verdict: 1 or 0 */
 };
 
 /* Has the reader judge a document, and writes it down. */
@@ -38,12 +37,11 @@ static void judge(struct verdict_fixture *f, const cJSON *document) {
     struct fault_list faults = {0};
     struct study *study = NULL;
     assert_non_null(text);
-    assert_true(f->documents < DOCUMENTS_MOST);
     int status = study_read(&study, text, strlen(text), NULL, f->table, 0, &faults, NULL);
     assert_true(status == 0 || status == ERROR_INPUT);
-    f->verdicts[f->documents++] = status == 0;
+    f->documents++;
     f->accepted += status == 0;
-    fprintf(f->file, "%s\n", text);
+    fprintf(f->file, "%d %s\n", status == 0, text);
     study_destroy(&study);
     fault_list_clear(&faults);
     free(text);
@@ -198,7 +196,7 @@ static const char PROGRAM[] =
     "python3 -c 'import json, jsonschema\n"
     "judge = jsonschema.Draft202012Validator(json.load(open(\"schema.json\")))\n"
     "judge.check_schema(judge.schema)\n"
-    "for line in open(\"documents\"): print(int(judge.is_valid(json.loads(line))))'";
+    "for line in open(\"documents\"): print(int(judge.is_valid(json.loads(line[2:]))))'";
 
 static void compare(const struct verdict_fixture *f) {
     FILE *pipe = popen(PROGRAM, "r"), *documents = fopen("documents", "r");
@@ -208,9 +206,10 @@ static void compare(const struct verdict_fixture *f) {
     size_t room = 0;
     for (int verdict; fscanf(pipe, "%d", &verdict) == 1 && read < f->documents; read++) {
         assert_true(getline(&line, &room, documents) > 0);
-        if ((verdict == 1) != f->verdicts[read] && differing++ < 20)
+        const bool accepted = line[0] == '1';
+        if ((verdict == 1) != accepted && differing++ < 20)
             print_error("the schema %s, the reader %s %s", verdict == 1 ? "accepts" : "refuses",
-                        f->verdicts[read] ? "accepts" : "refuses", line);
+                        accepted ? "accepts" : "refuses", line + 2);
     }
     free(line);
     fclose(documents);
