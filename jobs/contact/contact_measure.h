@@ -21,6 +21,9 @@ struct measure_context {
     double rms_slope, rms_height;          /* of the prescribed spectrum */
     bool scaled;                           /* the surface has a scale */
     bool free_space; /* the grid is a map in free space, no cell of fixed sides */
+    /* Called by quantities that take long; non-zero ends them with ERROR_STOPPED. NULL: never. */
+    int (*stop)(void *context);
+    void *stop_context;
 };
 /* Returns a value that fits into exact sums, as its square must, too; else NaN. A stiffness so
  * large is that of full contact but for rounding. */

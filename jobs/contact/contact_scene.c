@@ -205,7 +205,7 @@ static int solve_back(struct contact_scene *scene, size_t m, size_t level,
                       struct contact_tally *tally, const struct contact_stopper *stopper,
                       struct error *err) {
     const struct contact_case *one_case = scene->one_case;
-    const struct measure_context context = context_of(scene, m, level);
+    struct measure_context context = context_of(scene, m, level);
     const size_t cells = contact_case_cells(one_case);
     double *values = contact_tally_values(tally, (enum contact_measure)0) +
                      contact_case_cell(one_case, m, level, 0);
@@ -217,9 +217,11 @@ static int solve_back(struct contact_scene *scene, size_t m, size_t level,
             contact_quantities_measure_falling(one_case, &context, &pressed.state, cells,
                                                values + k);
     }
-    if (status == 0)
-        contact_quantities_complete(one_case, cells, values);
-    return status;
+    context.stop = stopper->stop;
+    context.stop_context = stopper->context;
+    return status != 0 ? status
+                       : contact_quantities_complete(context.quantities, &context, scene->z, cells,
+                                                     values, err);
 }
 
 /* Solves all loads of one model and level in rising order, each from the last. */

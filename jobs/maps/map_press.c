@@ -164,6 +164,10 @@ static void fill_case(struct map_press *press, const struct press_block *asked) 
         press->one_case.unloads = asked->hardness > 0;
         contact_quantities_ask(&press->one_case, FRICTION_MEASURE);
     }
+    if (asked->coupled) {
+        press->one_case.slip_pressing = asked->pressing;
+        contact_quantities_ask(&press->one_case, COUPLING_MEASURE);
+    }
     if (press->one_case.unloads)
         contact_quantities_ask(&press->one_case, UNLOAD_MEASURE);
     if (asked->conducts)
@@ -246,6 +250,10 @@ int map_press_lift(struct map_press *press, const double *z, const struct press_
     double facts[MODEL_FACTS_MOST];
     const struct contact_model *model = block->model;
     int status = map_press_check(press->boundary, model, err);
+    if (status == 0 && block->coupled && press->boundary == PRESS_OPEN)
+        status = error_set(err, ERROR_INPUT,
+                           "the map does not repeat, and slip is coupled in cells that do: "
+                           "--boundary mirrored or periodic makes it one");
     if (status != 0)
         return status;
     map_press_release(press);
@@ -333,10 +341,10 @@ int map_press_load(struct map_press *press, double pressure, struct press_row *r
 }
 
 /* Lets the loads fall again, and fills what is made of all loads together. */
-static int press_back(struct map_press *press, size_t loads, const double *pressures,
-                      struct press_row *rows, struct error *err) {
+static int press_back(struct map_press *press, const double *z, size_t loads,
+                      const double *pressures, struct press_row *rows, struct error *err) {
     struct contact_case one_case = press->one_case;
-    const struct measure_context context = context_of(press);
+    struct measure_context context = context_of(press);
     int status = 0;
     for (size_t l = loads - 1; one_case.unloads && l-- > 0 && status == 0;) {
         struct contact_pressed pressed = contact_not_pressed();
@@ -358,12 +366,13 @@ static int press_back(struct map_press *press, size_t loads, const double *press
         for (size_t v = 0; v < MEASURE_PAIRED; v++)
             values[v * loads + l] = rows[l].value[v];
     }
-    contact_quantities_complete(&one_case, loads, values);
+    context.one_case = &one_case;
+    status = contact_quantities_complete(&press->quantities, &context, z, loads, values, err);
     for (size_t l = 0; l < loads; l++)
         for (size_t v = 0; v < MEASURE_PAIRED; v++)
             rows[l].value[v] = values[v * loads + l];
     free(values);
-    return 0;
+    return status;
 }
 
 int map_press_loads(struct map_press *press, const double *z, size_t loads, const double *pressures,
@@ -380,7 +389,7 @@ int map_press_loads(struct map_press *press, const double *z, size_t loads, cons
         if (status != 0)
             empty_row(press, pressures[l], &series->rows[l]);
     }
-    return status == 0 ? press_back(press, loads, pressures, series->rows, err) : status;
+    return status == 0 ? press_back(press, z, loads, pressures, series->rows, err) : status;
 }
 
 int map_press_step(const struct map_press *press, const double *z, double load, double modulus,

@@ -25,6 +25,8 @@ struct press_block {
     double hardness;        /* over E*; 0: it is elastic */
     bool conducts, leaks;   /* these quantities are asked for */
     double friction, angle; /* coefficient, 0: none; of the tangential load from x, radians */
+    bool coupled, pressing; /* slip is solved with tractions and pressures coupled; friction acts
+                               while pressing */
     bool two_faces;         /* the map is the sum of two (map_counter.h) */
     struct coating coating; /* thickness in the map's length */
 };

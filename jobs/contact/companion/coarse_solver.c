@@ -116,7 +116,9 @@ int coarse_solver_press(struct coarse_solver *solver, const double *z, double *s
                                             .points = (double)grid_points(&solver->grid),
                                             .rms_slope = solver->rms_slope,
                                             .rms_height = solver->rms_height,
-                                            .scaled = true};
+                                            .scaled = true,
+                                            .stop = stopper->stop,
+                                            .stop_context = stopper->context};
     struct error reason = {0};
     contact_set_stop(solver->contact, stopper->stop, stopper->context);
     int status = contact_begin(solver->contact, z, &reason);
@@ -137,7 +139,7 @@ int coarse_solver_press(struct coarse_solver *solver, const double *z, double *s
             contact_quantities_measure_falling(one_case, &context, &state, n, series + k);
     }
     if (status == 0)
-        contact_quantities_complete(one_case, n, series);
+        status = contact_quantities_complete(&solver->quantities, &context, z, n, series, &reason);
     for (size_t a = 0; status == ERROR_NUMERIC && a < measure_paired(one_case) * n; a++)
         series[a] = NAN;
     return status == 0 || status == ERROR_NUMERIC

@@ -1,4 +1,5 @@
 #include "jobs/contact/quantity/quantity.h"
+#include "jobs/contact/contact_measure.h"
 
 #define ADDRESS(name, count) &name##_QUANTITY,
 static const struct contact_quantity *const QUANTITIES[] = {CONTACT_QUANTITY_LIST(ADDRESS)};
@@ -122,9 +123,12 @@ void contact_quantities_measure_falling(const struct contact_case *one_case,
     }
 }
 
-void contact_quantities_complete(const struct contact_case *one_case, size_t stride,
-                                 double *values) {
-    for (size_t q = 0; q < CONTACT_QUANTITIES; q++)
-        if (one_case->asked.of[q] && QUANTITIES[q]->complete != NULL)
-            QUANTITIES[q]->complete(one_case, stride, values);
+int contact_quantities_complete(const struct contact_quantities *quantities,
+                                const struct measure_context *context, const double *z,
+                                size_t stride, double *values, struct error *err) {
+    int status = 0;
+    for (size_t q = 0; q < CONTACT_QUANTITIES && status == 0; q++)
+        if (context->one_case->asked.of[q] && QUANTITIES[q]->complete != NULL)
+            status = QUANTITIES[q]->complete(quantities->of[q], context, z, stride, values, err);
+    return status;
 }

@@ -13,7 +13,7 @@
  * its table of parameters. Partial results hold measures in this order, so that an entry comes
  * behind all others. */
 #define CONTACT_QUANTITY_LIST(ENTRY)                                                               \
-    ENTRY(CONDUCTANCE, 1) ENTRY(LEAK, 7) ENTRY(HARDNESS, 5) ENTRY(UNLOAD, 3) ENTRY(FRICTION, 8)
+    ENTRY(CONDUCTANCE, 1) ENTRY(LEAK, 7) ENTRY(HARDNESS, 5) ENTRY(UNLOAD, 3) ENTRY(FRICTION, 8) ENTRY(COUPLING, 3)
 
 /* NAME_AT: its position, as in quantities_asked. NAME_MEASURE: the number of its first measure. */
 #define CONTACT_QUANTITY_POSITION(name, count) name##_AT,
@@ -47,7 +47,10 @@ enum {
     SLIP_WORK,
     FRICTION_NORMAL,
     FRICTION_APPROACH,
-    FRICTION_RATIO
+    FRICTION_RATIO,
+    COUPLED_STICK = COUPLING_MEASURE,
+    COUPLED_DISPLACEMENT,
+    COUPLED_AREA
 };
 
 /* What a quantity is measured on: one grid under one model. */
@@ -92,9 +95,11 @@ struct contact_quantity {
      * there on that of rising ones. NULL where that is all the same to it. */
     void (*measure_falling)(const struct measure_context *context,
                             const struct contact_state *state, double *values);
-    /* Fills measures that are made of all loads together, of one realisation, model and level:
-     * values[measure * stride + load], of all measures. NULL where there are none. */
-    void (*complete)(const struct contact_case *one_case, size_t stride, double *values);
+    /* Fills measures that are made of all loads together, or of heights z on the grid, of one
+     * realisation, model and level: values[measure * stride + load], of all measures. NULL where
+     * there are none. */
+    int (*complete)(struct quantity_state *state, const struct measure_context *context,
+                    const double *z, size_t stride, double *values, struct error *err);
     /* Fills the scalars of a realisation; NaN: none. NULL where it has none. */
     void (*summarise)(const struct quantity_values *values, double *scalars);
 };
@@ -141,8 +146,10 @@ void contact_quantities_measure_falling(const struct contact_case *one_case,
                                         const struct measure_context *context,
                                         const struct contact_state *state, size_t stride,
                                         double *values);
-/* Fills the measures that are made of all loads together: contact_quantity.complete. */
-void contact_quantities_complete(const struct contact_case *one_case, size_t stride,
-                                 double *values);
+/* Fills the measures that are made of all loads together: contact_quantity.complete, with the case
+ * of the context, whose loads may be others than those of the quantities. */
+int contact_quantities_complete(const struct contact_quantities *quantities,
+                                const struct measure_context *context, const double *z,
+                                size_t stride, double *values, struct error *err);
 
 #endif

@@ -185,7 +185,9 @@ static double integral(double width, const double of[2], const double slope[2]) 
     return width * (of[0] + of[1]) / 2 + width * width * (slope[0] - slope[1]) / 12;
 }
 
-static void complete(const struct contact_case *one_case, size_t stride, double *values) {
+static int complete(struct quantity_state *state, const struct measure_context *context,
+                    const double *z, size_t stride, double *values, struct error *err) {
+    const struct contact_case *one_case = context->one_case;
     const bool yields = one_case->hardness > 0;
     const double *nodes = values + (yields ? (size_t)UNLOAD_AREA : MEASURE_NODES) * stride;
     const double *edges = values + MEASURE_EDGES * stride;
@@ -194,6 +196,7 @@ static void complete(const struct contact_case *one_case, size_t stride, double 
     const size_t top = one_case->slip_load;
     const double ratio = own[RATIO * stride + top], mu = one_case->friction;
     double under = 0; /* the curve of displacement */
+    (void)state, (void)z, (void)err;
     for (size_t k = top; k-- > 0;) {
         double load = mu * (one_case->loads[top] - one_case->loads[k]);
         double ends[2], slopes[2];
@@ -207,6 +210,7 @@ static void complete(const struct contact_case *one_case, size_t stride, double 
         own[DISPLACEMENT * stride + k] = ends[1];
         own[WORK * stride + k] = 4 * load * ends[1] - 8 * under;
     }
+    return 0;
 }
 
 static bool is_asked(const struct contact_case *one_case) {

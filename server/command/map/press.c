@@ -144,6 +144,8 @@ static bool are_asked(const struct press_paths *paths) {
 
 enum asked { ASKED_AUTO, ASKED_OPEN, ASKED_MIRRORED, ASKED_PERIODIC };
 #define BOUNDARIES "auto|open|mirrored|periodic" /* in this order */
+enum coupling { COUPLING_NONE, COUPLING_FRICTIONLESS, COUPLING_FRICTIONAL };
+#define COUPLINGS "none|frictionless|frictional" /* in this order */
 
 /* From so many points on threads share the work. */
 enum { POINTS_SHARED = 1 << 15 };
@@ -158,6 +160,7 @@ struct press_options {
     double lengths;      /* height of the block in lengths of the map, 0: not given */
     double tolerance;    /* likewise */
     int boundary, format, without_error, along_y;
+    int coupling; /* enum coupling */
     bool leak;
     unsigned threads; /* 0: as many processors as are allotted */
     struct press_words words;
@@ -186,6 +189,9 @@ static const struct option_row OPTIONS[] = {
      "coefficient of friction: what sticks, and how far the face gives, as a tangential load rises "
      "under the highest load; loads below it are added"},
     {"direction", 0, OPTION_CHOICE, 0, 0, AT(along_y), "x|y", "x", "of the tangential load"},
+    {"coupling", 0, OPTION_CHOICE, 0, 0, AT(coupling), COUPLINGS, "none",
+     "with --friction: also solve slip with pressures and tractions coupled, after pressing the map "
+     "without friction or with it"},
     {"resistivity", 0, OPTION_TEXT, 0, 0, AT(words.resistivity), "RHO[,RHO]", NULL,
      "electric resistivity of both bodies, or of each, in ohm m: the conductance of the contact"},
     {"conductivity", 0, OPTION_TEXT, 0, 0, AT(words.conductivity), "K[,K]", NULL,
@@ -566,6 +572,26 @@ static int press_map(const struct press_order *order, struct height_map *map, st
     return status;
 }
 
+/* Checks what the coupling of tractions and pressures excludes. */
+static int check_coupling(const struct press_order *order, struct error *err) {
+    if (!(order->options->words.friction > 0))
+        return error_set(err, ERROR_INPUT, "--coupling: nothing slips unless --friction is given");
+    if (order->loads.hardness > 0)
+        return error_set(err, ERROR_INPUT,
+                         "--coupling and --hardness: a block that yields has none");
+    for (size_t m = 0; m < order->model_count; m++) {
+        const struct contact_model *model = order->blocks[m].model;
+        const double height =
+            order->blocks[m].lengths > 0 ? order->blocks[m].lengths : model->default_height;
+        if (model->elements || isfinite(height))
+            return error_set(err, ERROR_INPUT,
+                             "--coupling: it is that of an infinite half-space, and the block of "
+                             "the model %s has a height; leave one of them out",
+                             contact_model_name(model));
+    }
+    return 0;
+}
+
 /* Sets the models and their blocks. */
 static int order_models(struct press_order *order, struct error *err) {
     const struct press_options *options = order->options;
@@ -581,7 +607,12 @@ static int order_models(struct press_order *order, struct error *err) {
                                                 .conducts = order->loads.resistivity > 0,
                                                 .friction = options->words.friction,
                                                 .angle = options->along_y ? M_PI / 2 : 0,
+                                                .coupled = options->coupling != COUPLING_NONE,
+                                                .pressing =
+                                                    options->coupling == COUPLING_FRICTIONAL,
                                                 .leaks = options->leak};
+    if (options->coupling != COUPLING_NONE && check_coupling(order, err) != 0)
+        return ERROR_INPUT;
     if (order->loads.resistivity > 0 && options->coating != NULL)
         return error_set(err, ERROR_INPUT,
                          "--%s and --coating: what passes a coating is not known from its contact",

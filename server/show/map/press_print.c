@@ -245,7 +245,11 @@ static const struct slip_column {
 } SLIP_COLUMNS[] = {
     {"stick edges", "stick_edges", "stick_area", "edges", SLIP_SHARE},
     {"stick nodes", "stick_nodes", "stick_area", "nodes", SLIP_SHARE},
+    {"coupled", "stick_coupled", "stick_area", "coupled", SLIP_SHARE},
     {"displacement", "tangential_displacement", "tangential_displacement", "", SLIP_LENGTH},
+    {"coupled", "tangential_displacement_coupled", "tangential_displacement", "coupled",
+     SLIP_LENGTH},
+    {"contact coupled", "slip_contact_area", "slip_contact_area", "coupled", SLIP_SHARE},
     {"work a cycle", "slip_work", "slip_work", "", SLIP_WORK_DONE}};
 enum { SLIP_COLUMN_COUNT = sizeof SLIP_COLUMNS / sizeof *SLIP_COLUMNS };
 
@@ -272,6 +276,14 @@ static double bound_at(const struct curve *curve, size_t point) {
     return sum;
 }
 
+/* Returns whether an error of some point is known. */
+static bool has_bounds(const struct curve *curve) {
+    for (size_t i = 0; i < curve->n; i++)
+        if (!isnan(bound_at(curve, i)))
+            return true;
+    return false;
+}
+
 /* Returns the scale to SI units; 0: not known. */
 static double slip_scale(const struct press_report *report, const struct slip_column *column) {
     const struct map_press *press = report->press;
@@ -285,7 +297,7 @@ static double head_slip(struct text_table *table, const struct part *part,
                         const struct slip_column *column, const struct curve *curve) {
     bool profile = grid_is_profile(&part->report->press->map);
     const char *si = column->kind == SLIP_LENGTH ? "m" : profile ? "J/m" : "J";
-    double scale = slip_scale(part->report, column), most = curve->y[curve->n - 1];
+    double scale = slip_scale(part->report, column), most = 0;
     char unit[24];
     if (!(scale > 0)) {
         table_cell(table, "%s%s", column->heading,
@@ -294,6 +306,8 @@ static double head_slip(struct text_table *table, const struct part *part,
                                                     : "");
         return 1;
     }
+    for (size_t i = 0; i < curve->n; i++)
+        most = fmax(most, curve->y[i]); /* NaN: a point without a solution */
     scale /= unit_readable(si, scale * most, unit, sizeof unit);
     table_cell(table, "%s, %s", column->heading, unit);
     return scale;
@@ -305,9 +319,11 @@ static void print_slip(FILE *file, const struct part *part) {
     const struct press_block *block = &part->series->block;
     struct text_table table = {.columns = 1};
     double scales[SLIP_COLUMN_COUNT];
+    bool bounded[SLIP_COLUMN_COUNT], some = false;
     for (size_t c = 0; c < SLIP_COLUMN_COUNT; c++) {
         curves[c] = slip_curve(part, &SLIP_COLUMNS[c]);
-        table.columns += curves[c] != NULL ? 2 : 0;
+        bounded[c] = curves[c] != NULL && has_bounds(curves[c]);
+        table.columns += curves[c] != NULL ? 1 + bounded[c] : 0;
         first = first != NULL ? first : curves[c];
     }
     if (first == NULL || first->n == 0)
@@ -316,20 +332,23 @@ static void print_slip(FILE *file, const struct part *part) {
     for (size_t c = 0; c < SLIP_COLUMN_COUNT; c++)
         if (curves[c] != NULL) {
             scales[c] = head_slip(&table, part, &SLIP_COLUMNS[c], curves[c]);
-            table_cell(&table, "+-");
+            if (bounded[c])
+                table_cell(&table, "+-");
+            some = some || bounded[c];
         }
     for (size_t i = 0; i < first->n; i++) {
         table_number(&table, first->x[i]);
         for (size_t c = 0; c < SLIP_COLUMN_COUNT; c++)
             if (curves[c] != NULL) {
                 table_number(&table, curves[c]->y[i] * scales[c]);
-                table_cell(&table, "%.2g", bound_at(curves[c], i) * scales[c]);
+                if (bounded[c])
+                    table_cell(&table, "%.2g", bound_at(curves[c], i) * scales[c]);
             }
     }
     fprintf(file,
-            "\ntangential load Q along %s under p/(E* h') = %.4g, friction %.4g; +- errors that "
-            "are known\n\n",
-            block->angle > 0 ? "y" : "x", first->pressure, block->friction);
+            "\ntangential load Q along %s under p/(E* h') = %.4g, friction %.4g%s\n\n",
+            block->angle > 0 ? "y" : "x", first->pressure, block->friction,
+            some ? "; +- errors that are known" : "");
     table_print(&table, file);
     table_clear(&table);
 }

@@ -298,6 +298,8 @@ static void give_partners(cJSON *document) {
         {"/contact/unload", "/contact/hardness", "0.5"},
         {"/contact/unload", "/contact/pressures", "{\"values\": [0.05, 0.2]}"},
         {"/contact/slip", "/contact/friction", "0.2"},
+        {"/contact/slip/pressing", "/contact/slip/coupling", "true"},
+        {"/contact/slip/coupling", "/contact/model", "\"halfspace\""},
         {"/contact/slip/pressure", "/contact/slip/pressure", "0.1"},
         {"/contact/slip/pressure", "/contact/pressures", "{\"values\": [0.05, 0.2]}"},
         {"/contact/pressures/unit", "/surface/rms_slope", "0.1"},

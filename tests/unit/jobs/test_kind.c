@@ -131,6 +131,7 @@ static void readers_and_rows_agree(void **state) {
                                           "jobs/target.c",
                                           "jobs/like/like_case.c",
                                           "jobs/contact/quantity/quantity_conductance.c",
+                                          "jobs/contact/quantity/quantity_coupling.c",
                                           "jobs/contact/quantity/quantity_friction.c",
                                           "jobs/contact/quantity/quantity_hardness.c",
                                           "jobs/contact/quantity/quantity_leak.c",

@@ -1,11 +1,13 @@
 /* Protects what studies ask of a solved contact: the conductance is the stiffness of a half-space
  * without end, and of other blocks that of half-spaces through their nodes; what yields bears the
- * hardness, and stays flat as the load falls; faces slip by the contact of lighter loads; leaks lie
+ * hardness, and stays flat as the load falls; faces slip by the contact of lighter loads, and as that does where
+ * nothing couples pressures and tractions; leaks lie
  * between those of both means, and close where free space does. All have the errors of other curves
  * and do not depend on how realisations are cut into blocks. A case that does not ask for them
  * keeps the bytes of its partial results. */
 #include "jobs/contact/contact_case_read.h"
 #include "jobs/contact/contact_loads.h"
+#include "jobs/contact/contact_measure.h"
 #include "jobs/contact/quantity/quantity.h"
 #include "tests/support/check.h"
 #include "tests/support/contact_document.h"
@@ -241,6 +243,44 @@ static void a_load_is_held(void **state) {
     cJSON_Delete(document);
 }
 
+/* At a Poisson's ratio of nearly a half pressures do not move a profile along its face, so that both
+ * solutions are one but for nodes whose pressure is within the tolerance of none. At 0.3 pressing
+ * with friction leaves less that sticks (0.75 becomes 0.49 of a cylinder at 0.45 of full slip), and
+ * friction while only the tangential load rises about as much. */
+static void pressures_and_tractions_couple(void **state) {
+    (void)state;
+    static const struct {
+        const char *contact;
+        double stick_least, stick_most, moved_least, moved_most;
+    } CASES[] = {{"\"friction\": 0.3, \"slip\": {\"coupling\": true}, \"poisson\": 0.499", 0.97, 1.03,
+                  0.998, 1.002},
+                 {"\"friction\": 0.3, \"slip\": {\"coupling\": true}, \"poisson\": 0.3", 0.9, 1.1,
+                  0.9, 1.05},
+                 {"\"friction\": 0.3, \"slip\": {\"coupling\": true, \"pressing\": \"frictional\"}, "
+                  "\"poisson\": 0.3",
+                  0.5, 0.92, 1.01, 1.3}};
+    for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
+        char study[600];
+        snprintf(study, sizeof study, STUDY("\"tolerance\": 1e-6, %s"), CASES[c].contact);
+        cJSON *document = solve(study, 2);
+        const cJSON *stick[] = {curve_of(document, "stick_area", "nodes", "halfspace"),
+                                curve_of(document, "stick_area", "coupled", "halfspace")};
+        const cJSON *moved[] = {curve_of(document, "tangential_displacement", "", "halfspace"),
+                                curve_of(document, "tangential_displacement", "coupled",
+                                         "halfspace")};
+        for (int i = 0; i < 5; i++) {
+            double sticks = at(stick[1], "/y", i) / at(stick[0], "/y", i);
+            double moves = at(moved[1], "/y", i) / at(moved[0], "/y", i);
+            if (!(sticks >= CASES[c].stick_least && sticks <= CASES[c].stick_most &&
+                  moves >= CASES[c].moved_least && moves <= CASES[c].moved_most))
+                fail_msg("case %zu, at %g of full slip: %.4f of what sticks, moved by %.4f", c,
+                         at(stick[0], "/x", i), sticks, moves);
+            assert_true(at(stick[1], "/cell_bound", i) > 0 && at(moved[1], "/cell_bound", i) > 0);
+        }
+        cJSON_Delete(document);
+    }
+}
+
 /* Surfaces with lay give less along their long waves (0.76 to 0.9 of the stiffness across the face
  * at nu = 0.3 and a ratio of 3), as the contact itself does. */
 static void lay_has_a_direction(void **state) {
@@ -285,7 +325,8 @@ static void a_cycle_takes_the_work_of_a_sphere(void **state) {
         values[FRICTION_APPROACH * POINTS + k] = pow(loads[k], 2. / 3);
         values[FRICTION_NORMAL * POINTS + k] = 1.5 * cbrt(loads[k]);
     }
-    FRICTION_QUANTITY.complete(&one_case, POINTS, values);
+    const struct measure_context context = {.one_case = &one_case};
+    assert_int_equal(FRICTION_QUANTITY.complete(NULL, &context, NULL, POINTS, values, NULL), 0);
     for (size_t k = 0; k < one_case.slip_load; k++) {
         double moved = mu * (1 - pow(loads[k], 2. / 3)), tangential = mu * (1 - loads[k]);
         double under = mu * mu * (1 - loads[k] - 0.6 * (1 - pow(loads[k], 5. / 3)));
@@ -393,6 +434,21 @@ static void what_does_not_fit_is_refused(void **state) {
     refuse("\"friction\": 0.1, \"coating\": {\"thickness\": 1, \"modulus\": 2}",
            "/contact/friction: how a coating gives tangentially is not known from its contact; "
            "leave one of them out");
+    refuse("\"slip\": {\"coupling\": true}",
+           "/contact/slip/coupling: nothing slips unless /contact/friction is given");
+    refuse("\"friction\": 0.1, \"slip\": {\"pressing\": \"frictional\"}",
+           "/contact/slip/pressing: /contact/slip/coupling is not asked for");
+    refuse("\"friction\": 0.1, \"slip\": {\"coupling\": true}, \"hardness\": 1",
+           "/contact/slip/coupling: a block that yields has none; leave one of them out");
+    refuse("\"friction\": 0.1, \"slip\": {\"coupling\": true}, \"block_height\": {\"lengths\": 1}",
+           "/contact/slip/coupling: blocks of finite height have none; leave one of them out");
+    refuse("\"friction\": 0.1, \"slip\": {\"coupling\": true}, \"model\": \"layered\"",
+           "/contact/slip/coupling: the model layered has none, but an infinite half-space; leave "
+           "one of them out");
+    refuse("\"friction\": 0.1, \"slip\": {\"coupling\": true}}, \"counter_surface\": {\"hurst\": "
+           "0.8, \"wavelength_ratio\": 4, \"rms_slope\": 0.1, \"young\": 1, \"poisson\": 0.3",
+           "/contact/slip/coupling: it is that against a rigid body, and the counter body is "
+           "elastic; leave one of them out");
     refuse("\"conductance\": true, \"resistivity\": [1, 2, 3]",
            "/contact/resistivity: [1,2,3] is not an array of 1 to 2 numbers");
 }
@@ -405,6 +461,7 @@ int main(void) {
         cmocka_unit_test(what_yields_bears_the_hardness),
         cmocka_unit_test(friction_slips_by_lighter_loads),
         cmocka_unit_test(a_load_is_held),
+        cmocka_unit_test(pressures_and_tractions_couple),
         cmocka_unit_test(lay_has_a_direction),
         cmocka_unit_test(a_cycle_takes_the_work_of_a_sphere),
         cmocka_unit_test(what_yielded_unloads),
