@@ -1,5 +1,5 @@
-/* Reported errors of what studies ask of a contact cover the truth: hardness, conductance, leak and
- * coatings, against finer meshes and stricter solvers on the same realisations. With RUGO_EFFORT
+/* Reported errors of what studies ask of a contact cover the truth: hardness, conductance, leak,
+ * coatings and slip, against finer meshes and stricter solvers on the same realisations. With RUGO_EFFORT
  * twenty scenes of profiles and surfaces, six loads of 0.003 to 0.6 each (of a face that yields up
  * to 0.92 of its hardness) and three choices of meshes; without it three scenes on coarser meshes,
  * of one. */
@@ -56,6 +56,7 @@ struct question {
     struct curve_name curves[CURVES]; /* ends with one without a name */
     bool surfaces;                    /* alone */
     bool hard;                        /* the face yields */
+    bool halfspace;                   /* the model, of all scenes */
 };
 
 static int ask_hardness(char *text, size_t size, const struct scene *scene) {
@@ -71,6 +72,19 @@ static int ask_coating(char *text, size_t size, const struct scene *scene) {
     return snprintf(text, size,
                     "\"coating\": {\"thickness\": %g, \"modulus\": %g, \"poisson\": 0.35}, ",
                     scene->thickness, scene->modulus);
+}
+
+static int ask_slip(char *text, size_t size, const struct scene *scene) {
+    (void)scene;
+    return snprintf(text, size, "\"friction\": 0.3, \"poisson\": 0.3, ");
+}
+
+static int ask_coupling(char *text, size_t size, const struct scene *scene) {
+    return snprintf(text, size,
+                    "\"friction\": 0.3, \"poisson\": %g, \"slip\": {\"coupling\": true, "
+                    "\"pressure\": 0.1, \"pressing\": \"%s\"}, ",
+                    scene->hurst < 0.5 ? 0.1 : 0.3,
+                    scene->shape < 2 ? "frictional" : "frictionless");
 }
 
 static const struct question HARDNESS = {.name = "hardness",
@@ -94,6 +108,19 @@ static const struct question COATING = {
     .name = "coating",
     .ask = ask_coating,
     .curves = {{"contact_area", "edges"}, {"mean_gap", ""}, {"stiffness", ""}}};
+static const struct question SLIP = {.name = "slip",
+                                     .ask = ask_slip,
+                                     .curves = {{"tangential_stiffness", ""},
+                                                {"stick_area", "edges"},
+                                                {"stick_area", "nodes"},
+                                                {"tangential_displacement", ""},
+                                                {"slip_work", ""}}};
+static const struct question COUPLING = {.name = "coupled slip",
+                                         .ask = ask_coupling,
+                                         .halfspace = true,
+                                         .curves = {{"stick_area", "coupled"},
+                                                    {"tangential_displacement", "coupled"},
+                                                    {"slip_contact_area", "coupled"}}};
 
 /* Loads of a face that yields end below its hardness. */
 static int write_loads(char *text, size_t size, const struct question *question,
@@ -208,6 +235,8 @@ static struct scene scene_at(const struct question *question, size_t s) {
         scene.dimension = 2;
         scene.hurst = 1.1 - scene.hurst;
     }
+    if (question->halfspace)
+        scene.model = "halfspace";
     return scene;
 }
 
@@ -288,6 +317,26 @@ static void meshes_of_coatings(void **state) {
     check_meshes(&COATING, MESH_LEAST);
 }
 
+static void meshes_of_slip(void **state) {
+    (void)state;
+    check_meshes(&SLIP, MESH_LEAST);
+}
+
+static void meshes_of_coupling(void **state) {
+    (void)state;
+    check_meshes(&COUPLING, MESH_LEAST);
+}
+
+static void solvers_of_slip(void **state) {
+    (void)state;
+    check_solvers(&SLIP, SOLVER_LEAST);
+}
+
+static void solvers_of_coupling(void **state) {
+    (void)state;
+    check_solvers(&COUPLING, SOLVER_LEAST);
+}
+
 static void solvers_of_hardness(void **state) {
     (void)state;
     check_solvers(&HARDNESS, SOLVER_LEAST);
@@ -314,6 +363,8 @@ int main(void) {
         cmocka_unit_test(solvers_of_leak),     cmocka_unit_test(solvers_of_coatings),
         cmocka_unit_test(meshes_of_hardness),  cmocka_unit_test(meshes_of_conductance),
         cmocka_unit_test(meshes_of_leak),      cmocka_unit_test(meshes_of_coatings),
+        cmocka_unit_test(solvers_of_slip),     cmocka_unit_test(meshes_of_slip),
+        cmocka_unit_test(solvers_of_coupling), cmocka_unit_test(meshes_of_coupling),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
