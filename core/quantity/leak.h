@@ -5,7 +5,7 @@
  * g (Reynolds 1886; Patir & Cheng 1978), on the nodes of a periodic surface. The fluid is not
  * compressible and does not press the gap open. Across the direction of flow the cell is open: half
  * a spacing before its first and behind its last nodes the pressure is 1 and 0. Along its sides it
- * is periodic.
+ * is periodic, or, of a surface that does not repeat, between walls.
  *
  * The leak of a direction is the mean flow for a unit mean gradient of pressure, over that of a
  * uniform gap of the same mean, contact included (F20.1): Patir & Cheng's flow factor with the mean
@@ -29,6 +29,7 @@
 struct leak_options {
     double tolerance;      /* on each leak by its faces, relative, as estimated; default 1e-10 */
     size_t max_iterations; /* of each; 1 to 1e6; default 2000 */
+    bool walled;           /* nothing passes from one side to the opposite one; default false */
 };
 extern const struct leak_options LEAK_DEFAULTS;
 

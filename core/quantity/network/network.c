@@ -12,6 +12,7 @@
 struct network {
     size_t nx, ny; /* of the grid, across and along */
     double along;
+    bool walled;
     struct multigrid multigrid;
     struct level *finest; /* its u is the preconditioned residual r, its residual A d */
     double *memory;       /* owned: k, x, d */
@@ -98,13 +99,14 @@ int network_take(struct network *net, const struct conductances *nodes, bool *op
     net->nx = nodes->nx;
     net->ny = nodes->ny;
     net->along = nodes->along;
+    net->walled = nodes->walled;
     net->started = false;
     for (size_t j = 0; j < net->ny; j++)
         for (size_t i = 0; i < net->nx; i++)
             net->k[level_row(finest, j) + i] =
                 nodes->values[j * nodes->step_along + i * nodes->step_across];
-    *open = percolation_keep(net->nx, net->ny, finest->stride, net->k + level_row(finest, 0),
-                             net->link);
+    *open = percolation_keep(net->nx, net->ny, net->walled, finest->stride,
+                             net->k + level_row(finest, 0), net->link);
     return 0;
 }
 
@@ -140,8 +142,11 @@ static void fill_faces(struct network *net, enum face_mean mean) {
         finest->s[row] = 2 * k[row];
         finest->s[row + nx - 1] = 2 * k[row + nx - 1];
     }
+    const size_t last = level_row(finest, ny - 1);
+    if (net->walled)
+        memset(finest->n + last, 0, nx * sizeof *finest->n);
     if (finest->ny > ny) {
-        size_t last = level_row(finest, ny - 1), added = level_row(finest, ny);
+        size_t added = level_row(finest, ny);
         for (size_t i = 0; i < nx; i++)
             finest->n[added + i] = finest->n[last + i] *= 2;
     }

@@ -1,6 +1,6 @@
 /* Flow through a network of conductances between the nodes of a grid, nx across and ny along: open
  * across, where the nodes of the first and of the last column are tied to ends at pressures of 1
- * and 0, half a spacing away, and periodic along. Private to core/quantity.
+ * and 0, half a spacing away, and along periodic or between walls. Private to core/quantity.
  *
  * A network belongs to one thread and is reused. */
 #ifndef RUGO_CORE_QUANTITY_NETWORK_NETWORK_H
@@ -27,6 +27,7 @@ struct conductances {
     size_t nx, ny; /* across and along */
     size_t step_across, step_along;
     double along;
+    bool walled; /* the first and the last row are no neighbours */
 };
 /* Copies them. Those that are not joined to both ends become 0; *open: whether any is.
  * ERROR_MEMORY.

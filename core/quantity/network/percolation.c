@@ -14,7 +14,8 @@ static void join(ptrdiff_t *link, size_t a, size_t b) {
     link[other] = (ptrdiff_t)root;
 }
 
-static void join_neighbours(size_t nx, size_t ny, size_t stride, const double *k, ptrdiff_t *link) {
+static void join_neighbours(size_t nx, size_t ny, bool walled, size_t stride, const double *k,
+                            ptrdiff_t *link) {
     for (size_t j = 0; j < ny; j++) {
         size_t next = j + 1 < ny ? j + 1 : 0;
         const double *row = k + j * stride, *up = k + next * stride;
@@ -23,20 +24,21 @@ static void join_neighbours(size_t nx, size_t ny, size_t stride, const double *k
                 continue;
             if (i + 1 < nx && row[i + 1] > 0)
                 join(link, j * nx + i, j * nx + i + 1);
-            if (up[i] > 0)
+            if (up[i] > 0 && !(walled && next == 0))
                 join(link, j * nx + i, next * nx + i);
         }
     }
 }
 
-bool percolation_keep(size_t nx, size_t ny, size_t stride, double *k, ptrdiff_t *link) {
+bool percolation_keep(size_t nx, size_t ny, bool walled, size_t stride, double *k,
+                      ptrdiff_t *link) {
     for (size_t j = 0; j < ny; j++) {
         for (size_t i = 0; i < nx; i++)
             link[j * nx + i] = -ROOT;
         link[j * nx] -= FIRST;
         link[j * nx + nx - 1] -= LAST;
     }
-    join_neighbours(nx, ny, stride, k, link);
+    join_neighbours(nx, ny, walled, stride, k, link);
     bool any = false;
     for (size_t j = 0; j < ny; j++)
         for (size_t i = 0; i < nx; i++) {

@@ -56,7 +56,9 @@ static int create(struct quantity_state **out, const struct quantity_scene *scen
     struct quantity_state *state = array_create(1, sizeof *state);
     if (state == NULL)
         return error_memory(err, sizeof *state, "a leak");
-    int status = leak_create(&state->leak, &scene->grid, &LEAK_DEFAULTS, err);
+    struct leak_options options = LEAK_DEFAULTS;
+    options.walled = scene->open;
+    int status = leak_create(&state->leak, &scene->grid, &options, err);
     if (status != 0)
         destroy(&state);
     *out = state;

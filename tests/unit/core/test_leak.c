@@ -133,6 +133,39 @@ static void diagonal_lines_close(void **state) {
     assert_true(!result.x.open && result.y.open);
 }
 
+/* Between walls gaps leak as they do mirrored, where nothing crosses a side: mirrored both along and
+ * across, as half of the pressure falls over each half. Of a third closed some paths go through
+ * sides. */
+static void walled_gaps_leak_as_mirrored(void **state) {
+    (void)state;
+    static double gap[MOST], mirrored[4 * MOST];
+    struct leak_options walled = LEAK_DEFAULTS;
+    size_t open = 0, wrapped = 0;
+    uint64_t words = seed_or(3);
+    walled.walled = true;
+    for (size_t g = 0; g < SHAPE_COUNT; g++) {
+        const size_t nx = SHAPES[g].nx, ny = SHAPES[g].ny;
+        const struct grid twice = {2 * nx, 2 * ny, 2 * SHAPES[g].lx, 2 * SHAPES[g].ly};
+        struct leak *leak = NULL;
+        draw(nx * ny, 0.36, &words, gap);
+        for (size_t j = 0; j < 2 * ny; j++)
+            for (size_t i = 0; i < 2 * nx; i++)
+                mirrored[j * 2 * nx + i] = gap[(j < ny ? j : 2 * ny - 1 - j) * nx +
+                                               (i < nx ? i : 2 * nx - 1 - i)];
+        assert_int_equal(leak_create(&leak, &SHAPES[g], &walled, NULL), 0);
+        const struct leak_result result = measure(leak, gap, NULL);
+        const struct leak_result expected = measure_once(twice, mirrored, NULL);
+        const struct leak_result periodic = measure_once(SHAPES[g], gap, NULL);
+        assert_true(result.x.open == expected.x.open && result.y.open == expected.y.open);
+        check_relative(result.x.harmonic, expected.x.harmonic, 1e-8);
+        check_relative(result.y.arithmetic, expected.y.arithmetic, 1e-8);
+        open += result.x.open + result.y.open;
+        wrapped += periodic.x.harmonic > 1.001 * result.x.harmonic;
+        leak_destroy(&leak);
+    }
+    assert_true(open > 4 && wrapped > 0);
+}
+
 /* A closed square with free nodes within, and free nodes that only one end reaches, change the mean
  * gap, and no flow. */
 static void pockets_carry_nothing(void **state) {
@@ -227,8 +260,8 @@ static void bad_inputs_are_refused(void **state) {
     check_refused((struct grid){8, 1, 1, 1}, LEAK_DEFAULTS, "a profile of 8 points");
     check_refused((struct grid){1, 8, 1, 1}, LEAK_DEFAULTS, "a grid of 1 by 8 points");
     check_refused((struct grid){8, 8, -1, 1}, LEAK_DEFAULTS, "lx = -1");
-    check_refused(GRID, (struct leak_options){NAN, 10}, "tolerance of nan");
-    check_refused(GRID, (struct leak_options){1e-6, 0}, "limit of 0 iterations");
+    check_refused(GRID, (struct leak_options){NAN, 10, false}, "tolerance of nan");
+    check_refused(GRID, (struct leak_options){1e-6, 0, false}, "limit of 0 iterations");
     struct leak *leak = leak_of(GRID);
     struct leak_result result;
     struct error err = {0};
@@ -251,7 +284,7 @@ static void what_is_not_reached_is_an_error(void **state) {
     struct leak_result result;
     struct error err = {0};
     draw((size_t)96 * 96, 0.3, &words, gap);
-    assert_int_equal(leak_create(&leak, &GRID, &(struct leak_options){1e-10, 1}, &err), 0);
+    assert_int_equal(leak_create(&leak, &GRID, &(struct leak_options){1e-10, 1, false}, &err), 0);
     assert_int_equal(leak_measure(leak, gap, NULL, &result, &err), ERROR_NUMERIC);
     assert_non_null(strstr(err.text, "the leak along x: the flow through 96 by 96 nodes"));
     assert_non_null(strstr(err.text, "after 1 iterations; allowed: 1e-10"));
@@ -273,6 +306,7 @@ int main(void) {
         cmocka_unit_test(walls_close_across_and_not_along),
         cmocka_unit_test(pressures_close_nodes_whatever_their_gap),
         cmocka_unit_test(diagonal_lines_close),
+        cmocka_unit_test(walled_gaps_leak_as_mirrored),
         cmocka_unit_test(pockets_carry_nothing),
         cmocka_unit_test(digits_are_the_same_again),
         cmocka_unit_test(tiny_gaps_are_open),
