@@ -349,6 +349,11 @@ static void print_slip(FILE *file, const struct part *part) {
             "\ntangential load Q along %s under p/(E* h') = %.4g, friction %.4g%s\n\n",
             block->angle > 0 ? "y" : "x", first->pressure, block->friction,
             some ? "; +- errors that are known" : "");
+    if (part->report->press->boundary == PRESS_OPEN && !grid_is_profile(&part->report->press->map))
+        fprintf(file,
+                "stiffness along the face over that across: %.4g, as where no direction has longer "
+                "waves; else between %.4g and 1\n\n",
+                (1 - block->poisson) / (1 - block->poisson / 2), 1 - block->poisson);
     table_print(&table, file);
     table_clear(&table);
 }
