@@ -2,21 +2,33 @@
 #include "core/vectors.h"
 #include <stdlib.h>
 
-void local_basis_at(double t, struct local_basis *basis) {
-    for (int a = 0; a < LOCAL_POINTS; a++) {
-        double value = 1, slope = 0, bend = 0;
-        for (int b = 0; b < LOCAL_POINTS; b++) {
-            if (b == a)
-                continue;
-            double scale = 1 / (double)(a - b), factor = scale * (t - (b + 1 - LOCAL_HALF));
-            bend = bend * factor + 2 * scale * slope;
-            slope = slope * factor + scale * value;
-            value *= factor;
-        }
-        basis->value[a] = value;
-        basis->slope[a] = slope;
-        basis->bend[a] = bend;
+/* 1/(a - b) at a - b + LOCAL_POINTS - 1; 0 of a = b. */
+static const double INVERSE[2 * LOCAL_POINTS - 1] = {
+    -1. / 15, -1. / 14, -1. / 13, -1. / 12, -1. / 11, -1. / 10, -1. / 9, -1. / 8,
+    -1. / 7,  -1. / 6,  -1. / 5,  -1. / 4,  -1. / 3,  -1. / 2,  -1,      0,
+    1,        1. / 2,   1. / 3,   1. / 4,   1. / 5,   1. / 6,   1. / 7,  1. / 8,
+    1. / 9,   1. / 10,  1. / 11,  1. / 12,  1. / 13,  1. / 14,  1. / 15};
+
+/* Multiplies the polynomials of all points by the factors that are 0 at point b, all but that of
+ * point b itself. A plain loop, so that the compiler makes vectors of it. */
+WIDE_VECTORS static void factors_multiply(double t, size_t b, struct local_basis *restrict basis) {
+    const double *scales = INVERSE + LOCAL_POINTS - 1 - b;
+    for (size_t a = 0; a < LOCAL_POINTS; a++) {
+        double value = basis->value[a], slope = basis->slope[a], bend = basis->bend[a];
+        double scale = scales[a], factor = scale * t;
+        basis->bend[a] = a == b ? bend : bend * factor + 2 * scale * slope;
+        basis->slope[a] = a == b ? slope : slope * factor + scale * value;
+        basis->value[a] = a == b ? value : value * factor;
     }
+}
+
+void local_basis_at(double t, struct local_basis *basis) {
+    for (size_t a = 0; a < LOCAL_POINTS; a++) {
+        basis->value[a] = 1;
+        basis->slope[a] = basis->bend[a] = 0;
+    }
+    for (size_t b = 0; b < LOCAL_POINTS; b++)
+        factors_multiply(t - (double)((int)b + 1 - LOCAL_HALF), b, basis);
 }
 
 /* Weights of z[i + m] - z[i - m] in the first derivative, and of z[i + m] - 2 z[i] + z[i - m] in

@@ -117,7 +117,7 @@ static void jet_at(const void *surface, double x, double y, struct climb_cell *c
                    struct jet *jet) {
     const struct search *s = surface;
     const struct grid *grid = s->map->grid;
-    double fine = (double)s->fine;
+    const double fine = (double)s->fine, shorter = 1 / fine; /* a power of two: exact */
     bool profile = grid_is_profile(grid);
     double px = (x + SHIFT_X) / fine, py = profile ? 0 : (y + SHIFT_Y) / fine;
     *jet = (struct jet){NAN, NAN, NAN, NAN, NAN, NAN};
@@ -136,15 +136,17 @@ static void jet_at(const void *surface, double x, double y, struct climb_cell *c
         double z = 0, slope = 0, bend = 0;
         for (int a = 0; a < LOCAL_POINTS; a++) {
             z += bx.value[a] * row[a];
-            slope += bx.slope[a] * row[a] / fine;
-            bend += bx.bend[a] * row[a] / (fine * fine);
+            slope += bx.slope[a] * row[a];
+            bend += bx.bend[a] * row[a];
         }
+        slope *= shorter;
+        bend *= shorter * shorter;
         jet->z += by.value[b] * z;
         jet->x += by.value[b] * slope;
         jet->xx += by.value[b] * bend;
-        jet->y += by.slope[b] * z / fine;
-        jet->xy += by.slope[b] * slope / fine;
-        jet->yy += by.bend[b] * z / (fine * fine);
+        jet->y += by.slope[b] * z * shorter;
+        jet->xy += by.slope[b] * slope * shorter;
+        jet->yy += by.bend[b] * z * (shorter * shorter);
     }
 }
 
@@ -165,22 +167,29 @@ static int summit_add(const struct search *s, double x, double y, const struct j
     return summit_list_add(list, &summit, err);
 }
 
-/* Fine points and those beside them; up and down of a profile are the points themselves. */
+/* Fine points and those beside them; up and down of a profile are those to the left and right. */
 struct beside {
     const double *z, *left, *right, *up, *down;
 };
 
-/* hit[i] = all ones where a point is above those beside it; returns non-zero when any is. */
-WIDE_VECTORS static int64_t above_mark(size_t n, struct beside at, bool profile,
-                                       int64_t *restrict hit) {
+static inline double greater(double a, double b) {
+    return a > b ? a : b;
+}
+
+/* Returns non-zero where any point may be above those beside it: it never misses one, and a hole
+ * beside a point does not count. */
+WIDE_VECTORS static int64_t any_above(size_t n, struct beside at) {
     int64_t any = 0;
-    for (size_t i = 0; i < n; i++)
-        hit[i] = -(int64_t)(at.z[i] > at.left[i]) & -(int64_t)(at.z[i] > at.right[i]);
-    for (size_t i = 0; i < n && !profile; i++)
-        hit[i] &= -(int64_t)(at.z[i] > at.up[i]) & -(int64_t)(at.z[i] > at.down[i]);
-    for (size_t i = 0; i < n; i++)
-        any |= hit[i];
+    for (size_t i = 0; i < n; i++) {
+        double beside = greater(at.left[i], at.right[i]), across = greater(at.up[i], at.down[i]);
+        any |= -(int64_t)(at.z[i] > greater(beside, across));
+    }
     return any;
+}
+
+static bool is_above(struct beside at, size_t i) {
+    return at.z[i] > at.left[i] && at.z[i] > at.right[i] && at.z[i] > at.up[i] &&
+           at.z[i] > at.down[i];
 }
 
 /* Appends the columns of the maxima among the fine points at one position in n cells, at most
@@ -189,13 +198,12 @@ static size_t cells_search(const struct search *s, size_t phase, size_t cell, si
                            const double *left, const double *right, size_t found) {
     const bool profile = grid_is_profile(s->map->grid);
     const size_t at = phase * s->cells_x + cell;
-    const struct beside beside = {s->rows[1] + at, left, right, s->rows[profile ? 1 : 0] + at,
-                                  s->rows[profile ? 1 : 2] + at};
-    int64_t hit[TOGETHER];
-    if (above_mark(n, beside, profile, hit) == 0)
+    const struct beside beside = {s->rows[1] + at, left, right, profile ? left : s->rows[0] + at,
+                                  profile ? right : s->rows[2] + at};
+    if (any_above(n, beside) == 0)
         return found;
     for (size_t i = 0; i < n; i++)
-        if (hit[i] != 0)
+        if (is_above(beside, i))
             s->columns[found++] = (cell + i) * s->fine + phase;
     return found;
 }
