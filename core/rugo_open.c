@@ -120,6 +120,7 @@ int rugo_areal(const struct rugo_grid *grid, const double *z, int open, struct r
     struct grid cell;
     struct measured_map map;
     struct correlation *correlation = NULL;
+    struct roughness roughness;
     struct areal a;
     int status = map_take(&map, &cell, grid, z, &why);
     map.boundary = open != 0 ? BOUNDARY_OPEN : BOUNDARY_PERIODIC;
@@ -127,8 +128,10 @@ int rugo_areal(const struct rugo_grid *grid, const double *z, int open, struct r
         status = areal_check(&map, &why);
     if (status == 0)
         status = correlation_create(&correlation, &map, &why);
-    if (status == 0)
-        status = areal_measure(&map, correlation, NULL, &a, &why);
+    if (status == 0) {
+        open_roughness_measure(&map, &roughness);
+        status = areal_measure(&map, &roughness, correlation, NULL, &a, &why);
+    }
     if (status == 0)
         *out = (struct rugo_areal){a.sa,  a.sq,  a.ssk, a.sku, a.sp,  a.sv, a.sz,
                                    a.sdq, a.sdr, a.sal, a.str, a.spd, a.spc};

@@ -92,7 +92,10 @@ static int measure_hill_errors(struct map_characterisation *out, const struct me
 static int measure_areal(struct map_characterisation *out, const struct measured_map *map,
                          const struct map_chance *chance, struct error *err) {
     struct summit_list hills = {0};
-    int status = areal_measure(map, chance->correlation, &hills, &out->areal, err);
+    struct roughness roughness = out->parameters.roughness;
+    if (map->boundary != BOUNDARY_OPEN)
+        open_roughness_measure(map, &roughness);
+    int status = areal_measure(map, &roughness, chance->correlation, &hills, &out->areal, err);
     if (status == 0)
         status = measure_hill_errors(out, map, chance, &hills, err);
     summit_list_clear(&hills);

@@ -1,9 +1,9 @@
 #include "core/statistics/heights/areal.h"
-#include "core/statistics/heights/roughness.h"
 #include "core/statistics/lanes.h"
 #include "core/vectors.h"
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Points are numbered by 32 bits, as the largest maps that are read have 2^31 of them. */
 static const uint32_t NONE = UINT32_MAX;
@@ -15,6 +15,7 @@ enum { TOGETHER = 64 };         /* points of a row that are looked at at once */
 struct saddle {
     double z;
     uint32_t at;
+    uint32_t others; /* a bit each of these neighbours, in the order of neighbours_of() */
 };
 
 struct search {
@@ -32,11 +33,36 @@ static inline bool is_above(const double *z, uint32_t s, uint32_t t) {
     return z[s] > z[t] || (z[s] == z[t] && s < t);
 }
 
-static int by_height(const void *a, const void *b) {
-    const struct saddle *s = a, *t = b;
-    if (s->z != t->z)
-        return s->z > t->z ? -1 : 1;
-    return (s->at > t->at) - (s->at < t->at);
+/* Returns a number that falls as the height rises, and is the same for equal heights. */
+static uint64_t falling_key(double z) {
+    static const uint64_t SIGN = (uint64_t)1 << 63;
+    uint64_t bits;
+    z += 0.0; /* -0 becomes 0 */
+    memcpy(&bits, &z, sizeof bits);
+    return (bits & SIGN) != 0 ? bits : ~bits & ~SIGN;
+}
+
+/* Sorts saddles by height, highest first; those of one height keep their order. By digits of the
+ * height, the least first: each pass keeps the order of the one before. spare: as many saddles. */
+static void saddles_sort(struct saddle *saddles, struct saddle *spare, size_t count) {
+    enum { BITS = 8, DIGITS = 1 << BITS, PASSES = 64 / BITS };
+    size_t first[PASSES][DIGITS] = {{0}};
+    for (size_t n = 0; n < count; n++)
+        for (size_t p = 0; p < PASSES; p++)
+            first[p][falling_key(saddles[n].z) >> (BITS * p) & (DIGITS - 1)]++;
+    for (size_t p = 0; p < PASSES; p++) {
+        size_t total = 0;
+        for (size_t d = 0; d < DIGITS; d++) {
+            size_t here = first[p][d];
+            first[p][d] = total;
+            total += here;
+        }
+        for (size_t n = 0; n < count; n++)
+            spare[first[p][falling_key(saddles[n].z) >> (BITS * p) & (DIGITS - 1)]++] = saddles[n];
+        struct saddle *sorted = spare;
+        spare = saddles;
+        saddles = sorted;
+    }
 }
 
 static void search_clear(struct search *s) {
@@ -173,15 +199,16 @@ WIDE_VECTORS static void others_fill(const uint32_t *restrict row, size_t nx, si
                     (down[i] ^ row[i]) | (down[i + 1] ^ row[i]);
 }
 
-/* ... and so to a peak; where neighbours above it climb to other peaks, it is a saddle. */
-static bool is_saddle(const struct search *s, uint32_t at) {
-    uint32_t beside[8];
-    bool saddle = false;
+/* ... and so to a peak. Where neighbours above it climb to other peaks, it is a saddle. Returns a
+ * bit for each of them, in the order of neighbours_of(). */
+static uint32_t others_above(const struct search *s, uint32_t at) {
+    uint32_t beside[8], others = 0;
     neighbours_of(s->map, at, beside);
-    for (int n = 0; n < 8 && !saddle; n++)
-        saddle = beside[n] != NONE && is_above(s->map->z, beside[n], at) &&
-                 s->parent[beside[n]] != s->parent[at];
-    return saddle;
+    for (int n = 0; n < 8; n++)
+        if (beside[n] != NONE && s->parent[beside[n]] != s->parent[at] &&
+            is_above(s->map->z, beside[n], at))
+            others |= (uint32_t)1 << n;
+    return others;
 }
 
 /* Marks the saddles of a row; returns how many. */
@@ -197,7 +224,7 @@ static size_t saddles_mark(struct search *s, size_t j) {
         if (some)
             others_fill(s->parent + j * nx + i, nx, n, others);
         for (size_t k = 0; k < n; k++)
-            if (others[k] != 0 && is_saddle(s, (uint32_t)(j * nx + i + k))) {
+            if (others[k] != 0 && others_above(s, (uint32_t)(j * nx + i + k)) != 0) {
                 s->whole[j * nx + i + k] |= SADDLE;
                 count++;
             }
@@ -211,14 +238,13 @@ static int saddles_list(struct search *s, struct error *err) {
     size_t count = 0;
     for (size_t j = 0; j < s->map->grid->ny; j++)
         count += saddles_mark(s, j);
-    s->saddles = array_create(count > 0 ? count : 1, sizeof *s->saddles);
+    s->saddles = array_create(count > 0 ? count : 1, 2 * sizeof *s->saddles);
     if (s->saddles == NULL)
-        return error_memory(err, count * sizeof *s->saddles, "saddles between hills");
+        return error_memory(err, 2 * count * sizeof *s->saddles, "saddles between hills");
     for (uint32_t at = 0; at < points; at++)
         if ((s->whole[at] & SADDLE) != 0)
-            s->saddles[s->count++] = (struct saddle){s->map->z[at], at};
-    if (s->count > 1)
-        qsort(s->saddles, s->count, sizeof *s->saddles, by_height);
+            s->saddles[s->count++] = (struct saddle){s->map->z[at], at, others_above(s, at)};
+    saddles_sort(s->saddles, s->saddles + s->count, s->count);
     return 0;
 }
 
@@ -231,21 +257,23 @@ static int climb(struct search *s, struct error *err) {
     return saddles_list(s, err);
 }
 
-/* Joins the hills that meet in a saddle, of which the highest goes on. */
-static int saddle_flood(struct search *s, uint32_t at, double least, struct error *err) {
+/* Joins the hills that meet in a saddle, of which the highest goes on. Neighbours that began on the
+ * saddle's own hill are still on it. */
+static int saddle_flood(struct search *s, const struct saddle *saddle, double least,
+                        struct error *err) {
     const double *z = s->map->z;
     uint32_t beside[8];
     int status = 0;
-    neighbours_of(s->map, at, beside);
+    neighbours_of(s->map, saddle->at, beside);
     for (int n = 0; n < 8 && status == 0; n++) {
-        if (beside[n] == NONE || !is_above(z, beside[n], at))
+        if ((saddle->others >> n & 1) == 0)
             continue;
-        uint32_t here = peak_of(s->parent, at), there = peak_of(s->parent, beside[n]);
+        uint32_t here = peak_of(s->parent, saddle->at), there = peak_of(s->parent, beside[n]);
         if (here == there)
             continue;
         bool higher = is_above(z, there, here);
         uint32_t stays = higher ? there : here, ends = higher ? here : there;
-        if (z[ends] - z[at] >= least)
+        if (z[ends] - saddle->z >= least)
             status = peak_count(s, ends, err);
         s->parent[ends] = stays;
     }
@@ -262,7 +290,7 @@ int hills_find(const struct measured_map *map, double least, struct summit_list 
     s.peaks = peaks;
     status = climb(&s, err);
     for (size_t n = 0; n < s.count && status == 0; n++)
-        status = saddle_flood(&s, s.saddles[n].at, least, err);
+        status = saddle_flood(&s, &s.saddles[n], least, err);
     for (uint32_t at = 0; at < grid_points(map->grid) && status == 0; at++)
         if (s.parent[at] == at && !isnan(map->z[at]))
             status =
@@ -321,25 +349,25 @@ static double developed_area(const struct measured_map *map) {
     return lane_mean_value(&area);
 }
 
-int areal_measure(const struct measured_map *map, const struct correlation *correlation,
-                  struct summit_list *list, struct areal *out, struct error *err) {
-    struct roughness roughness;
+int areal_measure(const struct measured_map *map, const struct roughness *roughness,
+                  const struct correlation *correlation, struct summit_list *list,
+                  struct areal *out, struct error *err) {
     struct hills hills;
     double shortest, longest;
-    open_roughness_measure(map, &roughness);
-    double highest = roughness.highest - roughness.mean, lowest = roughness.mean - roughness.lowest;
+    double highest = roughness->highest - roughness->mean;
+    double lowest = roughness->mean - roughness->lowest;
     int status = hills_find(map, PRUNED_SHARE * (highest + lowest), list, &hills, err);
     if (status != 0)
         return status;
     correlation_lengths(correlation, CORRELATION_LEVEL, &shortest, &longest);
-    *out = (struct areal){.sa = mean_size(map, roughness.mean),
-                          .sq = roughness.rms_height,
-                          .ssk = roughness.skewness,
-                          .sku = roughness.kurtosis,
+    *out = (struct areal){.sa = mean_size(map, roughness->mean),
+                          .sq = roughness->rms_height,
+                          .ssk = roughness->skewness,
+                          .sku = roughness->kurtosis,
                           .sp = highest,
                           .sv = lowest,
                           .sz = highest + lowest,
-                          .sdq = roughness.rms_slope,
+                          .sdq = roughness->rms_slope,
                           .sdr = developed_area(map),
                           .sal = shortest,
                           .str = shortest / longest,

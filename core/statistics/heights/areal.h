@@ -2,6 +2,7 @@
 #ifndef RUGO_CORE_STATISTICS_HEIGHTS_AREAL_H
 #define RUGO_CORE_STATISTICS_HEIGHTS_AREAL_H
 
+#include "core/statistics/heights/roughness.h"
 #include "core/statistics/measured_map.h"
 #include "core/statistics/spectra/correlation.h"
 #include "core/statistics/summits/summit_list.h"
@@ -32,8 +33,10 @@ struct areal {
     double sal, str;   /* shortest lag at which the correlation is 0.2; over the longest */
     double spd, spc;   /* density of hills, and mean curvature at their peaks */
 };
-/* list: an empty one that the peaks of hills are put in, or NULL. */
-int areal_measure(const struct measured_map *map, const struct correlation *correlation,
-                  struct summit_list *list, struct areal *out, struct error *err);
+/* roughness: of the map, by open_roughness_measure() whether it repeats or not. list: an empty one
+ * that the peaks of hills are put in, or NULL. */
+int areal_measure(const struct measured_map *map, const struct roughness *roughness,
+                  const struct correlation *correlation, struct summit_list *list,
+                  struct areal *out, struct error *err);
 
 #endif

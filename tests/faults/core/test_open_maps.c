@@ -48,6 +48,7 @@ static int measure(void *context, struct error *err) {
     const struct measured_map map = {&GRID, z, BOUNDARY_OPEN};
     struct correlation *correlation = NULL;
     struct moments moments;
+    struct roughness roughness;
     struct areal areal;
     struct seam seam;
     heights_fill(z);
@@ -59,8 +60,9 @@ static int measure(void *context, struct error *err) {
         status = windowed_psd_measure(&map, wave_number, density, err);
     if (status == 0)
         status = correlation_create(&correlation, &map, err);
+    open_roughness_measure(&map, &roughness);
     if (status == 0)
-        status = areal_measure(&map, correlation, NULL, &areal, err);
+        status = areal_measure(&map, &roughness, correlation, NULL, &areal, err);
     if (status == 0)
         assert_true(areal.spd > 0 && areal.sal > 0);
     correlation_destroy(&correlation);

@@ -18,9 +18,11 @@ static void a_double_wave(void **state) {
     }
     const struct measured_map map = {&grid, z, BOUNDARY_PERIODIC};
     struct correlation *correlation = NULL;
+    struct roughness roughness;
     struct areal areal;
     assert_int_equal(correlation_create(&correlation, &map, NULL), 0);
-    assert_int_equal(areal_measure(&map, correlation, NULL, &areal, NULL), 0);
+    open_roughness_measure(&map, &roughness);
+    assert_int_equal(areal_measure(&map, &roughness, correlation, NULL, &areal, NULL), 0);
     double sampled = 2 / (16 * tan(M_PI / 16)); /* mean |cos| of 16 points a wave, for 2/pi */
     double difference = sin(M_PI / 16) * 2 / 0.5, bend = difference * difference;
     check_relative(areal.sa, height * sampled * sampled, 1e-9);
@@ -50,9 +52,11 @@ static void a_roof(void **state) {
     for (int boundary = BOUNDARY_PERIODIC; boundary <= BOUNDARY_OPEN; boundary++) {
         const struct measured_map map = {&grid, z, (enum boundary)boundary};
         struct correlation *correlation = NULL;
+        struct roughness roughness;
         struct areal areal;
         assert_int_equal(correlation_create(&correlation, &map, NULL), 0);
-        assert_int_equal(areal_measure(&map, correlation, NULL, &areal, NULL), 0);
+        open_roughness_measure(&map, &roughness);
+        assert_int_equal(areal_measure(&map, &roughness, correlation, NULL, &areal, NULL), 0);
         check_relative(areal.sdq, 1, 1e-12);
         check_relative(areal.sdr, sqrt(2) - 1, 1e-12);
         assert_true(isnan(areal.str));
