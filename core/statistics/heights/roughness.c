@@ -298,29 +298,25 @@ static double shorter_side(const struct grid *grid) {
     return grid_is_profile(grid) ? grid->lx : fmin(grid->lx, grid->ly);
 }
 
-/* Returns |m| in units of one wave along the shorter side. */
-static double radius(const struct grid *grid, double mx, double my) {
+size_t radial_bin(const struct grid *grid, size_t mx, long my) {
     double side = shorter_side(grid);
-    return hypot(mx * (side / grid->lx), grid_is_profile(grid) ? 0 : my * (side / grid->ly));
+    return ring_of((double)mx * (side / grid->lx),
+                   grid_is_profile(grid) ? 0 : (double)my * (side / grid->ly));
 }
 
 size_t radial_bins(const struct grid *grid) {
-    size_t nyquist_x = grid->nx / 2, nyquist_y = grid->ny / 2;
-    return (size_t)(radius(grid, (double)nyquist_x, (double)nyquist_y) + 0.5) + 1;
-}
-
-size_t radial_bin(const struct grid *grid, size_t mx, long my) {
-    return (size_t)(radius(grid, (double)mx, (double)my) + 0.5);
+    return radial_bin(grid, grid->nx / 2, (long)(grid->ny / 2)) + 1;
 }
 
 void radial_counts(const struct grid *grid, double *count) {
-    long half_y = (long)(grid->ny / 2);
-    for (size_t r = 0; r < radial_bins(grid); r++)
+    size_t bins = radial_bins(grid);
+    for (size_t r = 0; r < bins; r++)
         count[r] = 0;
-    for (long my = -half_y; my <= half_y; my++)
-        for (size_t mx = 0; mx <= grid->nx / 2; mx++)
-            if (my >= 0 || 2 * (size_t)-my != grid->ny)
-                count[radial_bin(grid, mx, my)] += modes_weight(grid, mx);
+    for (size_t my = 0; my <= grid->ny / 2; my++)
+        for (size_t mx = 0; mx <= grid->nx / 2; mx++) {
+            unsigned signs = my > 0 && 2 * my != grid->ny ? 2 : 1;
+            count[radial_bin(grid, mx, (long)my)] += signs * modes_weight(grid, mx);
+        }
 }
 
 /* band: means are over the waves of a ring that have any power, else over all of the ring. */

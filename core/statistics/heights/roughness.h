@@ -4,6 +4,7 @@
 
 #include "core/statistics/measured_map.h"
 #include "core/surface/spectrum.h"
+#include <math.h>
 
 /* These parameters come from finite differences on the periodic grid (FORMULAS.md, F1.3): forward
  * differences for slopes, central second ones for curvatures, as in the reference
@@ -31,6 +32,15 @@ int map_modes_measure(const struct grid *grid, const double *z, struct modes *mo
 /* Returns the number of radial bins of the functions below for a grid: rings of width one in |m|
  * (min(lx,ly)). */
 size_t radial_bins(const struct grid *grid);
+/* Returns the nearest whole number to the length of (x, y), (size_t)(hypot(x, y) + 0.5). A root of
+ * squares, which takes a fraction of the time, decides it but where its rounding may matter. */
+static inline size_t ring_of(double x, double y) {
+    static const double ROUNDING = 1e-12;
+    double reach = sqrt(x * x + y * y) + 0.5, margin = ROUNDING * reach;
+    size_t ring = (size_t)reach;
+    double beyond = reach - (double)ring;
+    return beyond > margin && 1 - beyond > margin ? ring : (size_t)(hypot(x, y) + 0.5);
+}
 /* Returns the bin of a wave vector of the grid, and fills how many of the full plane each bin
  * has. */
 size_t radial_bin(const struct grid *grid, size_t mx, long my);

@@ -1,4 +1,5 @@
 #include "core/statistics/spectra/correlation.h"
+#include "core/statistics/heights/roughness.h"
 #include "core/surface/transform.h"
 #include <stdlib.h>
 
@@ -156,14 +157,23 @@ void correlation_destroy(struct correlation **correlation) {
     *correlation = NULL;
 }
 
+/* Returns the index of a lag on the padded grid of n points. */
+static size_t inside(long lag, long n) {
+    lag = lag < 0 || lag >= n ? lag % n : lag;
+    return (size_t)(lag < 0 ? lag + n : lag);
+}
+
+/* Returns the row of the lag y, or that of -y, in which x has the other sign. */
+static const double *row_of(const struct correlation *c, long y, bool *mirrored) {
+    const size_t ny = c->padded.ny, at = inside(y, (long)ny);
+    *mirrored = 2 * at > ny;
+    return c->values + (*mirrored ? ny - at : at) * c->padded.nx;
+}
+
 static double value_at(const struct correlation *c, long x, long y) {
-    long nx = (long)c->padded.nx, ny = (long)c->padded.ny;
-    y = (y % ny + ny) % ny;
-    if (2 * y > ny) {
-        x = -x;
-        y = ny - y;
-    }
-    return c->values[y * nx + (x % nx + nx) % nx];
+    bool mirrored;
+    const double *row = row_of(c, y, &mirrored);
+    return row[inside(mirrored ? -x : x, (long)c->padded.nx)];
 }
 
 /* Weights of the points -1, 0, 1, 2 at t in [0, 1], for a cubic with the slopes of its neighbours.
@@ -181,12 +191,20 @@ double correlation_at(const struct correlation *c, double x, double y) {
         return (double)NAN;
     long i = (long)floor(x), j = (long)floor(y);
     double weight_x[4], weight_y[4] = {0, 1, 0, 0}, value = 0;
+    size_t column[4], opposite[4];
+    for (long a = 0; a < 4; a++) {
+        column[a] = inside(i + a - 1, (long)c->padded.nx);
+        opposite[a] = inside(1 - i - a, (long)c->padded.nx);
+    }
     cubic_fill(x - (double)i, weight_x);
     if (!profile)
         cubic_fill(y - (double)j, weight_y);
-    for (long b = profile ? 1 : 0; b < (profile ? 2 : 4); b++)
+    for (long b = profile ? 1 : 0; b < (profile ? 2 : 4); b++) {
+        bool mirrored;
+        const double *row = row_of(c, j + b - 1, &mirrored);
         for (long a = 0; a < 4; a++)
-            value += weight_y[b] * weight_x[a] * value_at(c, i + a - 1, j + b - 1);
+            value += weight_y[b] * weight_x[a] * row[mirrored ? opposite[a] : column[a]];
+    }
     return value;
 }
 
@@ -201,11 +219,10 @@ void correlation_radial(const struct correlation *c, double *lag, double *mean) 
         lag[r] = mean[r] = 0; /* lag: first the number of values */
     for (long y = -c->reach_y; y <= c->reach_y; y++)
         for (long x = 0; x <= c->reach_x; x++) {
-            double distance = hypot((double)x, (double)y * ratio) + 0.5;
+            size_t r = ring_of((double)x, (double)y * ratio);
             double value = value_at(c, x, y), weight = x > 0 ? 2 : 1;
-            if (!(distance < (double)rings) || isnan(value))
+            if (r >= rings || isnan(value))
                 continue;
-            size_t r = (size_t)distance;
             lag[r] += weight;
             mean[r] += weight * value;
         }

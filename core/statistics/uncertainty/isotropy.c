@@ -1,4 +1,5 @@
 #include "core/statistics/uncertainty/isotropy.h"
+#include "core/statistics/heights/roughness.h"
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 
@@ -21,7 +22,7 @@ static void mode_add(const struct map_spectrum *s, size_t mx, long my, double ce
                      struct sector sectors[ANGULAR_KINDS][ANGULAR_SECTORS]) {
     const struct grid *grid = &s->modes.grid;
     double x = (double)mx * (s->side / grid->lx), y = (double)my * (s->side / grid->ly);
-    size_t ring = (size_t)(hypot(x, y) + 0.5);
+    size_t ring = ring_of(x, y);
     if (ring < 1 || ring >= s->rings)
         return;
     double power = modes_power(&s->modes, mx, my) * cell / s->power, expected = s->density[ring];
