@@ -30,9 +30,11 @@ int law_problem_create(struct law_problem **out, const struct map_spectrum *spec
         problem->trial = array_create(count, sizeof *problem->trial);
         problem->slope = array_create(LAW_PARAMETERS * count, sizeof *problem->slope);
         problem->density = array_create(problem->leakage->nodes, sizeof *problem->density);
+        problem->plain = array_create(problem->leakage->nodes, sizeof *problem->plain);
         problem->logarithm = array_create(problem->leakage->nodes, sizeof *problem->logarithm);
         if (problem->found == NULL || problem->expected == NULL || problem->trial == NULL ||
-            problem->slope == NULL || problem->density == NULL || problem->logarithm == NULL)
+            problem->slope == NULL || problem->density == NULL || problem->plain == NULL ||
+            problem->logarithm == NULL)
             status = error_memory(err, count * sizeof *problem->slope, "the fit of a spectrum");
     }
     if (status != 0) {
@@ -43,6 +45,7 @@ int law_problem_create(struct law_problem **out, const struct map_spectrum *spec
         problem->found[r] = spectrum->density[first + r] + floor;
     for (size_t a = 0; a < problem->leakage->nodes; a++)
         problem->logarithm[a] = logarithm_of(problem->leakage->node[a]);
+    problem->plain_of[0] = (double)NAN; /* of no law yet */
     *out = problem;
     return 0;
 }
@@ -57,6 +60,7 @@ void law_problem_destroy(struct law_problem **problem) {
     free(p->trial);
     free(p->slope);
     free(p->density);
+    free(p->plain);
     free(p->logarithm);
     free(p);
     *problem = NULL;
@@ -70,6 +74,16 @@ static double density_at(const struct law_problem *problem, const double *p, dou
                (problem->dimension + 2 * p[LAW_HURST]) * (k - problem->reference_logarithm));
 }
 
+/* Fills the plain densities, unless they are those of a law that differs only in ends, blur and
+ * noise: their exponentials take most of the time of a trial. */
+static void plain_fill(struct law_problem *problem, const double *p) {
+    if (memcmp(problem->plain_of, p, sizeof problem->plain_of) == 0)
+        return;
+    for (size_t a = 0; a < problem->leakage->nodes; a++)
+        problem->plain[a] = density_at(problem, p, problem->logarithm[a]);
+    memcpy(problem->plain_of, p, sizeof problem->plain_of);
+}
+
 /* The share of a node's width that lies below a wave number. */
 static double share_below(double node, double width, double edge) {
     return fmin(fmax((edge - node) / width + 0.5, 0), 1);
@@ -79,13 +93,14 @@ static void expect(struct law_problem *problem, const double *p, double *expecte
     const struct spectrum_leakage *leakage = problem->leakage;
     double highest = exp(p[LAW_SHORT]), lowest = exp(p[LAW_LONG]), blur = exp(p[LAW_BLUR]),
            noise = exp(p[LAW_NOISE]);
+    plain_fill(problem, p);
     for (size_t a = 0; a < leakage->nodes; a++) {
         double node = leakage->node[a];
         double share = share_below(node, leakage->width, highest) -
                        share_below(node, leakage->width, fmin(lowest, highest));
         if (share > 0 && blur > 0)
             share *= exp(-blur * node * node);
-        problem->density[a] = share > 0 ? share * density_at(problem, p, problem->logarithm[a]) : 0;
+        problem->density[a] = share > 0 ? share * problem->plain[a] : 0;
     }
     spectrum_leakage_apply(leakage, problem->density, expected);
     for (size_t r = 0; r < leakage->count; r++)
@@ -106,7 +121,7 @@ static double clamp(double value, double low, double high) {
     return fmin(fmax(value, low), high);
 }
 
-/* Fills expected and slope at p; a step is taken inwards where p is at its upper bound. */
+/* Fills slope at p, of which the rings are as expected; a step is taken inwards where p is at its upper bound. */
 static void differentiate(struct law_problem *problem, const struct law *law) {
     static const double STEP = 1e-4;
     size_t count = problem->leakage->count;
@@ -119,7 +134,6 @@ static void differentiate(struct law_problem *problem, const struct law *law) {
         moved[a] += step;
         expect(problem, moved, slope);
     }
-    expect(problem, law->p, problem->expected);
     for (size_t a = 0; a < LAW_PARAMETERS; a++)
         if (law->free[a]) {
             double step = law->p[a] + STEP > problem->high[a] ? -STEP : STEP;
@@ -224,6 +238,9 @@ void law_maximise(struct law_problem *problem, struct law *law) {
     law_evaluate(problem, law);
     for (int steps = 0; steps < STEPS_MOST && damping < DAMPING_MOST; steps++) {
         double before = law->deviance;
+        /* The law is the last one that was tried. */
+        memcpy(problem->expected, problem->trial,
+               problem->leakage->count * sizeof *problem->expected);
         differentiate(problem, law);
         while (damping < DAMPING_MOST && !step(problem, law, damping))
             damping *= 8;
@@ -262,6 +279,7 @@ bool law_covariance(struct law_problem *problem, const struct law *law, law_matr
     bool held[LAW_PARAMETERS];
     for (size_t a = 0; a < LAW_PARAMETERS; a++)
         held[a] = !law->free[a];
+    expect(problem, law->p, problem->expected);
     differentiate(problem, law);
     inform(problem, held, information);
     if (!factorise(information))

@@ -16,7 +16,8 @@ enum law_parameter {
     LAW_LONG,
     LAW_BLUR,
     LAW_NOISE,
-    LAW_PARAMETERS
+    LAW_PARAMETERS,
+    LAW_PLAIN = LAW_SHORT /* number of the first ones, of a density without ends and blur */
 };
 
 /* Logarithms of the density at the reference, as that of the falling part, and of wave numbers, but
@@ -42,6 +43,8 @@ struct law_problem {
     double *found;     /* per ring */
     double *expected;  /* per ring */
     double *density;   /* per node */
+    double *plain;     /* per node: without ends and blur, ... */
+    double plain_of[LAW_PLAIN]; /* ... of these parameters */
     double *logarithm; /* per node: of its wave number */
     double *trial;     /* per ring: of a step that is tried */
     double *slope;     /* LAW_PARAMETERS per ring: of the logarithm of what is expected */

@@ -163,14 +163,46 @@ void spectrum_leakage_destroy(struct spectrum_leakage **leakage) {
     *leakage = NULL;
 }
 
+/* Rings added up together, of which no sum waits for another. */
+enum { TOGETHER = 4 };
+
+static void rings_apply(const struct spectrum_leakage *l, size_t first, const double *density,
+                        double *expected) {
+    const double *of[TOGETHER], *weight[TOGETHER];
+    double total[TOGETHER] = {0};
+    size_t count = l->begin[first + 1] - l->begin[first];
+    for (size_t q = 0; q < TOGETHER; q++) {
+        of[q] = density + l->offset[first + q];
+        weight[q] = l->weight + l->begin[first + q];
+    }
+    for (size_t a = 0; a < count; a++)
+        for (size_t q = 0; q < TOGETHER; q++)
+            total[q] += weight[q][a] * of[q][a];
+    for (size_t q = 0; q < TOGETHER; q++)
+        expected[first + q] = total[q];
+}
+
+/* Returns whether the next rings are so many, and have as many weights each. */
+static bool are_alike(const struct spectrum_leakage *l, size_t first) {
+    bool alike = first + TOGETHER <= l->count;
+    for (size_t r = first + 1; alike && r < first + TOGETHER; r++)
+        alike = l->begin[r + 1] - l->begin[r] == l->begin[first + 1] - l->begin[first];
+    return alike;
+}
+
 void spectrum_leakage_apply(const struct spectrum_leakage *l, const double *density,
                             double *expected) {
-    for (size_t r = 0; r < l->count; r++) {
+    for (size_t r = 0; r < l->count;) {
+        if (are_alike(l, r)) {
+            rings_apply(l, r, density, expected);
+            r += TOGETHER;
+            continue;
+        }
         const double *of = density + l->offset[r], *weight = l->weight + l->begin[r];
         size_t count = l->begin[r + 1] - l->begin[r];
         double total = 0;
         for (size_t a = 0; a < count; a++)
             total += weight[a] * of[a];
-        expected[r] = total;
+        expected[r++] = total;
     }
 }
