@@ -1,30 +1,36 @@
 /* Each load is a step, solved by sets of nodes as contact without friction is (F24.4;
  * solver/active_set.h): the equations of the sets are solved, then nodes change their sets. Nodes
  * under tension open, open nodes that penetrate touch; stuck nodes whose traction exceeds the
- * friction slide in its direction; nodes that slide towards their traction stick; on surfaces the
- * others turn. A step whose sets do not settle is halved. */
+ * friction slide in its direction; nodes that slide towards their traction stick, on surfaces where
+ * their traction less a part of their slip is within the friction, and the others turn to that. A
+ * step whose sets do not settle is halved. */
 #include "core/contact/slip/partial_slip.h"
 #include "core/contact/contact.h"
 #include "core/contact/slip/slip_sets.h"
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 const struct slip_options SLIP_DEFAULTS = {
-    .poisson = 0.3, .friction = 0.2, .tolerance = 1e-8, .max_sets = 100};
+    .poisson = 0.3, .friction = 0.2, .tolerance = 1e-8, .max_sets = 40, .max_iterations = 400};
 
 static const struct block HALFSPACE = {
     .model = MODEL_HALFSPACE, .height = INFINITY, .layer_growth = 1};
 
 enum { HALVINGS_MOST = 8, ITERATIONS_MOST = 60, PATIENCE = 8 };
-/* The equations of a set are solved to this part of the violation with which they begin, and to
- * this part of the tolerance. */
-static const double SHARE = 0.02, ENOUGH = 0.3;
+/* The equations of a set are solved to this part of the violation with which they begin, or to
+ * ENOUGH of the tolerance. After a set that was no better they are solved CLOSER times better
+ * still: nodes that change by what was left over would change back again and again. */
+static const double PROFILE_PART = 0.03, SURFACE_PART = 0.1, CLOSER = 0.3, ENOUGH = 0.3;
 /* Of sets that do not improve, nodes with faults above this part of the largest change. */
 static const double FEW = 0.5;
 /* The largest turn over the local compliance. */
 static const double TURN_MOST = 1e12;
+/* The compliance over the local one by which slips of sliding nodes are compared with tractions.
+ * With 1 few nodes changed for ever; 4 and 16 take as many sets. */
+static const double SOFT = 8;
 
 /* What a step starts from, and is restored where it fails. */
 struct slip_point {
@@ -52,6 +58,7 @@ struct slip {
                                          of the last load */
     double highest;                   /* |z| */
     size_t steps_sets, iterations;    /* of this call */
+    size_t iterations_most;           /* up to which its load may go */
     double violation, reach;          /* and the least that counts as one */
     bool pressed;
     int (*stop)(void *context);
@@ -305,6 +312,22 @@ static double over(const struct fault *fault, const struct fault *reach) {
     return fmax(fault->across / reach->across, fault->along / reach->along);
 }
 
+/* Turns a sliding node of a surface to its traction less a part of its slip. Returns whether it
+ * still slides: not where that is within the friction. Where equations are solved, slips are
+ * against tractions, and both have that direction. The one of tractions alone turned nodes by more
+ * than a quarter, which then stuck and slid in turn. */
+static bool slides_on(struct slip *s, size_t i, const struct judged *state) {
+    const double part = 1 / (SOFT * s->sets.local);
+    const double bound = s->options.friction * state->t[NORMAL][i];
+    double x = state->t[ALONG_X][i] - part * state->r[ALONG_X][i];
+    double y = state->t[ALONG_Y][i] - part * state->r[ALONG_Y][i], length = hypot(x, y);
+    if (!(state->t[NORMAL][i] > 0 && length > bound))
+        return false;
+    s->sets.direction[0][i] = x / length;
+    s->sets.direction[1][i] = y / length;
+    return true;
+}
+
 static void change_set(struct slip *s, size_t i, const struct judged *state) {
     const double slip = length_along(s, i, state->r), q = length_along(s, i, state->t);
     const unsigned char node = s->sets.node[i];
@@ -341,28 +364,34 @@ static void stick_one(struct slip *s, const struct judged *state) {
 }
 
 /* Changes the sets of nodes by the state that the equations left: of those with faults above a part
- * of the largest. Sliding nodes turn. */
-static void change_sets(struct slip *s, double part) {
+ * of the largest. Sliding nodes turn. Returns how many change. */
+static size_t change_sets(struct slip *s, double part) {
     const struct judged state = judged_of(s);
     const struct fault reach = reach_of(s, displace(s));
+    const bool turns = s->sets.fields == FIELDS;
     double worst = 0;
+    size_t changed = 0;
     for (size_t i = 0; i < s->sets.n; i++) {
         struct fault fault = fault_of(s, i, &state);
         worst = fmax(worst, over(&fault, &reach));
     }
     for (size_t i = 0; i < s->sets.n; i++) {
         struct fault fault = fault_of(s, i, &state);
-        double q = length_along(s, i, state.t);
-        if (over(&fault, &reach) > fmax(ENOUGH, part * worst))
+        if (turns && s->sets.node[i] == NODE_SLIDING && slides_on(s, i, &state))
+            continue;
+        if (over(&fault, &reach) > fmax(ENOUGH, part * worst)) {
             change_set(s, i, &state);
-        else if (s->sets.node[i] == NODE_SLIDING && q > 0)
-            turn_node(s, i, state.t, q, 1);
+            changed++;
+        } else if (s->sets.node[i] == NODE_SLIDING && length_along(s, i, state.t) > 0)
+            turn_node(s, i, state.t, length_along(s, i, state.t), 1);
     }
     slip_sets_count(&s->sets);
     if (!s->sets.determined) {
         stick_one(s, &state);
         slip_sets_count(&s->sets);
+        changed++;
     }
+    return changed;
 }
 
 /* Returns what the equations of a node leave, and fills turn. */
@@ -413,8 +442,10 @@ static void add_turns(struct slip *s) {
     }
 }
 
-/* Solves the equations of the sets, from a state that has been judged. */
-static void solve_equations(struct slip *s) {
+/* Solves the equations of the sets, from a state that has been judged, to a part of its violation.
+ */
+static void solve_equations(struct slip *s, double part) {
+    const size_t left = s->iterations_most - s->iterations;
     double most = 0;
     slip_sets_count(&s->sets);
     slip_sets_take(&s->sets);
@@ -424,32 +455,35 @@ static void solve_equations(struct slip *s) {
         s->residual[i] = -s->residual[i];
         most = fmax(most, fabs(s->residual[i]));
     }
-    s->iterations += slip_sets_solve(&s->sets, s->residual, fmax(SHARE * most, ENOUGH * s->reach),
-                                     ITERATIONS_MOST, s->tractions);
+    s->iterations += slip_sets_solve(&s->sets, s->residual, fmax(part * most, ENOUGH * s->reach),
+                                     left < ITERATIONS_MOST ? left : ITERATIONS_MOST, s->tractions);
 }
 
 /* Solves the step to the loads of s. Sets that do not improve for some time may cycle: then few
  * nodes change at once. */
 static int solve_sets(struct slip *s, struct error *err) {
+    const double part = s->sets.fields == FIELDS ? SURFACE_PART : PROFILE_PART;
     double best = INFINITY;
-    size_t since = 0;
-    for (size_t set = 0; set < s->options.max_sets; set++, s->steps_sets++) {
+    size_t since = 0, least = SIZE_MAX, set = 0;
+    for (; set < s->options.max_sets && s->iterations < s->iterations_most;
+         set++, s->steps_sets++) {
         if (s->stop != NULL && s->stop(s->stop_context) != 0)
             return error_set(err, ERROR_STOPPED, "stopped after %zu sets of partial slip", set);
-        change_sets(s, since < PATIENCE ? 0 : FEW);
+        size_t changed = change_sets(s, since < PATIENCE ? 0 : FEW);
         balance_tractions(s);
         double violation = judge(s);
         if (violation <= 1)
             return 0;
-        since = violation < best / 2 ? 0 : since + 1;
-        best = fmin(best, violation);
-        solve_equations(s);
+        since = changed < least || violation < best / 2 ? 0 : since + 1;
+        best = since == 0 ? fmin(best, violation) : best;
+        least = changed < least ? changed : least;
+        solve_equations(s, part * pow(CLOSER, (double)since));
     }
     return error_set(err, ERROR_NUMERIC,
                      "partial slip under a mean pressure of %g E* and a traction of %g E* did not "
-                     "converge: violation %.2g in %zu sets",
+                     "converge: violation %.2g, asked %.2g, in %zu sets and %zu iterations",
                      s->pressure, hypot(s->shear[0], s->shear[1]), s->violation,
-                     s->options.max_sets);
+                     s->options.tolerance, set, s->iterations);
 }
 
 /* Slip counts from here on. */
@@ -470,6 +504,7 @@ static double along_load(const struct slip *s, const double v[2]) {
 static int go(struct slip *s, double pressure, double traction, struct error *err) {
     const double pressure_from = s->pressure, traction_from = along_load(s, s->shear);
     double reached = 0, part = 1;
+    s->iterations_most = s->iterations + s->options.max_iterations;
     for (size_t halvings = 0; reached < 1;) {
         double to = fmin(1, reached + part), before = along_load(s, s->flat);
         keep(s);
@@ -486,7 +521,8 @@ static int go(struct slip *s, double pressure, double traction, struct error *er
             continue;
         }
         restore(s);
-        if (status != ERROR_NUMERIC || ++halvings > HALVINGS_MOST)
+        if (status != ERROR_NUMERIC || ++halvings > HALVINGS_MOST ||
+            s->iterations >= s->iterations_most)
             return status;
         part /= 2;
     }

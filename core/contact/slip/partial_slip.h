@@ -21,7 +21,9 @@ struct slip_options {
                            pressure, whose root rises evenly */
     double tolerance;   /* on the largest violation of gaps over the largest displacement; of slips
                            over that times friction, where this is below 1; default 1e-8 */
-    size_t max_sets;    /* sets of nodes a step, after which it is halved; default 100 */
+    size_t max_sets;    /* sets of nodes a step, after which it is halved; default 40 */
+    size_t max_iterations; /* of linear equations a load with all its halves, after which it fails;
+                              of each step of pressing; default 400 */
 };
 extern const struct slip_options SLIP_DEFAULTS;
 
@@ -59,7 +61,9 @@ int slip_press(struct slip *slip, const double *z, double pressure, struct slip_
                struct error *err);
 /* Takes the mean traction to this value, between -friction * pressure and friction * pressure,
  * without these. ERROR_INPUT with both where it is not, ERROR_STATE before slip_press,
- * ERROR_NUMERIC as above. After a failure the state is that before the call. */
+ * ERROR_NUMERIC as above. After one of these the state is that before the call. A load that was
+ * halved and then failed, or was stopped, ends at a load between, from which the next one goes on.
+ */
 int slip_load(struct slip *slip, double traction, struct slip_state *out, struct error *err);
 
 #endif

@@ -182,6 +182,8 @@ void slip_sets_centre(const struct slip_sets *sets, double *residual) {
         for (size_t f = 0; f < slip_sets_end(sets); f++)
             r[f][i] -= flat[f];
         restrict_node(sets, i, r);
+        for (size_t f = ALONG_X; f < slip_sets_end(sets); f++)
+            r[f][i] *= share_of(sets, i);
     }
 }
 
@@ -260,7 +262,8 @@ static void precondition(struct slip_sets *sets, double *residual, double *out) 
     for (size_t f = 0; f < slip_sets_end(sets); f++) {
         for (size_t i = 0; i < sets->n; i++) {
             bool in = f == NORMAL ? sets->node[i] != NODE_OPEN : is_continued(sets, i);
-            marked[f][i] = !in ? 0 : r[f][i] == 0 ? DBL_MIN : r[f][i];
+            double share = f == NORMAL ? 1 : share_of(sets, i);
+            marked[f][i] = !in ? 0 : r[f][i] == 0 ? DBL_MIN : r[f][i] / share;
         }
         continue_field(sets, f, marked[f], wide[f]);
     }
@@ -268,9 +271,7 @@ static void precondition(struct slip_sets *sets, double *residual, double *out) 
     for (size_t f = 0; f < slip_sets_end(sets); f++) {
         transpose_field(sets, f, marked[f], wide[f]);
         for (size_t i = 0; i < sets->n; i++)
-            x[f][i] = f == NORMAL || is_continued(sets, i)
-                          ? wide[f][i]
-                          : r[f][i] / (sets->turn[i] + sets->local);
+            x[f][i] = f == NORMAL || is_continued(sets, i) ? wide[f][i] : r[f][i] / sets->local;
     }
     for (size_t i = 0; i < sets->n; i++)
         restrict_node(sets, i, x);

@@ -60,7 +60,9 @@ void slip_sets_take(struct slip_sets *sets);
 /* Fills the motion of the flat that a residual of gaps and slips has on average, by the shares of
  * nodes. */
 void slip_sets_flat(const struct slip_sets *sets, double *residual, double flat[FIELDS]);
-/* Takes off a residual that motion, and of sliding nodes what is along their direction. */
+/* Takes off a residual that motion, and of sliding nodes what is along their direction. What is
+ * across it is multiplied by local/(turn + local), as all residuals below: else nodes that turn
+ * hardly would have residuals up to any size, which hide those of the others. */
 void slip_sets_centre(const struct slip_sets *sets, double *residual);
 /* Adds tractions of this sum along the face, each node its share. */
 void slip_sets_spread(const struct slip_sets *sets, const double sum[FIELDS], double *tractions);
