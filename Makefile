@@ -46,8 +46,8 @@ NEEDED   = $(LANGUAGE) -ffp-contract=off -fno-math-errno -fno-trapping-math -fPI
 COMPILE  = $(CC) $(WARN) $(CPPFLAGS) $(CFLAGS) $(NEEDED)
 LINK     = $(CC) $(CFLAGS) $(LDFLAGS) -pthread $(TESTED)
 LIBS_library = -lcholmod -lfftw3 -lgsl -lgslcblas -lm
-LIBS_core   = -lzip -lexpat -lnettle $(LIBS_library)
-LIBS_schema = -lcjson -lsqlite3 -lz $(LIBS_core)
+LIBS_core   = -lzip -lz -lexpat -lnettle $(LIBS_library)
+LIBS_schema = -lcjson -lsqlite3 $(LIBS_core)
 LIBS_jobs   = $(LIBS_schema)
 LIBS_worker = -lcurl $(LIBS_jobs)
 LIBS_server = -lmicrohttpd -lgnutls -lpng $(LIBS_worker)

@@ -5,10 +5,18 @@
 
 #include "core/map/height_map.h"
 
+/* What plain columns of a text are; in the order of INSTRUMENT_COLUMNS. */
+enum instrument_columns { COLUMNS_AUTO, COLUMNS_XZ, COLUMNS_XYZ, COLUMNS_MAP };
+#define INSTRUMENT_COLUMNS "auto|xz|xyz|map"
+enum { INSTRUMENT_DONE = 160 };
+
 /* The caller's request. */
 struct instrument_request {
     const char *layer; /* borrowed: name of a layer (channel), or its number from 1; NULL: the first
                           that holds heights */
+    enum instrument_columns columns;
+    char *done; /* borrowed, NULL or INSTRUMENT_DONE bytes: gets what was made of plain columns, ""
+                   where they are a map */
 };
 
 /* A reader takes the bytes of a file, data[size] being 0, and fills *out, which the caller then

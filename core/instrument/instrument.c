@@ -1,4 +1,5 @@
 #include "core/instrument/formats.h"
+#include "core/instrument/text/columns.h"
 #include "core/map/height_map_file.h"
 #include <math.h>
 #include <stdio.h>
@@ -66,6 +67,39 @@ static int check_text(const char *name, const char *data, size_t size, struct er
                      dot != NULL ? " " : "", dot != NULL ? dot : "", endings);
 }
 
+/* Reads the program's own plain format, whose columns may be others than those of a map. */
+static int read_plain(struct height_map *out, enum height_map_format own, const char *data,
+                      size_t size, double dx, const struct instrument_request *request,
+                      struct error *err) {
+    char done[INSTRUMENT_DONE] = "";
+    struct height_map map = {0};
+    int status = height_map_parse(&map, own, data, size, dx, err);
+    if (status == 0 && own == HEIGHT_MAP_CSV)
+        status = columns_of_plain(&map, request->columns, done, err);
+    if (status != 0) {
+        height_map_clear(&map);
+        return status;
+    }
+    if (request->done != NULL)
+        memcpy(request->done, done, sizeof done);
+    *out = map;
+    return 0;
+}
+
+static int check_columns(enum instrument_columns columns, const struct instrument_format *foreign,
+                         enum height_map_format own, struct error *err) {
+    if (columns == COLUMNS_AUTO || foreign == &INSTRUMENT_TEXT || foreign == &INSTRUMENT_POINTS ||
+        (foreign == NULL && own == HEIGHT_MAP_CSV))
+        return 0;
+    return error_set(err, ERROR_INPUT, "a %s file says what it holds, so that --columns does not",
+                     foreign != NULL ? foreign->name : HEIGHT_MAP_NAMES[own]);
+}
+
+static void set_spacing(struct height_map *map, double dx) {
+    map->grid.lx = dx * (double)map->grid.nx;
+    map->grid.ly = dx * (double)map->grid.ny;
+}
+
 int instrument_read(struct height_map *out, const char *name, const char *data, size_t size,
                     double dx, const struct instrument_request *request, const char **format,
                     struct error *err) {
@@ -77,16 +111,18 @@ int instrument_read(struct height_map *out, const char *name, const char *data, 
     if (dx != 0 && !(dx > 0 && isfinite(dx)))
         return error_set(err, ERROR_INPUT, "the spacing of points must be above 0, not %g", dx);
     int status = foreign == NULL && guessed ? check_text(name, data, size, err) : 0;
+    if (status == 0)
+        status = check_columns(request->columns, foreign, own, err);
     if (status != 0)
         return status;
+    if (request->done != NULL)
+        *request->done = '\0';
     status = foreign != NULL ? foreign->read(out, data, size, request, err)
-                             : height_map_parse(out, own, data, size, dx, err);
+                             : read_plain(out, own, data, size, dx, request, err);
     if (status != 0)
         return status;
-    if (foreign != NULL && dx > 0) {
-        out->grid.lx = dx * (double)out->grid.nx;
-        out->grid.ly = dx * (double)out->grid.ny;
-    }
+    if (dx > 0)
+        set_spacing(out, dx);
     if (format != NULL)
         *format = foreign != NULL ? foreign->name : HEIGHT_MAP_NAMES[own];
     return 0;

@@ -268,7 +268,8 @@ const char *preparation_text(const struct preparation_record *record, const char
 }
 
 static bool is_origin(const char *name) {
-    static const char *const NAMES[] = {"file", "bytes", "sha256", "format", "layer", "program"};
+    static const char *const NAMES[] = {"file",   "bytes", "sha256", "unpacked",
+                                        "format", "layer", "program"};
     for (size_t n = 0; n < sizeof NAMES / sizeof *NAMES; n++)
         if (strcmp(NAMES[n], name) == 0)
             return true;

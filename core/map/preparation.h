@@ -67,7 +67,7 @@ struct preparation {
     enum map_window window;
 };
 
-enum { PREPARATION_STEPS_MOST = 16, PREPARATION_TEXT = 160 };
+enum { PREPARATION_STEPS_MOST = 20, PREPARATION_TEXT = 160 };
 
 /* The steps that were done, and what was measured in them. */
 struct preparation_record {
@@ -103,7 +103,7 @@ int height_map_check_units(const struct height_map *map, struct error *err);
 /* Returns the text of a note; NULL where there is none. Borrowed. */
 const char *preparation_text(const struct preparation_record *record, const char *name);
 /* Writes the steps in one line, "crop: ...; detrend: ...": all notes but those on the origin of the
- * map (file, bytes, sha256, format, layer, program). "" where nothing was done. */
+ * map (file, bytes, sha256, unpacked, format, layer, program). "" where nothing was done. */
 void preparation_steps_text(const struct preparation_record *record, char *out, size_t size);
 enum { PREPARATION_STEPS_TEXT = PREPARATION_STEPS_MOST * (PREPARATION_TEXT + 24) };
 

@@ -6,17 +6,23 @@
 #include "schema/program.h"
 #include <string.h>
 
-static void note_file(struct preparation_record *record, const char *name, const char *data,
-                      size_t size, const char *format) {
+static void note_file(struct preparation_record *record, const struct map_source *source,
+                      const char *format, const char *done) {
     unsigned char digest[DIGEST_SIZE];
     char digits[2 * DIGEST_SIZE + 1];
-    const char *slash = strrchr(name, '/');
-    digest_bytes(data, size, digest);
+    const char *slash = strrchr(source->name, '/');
+    digest_bytes(source->data, source->size, digest);
     hex_print(digest, DIGEST_SIZE, digits);
-    preparation_note(record, "file", "%s", slash != NULL ? slash + 1 : name);
-    preparation_note(record, "bytes", "%zu", size);
+    preparation_note(record, "file", "%s", slash != NULL ? slash + 1 : source->name);
+    preparation_note(record, "bytes", "%zu", source->size);
     preparation_note(record, "sha256", "%s", digits);
+    if (source->content != NULL)
+        preparation_note(record, source->step, "%s", source->step_text);
     preparation_note(record, "format", "%s", format);
+    if (source->layer != NULL)
+        preparation_note(record, "layer", "%s", source->layer);
+    if (*done != '\0')
+        preparation_note(record, "columns", "%s", done);
 }
 
 static bool has_one_layer(const char *format) {
@@ -26,24 +32,25 @@ static bool has_one_layer(const char *format) {
     return own < HEIGHT_MAP_FORMATS;
 }
 
-int map_layer_read(struct height_map *out, struct preparation_record *record, const char *name,
-                   const char *data, size_t size, const char *layer, struct error *err) {
-    const struct instrument_request request = {.layer = layer};
-    const char *format = NULL;
-    int status = instrument_read(out, name, data, size, 0, &request, &format, err);
+int map_source_read(struct height_map *out, struct preparation_record *record,
+                    const struct map_source *source, struct error *err) {
+    char done[INSTRUMENT_DONE] = "";
+    const struct instrument_request request = {source->layer, source->columns, done};
+    const bool other = source->content != NULL;
+    const char *format = NULL, *layer = source->layer;
+    int status = instrument_read(
+        out, other ? source->content_name : source->name, other ? source->content : source->data,
+        other ? source->content_size : source->size, 0, &request, &format, err);
     if (status != 0)
-        return error_context(err, "%s", name);
+        return error_context(err, "%s", source->name);
     if (layer != NULL && has_one_layer(format)) {
         height_map_clear(out);
         return error_set(err, ERROR_INPUT,
-                         "%s: a %s file has one layer, without a name, not '%.40s'", name, format,
-                         layer);
+                         "%s: a %s file has one layer, without a name, not '%.40s'", source->name,
+                         format, layer);
     }
-    if (record == NULL)
-        return 0;
-    note_file(record, name, data, size, format);
-    if (layer != NULL)
-        preparation_note(record, "layer", "%s", layer);
+    if (record != NULL)
+        note_file(record, source, format, done);
     return 0;
 }
 

@@ -2,14 +2,29 @@
 #ifndef RUGO_JOBS_MAPS_MAP_PREPARATION_H
 #define RUGO_JOBS_MAPS_MAP_PREPARATION_H
 
+#include "core/instrument/formats.h"
 #include "core/map/preparation.h"
 
-/* Reads a map from the bytes of a file of that name, by its first bytes or by the ending of the
- * name. layer: which one; NULL: the first with heights. *record, {0} at first, or NULL, gets the
- * name, size, digest, format and layer. Errors name the file; ERROR_INPUT also for a layer of a
- * format that has one alone. */
-int map_layer_read(struct height_map *out, struct preparation_record *record, const char *name,
-                   const char *data, size_t size, const char *layer, struct error *err);
+/* A file of a map; borrows. */
+struct map_source {
+    const char *name; /* its ending gives the format where its first bytes do not */
+    const char *data; /* followed by 0 */
+    size_t size;
+    const char *layer; /* NULL: the first with heights */
+    enum instrument_columns columns;
+    const char *content; /* what is read in place of the bytes, followed by 0; NULL: these */
+    size_t content_size;
+    const char *content_name; /* of a file with the content, as `name` */
+    const char *step;         /* by which the content was made; static */
+    const char *step_text;
+};
+
+/* Reads a map from the bytes of a file, by their first ones or by the ending of its name. *record,
+ * {0} at first, or NULL, gets the name, size and digest of the file, how its content was made, its
+ * format, layer and columns. Errors name the file; ERROR_INPUT also for a layer of a format that
+ * has one alone. */
+int map_source_read(struct height_map *out, struct preparation_record *record,
+                    const struct map_source *source, struct error *err);
 /* Prepares the map in place, and notes the steps and the program in *record. The map is cleared
  * after a failure, whose error names the file. */
 int map_prepare(struct height_map *map, struct preparation_record *record, const char *name,

@@ -5,6 +5,7 @@ import { request } from "/web/session.js";
 
 const DETRENDS = ["auto", "none", "mean", "plane", "quadratic"];
 const BOUNDARIES = ["auto", "open", "periodic"];
+const COLUMNS = ["auto", "xz", "xyz", "map"];
 const LARGE = 2 ** 23; // bytes: a server that refuses so much may hang up before its answer is read
 const kept = { file: null, options: { detrend: "auto", boundary: "auto" } }; // while the tab is open
 
@@ -114,7 +115,7 @@ export function showSurface(root, signal) {
     make("input", { type: "file", "aria-label": "File of a measured surface", onchange: (event) => take(event.target.files) }));
   root.append(make("h1", {}, "Measured surface"), drop,
     make("div", { class: "tools" }, choice("Trend", DETRENDS, kept.options.detrend, set("detrend")), choice("Boundary", BOUNDARIES, kept.options.boundary, set("boundary")),
-      text("Layer", "layer", "the first"), text("Spacing", "dx", "0.5um"), text("Unit of x and y", "unit", "um"), text("Unit of heights", "z_unit", "nm"), text("Part", "crop", "x,y,width,height"),
+      text("Layer", "layer", "the first"), choice("Columns", COLUMNS, kept.options.columns, set("columns")), text("Spacing", "dx", "0.5um"), text("Unit of x and y", "unit", "um"), text("Unit of heights", "z_unit", "nm"), text("Part", "crop", "x,y,width,height"),
       text("Filters", "filter", "S=2um,L=50um"), text("Trust wavelengths from", "trust_from", "50um"), text("Trust them to", "trust_to", "2um"), tick("fill holes", kept.options.fill === "true", (on) => set("fill")(on ? "true" : ""))),
     message, fault, place);
   look();

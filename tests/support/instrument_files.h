@@ -73,7 +73,7 @@ static inline void bytes_damage(struct bytes *bytes, const struct damage *damage
 /* Takes the bytes: reads them under this name and frees them. */
 static inline int bytes_read(struct bytes bytes, const char *name, const char *layer,
                              struct height_map *map, struct error *err) {
-    const struct instrument_request request = {layer};
+    const struct instrument_request request = {.layer = layer};
     *map = (struct height_map){0};
     *err = (struct error){0};
     int status = instrument_read(map, name, bytes.data, bytes.size, 0, &request, NULL, err);

@@ -3,6 +3,7 @@
 #include "core/instrument/formats.h"
 #include "core/instrument/layers.h"
 #include "core/instrument/point_grid.h"
+#include "core/instrument/text/columns.h"
 #include "core/instrument/text/text_block.h"
 #include "core/instrument/text/text_number.h"
 #include "core/instrument/unit_of.h"
@@ -255,6 +256,25 @@ static int text_points_map(struct height_map *map, const struct text_table *tabl
     return status == 0 ? text_scale_heights(map, header, err) : status;
 }
 
+/* Makes a profile of lines x z. done: INSTRUMENT_DONE bytes. */
+static int text_trace_map(struct height_map *map, const struct text_table *table,
+                          const struct text_block *block, char *done, struct error *err) {
+    const struct columns_table columns = {table->numbers, table->rows, table->columns};
+    const bool named = block->columns.trace || block->columns.named;
+    const size_t x = named ? block->columns.of[0] : 0, z = named ? block->columns.of[2] : 1;
+    double metres;
+    if (x >= table->columns || z >= table->columns)
+        return error_set(err, ERROR_INPUT,
+                         "a trace has %zu numbers a row, x is column %zu and z %zu", table->columns,
+                         x + 1, z + 1);
+    unit_keep(map->xy_unit, block->header.x_unit, &metres);
+    int status = columns_trace(map, &columns, x, z, metres, done, err);
+    if (status != 0)
+        return status;
+    unit_keep(map->xy_unit, block->header.x_unit, &metres);
+    return text_scale_heights(map, &block->header, err);
+}
+
 static bool owns(const char *data, size_t size) {
     static const char *const MARKS[] = {"\xff\xfe", "\xfe\xff"};
     for (size_t mark = 0; mark < 2; mark++)
@@ -279,34 +299,64 @@ static int choose_block(const struct text_blocks *blocks, const char *asked, siz
     return status;
 }
 
-/* Returns whether a block is a list of points. Names of columns show it, and so do three columns
- * with a unit along x where the header has no length of a matrix's row. */
-static bool is_list(const struct text_block *block, const struct text_table *table, bool points) {
+/* Finds what the columns of a block are. Names of columns show it, as do lengths of a matrix; three
+ * columns with a unit along x are points. */
+static int choose_columns(enum instrument_columns *out, const struct text_block *block,
+                          const struct text_table *table, bool points, struct error *err) {
+    const struct columns_table columns = {table->numbers, table->rows, table->columns};
     const struct text_quantity *numbers = block->header.numbers;
     bool matrix = false;
     for (int key = TEXT_COLUMNS; key <= TEXT_DY; key++)
         matrix = matrix || numbers[key].there;
     if (block->columns.named)
-        return true;
-    return table->columns == 3 && !matrix && (points || block->header.x_unit[0] != '\0');
+        *out = COLUMNS_XYZ;
+    else if (block->columns.trace && block->columns.count == table->columns)
+        *out = COLUMNS_XZ;
+    else if (matrix)
+        *out = COLUMNS_MAP;
+    else if (table->columns == 3 && (points || block->header.x_unit[0] != '\0'))
+        *out = COLUMNS_XYZ;
+    else
+        return columns_choose(out, &columns, err);
+    return 0;
+}
+
+static int read_columns(struct height_map *map, const struct text_block *block,
+                        struct text_table *table, bool points,
+                        const struct instrument_request *request, struct error *err) {
+    enum instrument_columns kind = request->columns;
+    char done[INSTRUMENT_DONE] = "";
+    int status = 0;
+    if (kind == COLUMNS_AUTO)
+        status = choose_columns(&kind, block, table, points, err);
+    if (status != 0)
+        return status;
+    if (kind == COLUMNS_XYZ)
+        status = text_points_map(map, table, block, err);
+    else if (kind == COLUMNS_XZ)
+        status = text_trace_map(map, table, block, done, err);
+    else
+        status = text_matrix_map(map, table, &block->header, err);
+    if (request->done != NULL)
+        memcpy(request->done, done, sizeof done);
+    return status;
 }
 
 static int read_block(struct height_map *map, const struct text_block *block, const char *end,
-                      bool points, struct error *err) {
+                      bool points, const struct instrument_request *request, struct error *err) {
     const struct text_quantity *columns = &block->header.numbers[TEXT_COLUMNS];
     bool stated = !block->columns.named && columns->there && columns->value > 1 &&
                   columns->value < 2147483648.0;
     struct text_table table = {0};
     int status = text_table_read(&table, block, end, stated ? (size_t)columns->value : 0, err);
     if (status == 0)
-        status = is_list(block, &table, points) ? text_points_map(map, &table, block, err)
-                                                : text_matrix_map(map, &table, &block->header, err);
+        status = read_columns(map, block, &table, points, request, err);
     free(table.numbers);
     return status;
 }
 
-static int read_text(struct height_map *out, const char *data, size_t size, const char *layer,
-                     bool points, struct error *err) {
+static int read_text(struct height_map *out, const char *data, size_t size, bool points,
+                     const struct instrument_request *request, struct error *err) {
     struct text_file file = {0};
     struct text_blocks blocks = {0};
     struct height_map map = {0};
@@ -315,9 +365,10 @@ static int read_text(struct height_map *out, const char *data, size_t size, cons
     if (status == 0)
         status = text_blocks_find(&blocks, &file, err);
     if (status == 0)
-        status = choose_block(&blocks, layer, &chosen, err);
+        status = choose_block(&blocks, request->layer, &chosen, err);
     if (status == 0)
-        status = read_block(&map, &blocks.blocks[chosen], file.text + file.size, points, err);
+        status =
+            read_block(&map, &blocks.blocks[chosen], file.text + file.size, points, request, err);
     text_blocks_clear(&blocks);
     text_file_close(&file);
     if (status == 0)
@@ -329,21 +380,22 @@ static int read_text(struct height_map *out, const char *data, size_t size, cons
 
 static int read_export(struct height_map *out, const char *data, size_t size,
                        const struct instrument_request *request, struct error *err) {
-    return read_text(out, data, size, request->layer, false, err);
+    return read_text(out, data, size, false, request, err);
 }
 
 /* A plain list in the program's own order is read as such, bit for bit. */
 static int read_points(struct height_map *out, const char *data, size_t size,
                        const struct instrument_request *request, struct error *err) {
     struct error why;
-    if (request->layer == NULL && !owns(data, size)) {
+    const bool list = request->columns == COLUMNS_AUTO || request->columns == COLUMNS_XYZ;
+    if (request->layer == NULL && list && !owns(data, size)) {
         int status = height_map_parse(out, HEIGHT_MAP_XYZ, data, size, 0, &why);
         if (status == ERROR_MEMORY)
             return error_set(err, ERROR_MEMORY, "%s", why.text);
         if (status == 0)
             return 0;
     }
-    return read_text(out, data, size, request->layer, true, err);
+    return read_text(out, data, size, true, request, err);
 }
 
 const struct instrument_format INSTRUMENT_TEXT = {"text", "", owns, read_export};

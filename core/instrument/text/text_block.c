@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* Keys in lower case of ASCII, as the programs named in README.md write them, and the program's
  * unit where it writes none. */
@@ -274,14 +275,30 @@ bool text_header_take(struct text_header *header, struct text_line line) {
 
 enum { BLOCKS_MOST = 1000, LINES_SEEN = 100, BYTES_SEEN = 16384 };
 
-/* Returns which of x, y and z a column is named for: "X", "y [um]", "Z(nm)", "x in mm"; 3 where for
- * none. */
+static bool is_one_of(const char *at, size_t length, const char *const *words) {
+    for (; *words != NULL; words++)
+        if (strlen(*words) == length && strncasecmp(at, *words, length) == 0)
+            return true;
+    return false;
+}
+
+/* Returns which of x, y and z a column is named for: "X", "y [um]", "Z(nm)", "x in mm", "y1",
+ * "Lateral um"; 3 where for none. */
 static size_t axis_of(const struct text_field *field) {
-    const char *at = field->at;
+    static const char *const ALONG[] = {"lateral", "distance", "position", NULL};
+    static const char *const HEIGHTS[] = {"height", "raw", "elevation", "topography", NULL};
+    const char *at = field->at, *end;
     while (at < field->end && (*at == '#' || text_is_blank(*at)))
         at++;
-    size_t axis = at < field->end ? (size_t)(*at | 32) - 'x' : 3;
-    bool word = at + 1 < field->end && strchr(" [(/_\"", at[1]) == NULL;
+    for (end = at; end < field->end && strchr(" [(/_\"", *end) == NULL;)
+        end++;
+    const size_t length = (size_t)(end - at);
+    if (is_one_of(at, length, ALONG))
+        return 0;
+    if (is_one_of(at, length, HEIGHTS))
+        return 2;
+    const size_t axis = length > 0 ? (size_t)(*at | 32) - 'x' : 3;
+    bool word = length > 2 || (length == 2 && (at[1] < '0' || at[1] > '9'));
     return axis < 3 && !word ? axis : 3;
 }
 
@@ -308,8 +325,22 @@ static char separator_of_names(struct text_line line) {
     return ' ';
 }
 
-/* Reads a line that names columns x, y and z. Between blanks, a unit in brackets belongs to the
- * name before it. */
+/* Completes columns by which of x, y and z were found: all of a list, or x and one of heights,
+ * which some programs call y, of a trace. Returns false where it is neither. */
+static bool complete(struct text_columns *columns, struct text_header *header,
+                     const bool found[3]) {
+    columns->named = found[0] && found[1] && found[2];
+    columns->trace = !columns->named && found[0] && (found[1] || found[2]);
+    if (columns->trace && !found[2]) {
+        columns->of[2] = columns->of[1];
+        memcpy(header->z_unit, header->y_unit, sizeof header->z_unit);
+        header->y_unit[0] = '\0';
+    }
+    return columns->named || columns->trace;
+}
+
+/* Reads a line that names columns x, y and z, or those of a trace. Between blanks, a unit in
+ * brackets belongs to the name before it. */
 static bool take_names(struct text_block *block, struct text_line line) {
     const char separator = separator_of_names(line);
     struct text_columns columns = {0};
@@ -333,11 +364,37 @@ static bool take_names(struct text_block *block, struct text_line line) {
         }
         column++;
     }
-    columns.named = found[0] && found[1] && found[2];
-    if (!columns.named)
+    columns.count = column;
+    if (!complete(&columns, &header, found))
         return false;
     block->columns = columns;
     block->header = header;
+    return true;
+}
+
+/* Reads a line of two or three units of length alone, which are those of x and z, or of x, y and
+ * z. */
+static bool take_unit_line(struct text_block *block, struct text_line line) {
+    char units[3][TEXT_UNIT_ROOM];
+    struct text_field field;
+    const char separator = separator_of_names(line);
+    size_t count = 0;
+    double metres;
+    while (text_field_next(&line, separator, &field)) {
+        if (count == 3)
+            return false;
+        text_unit_copy(units[count], field.at, field.end);
+        if (!length_unit_metres(units[count], strlen(units[count]), &metres))
+            return false;
+        count++;
+    }
+    if (count < 2)
+        return false;
+    block->columns = (struct text_columns){count == 3, count == 2, {0, 1, count - 1}, count};
+    memcpy(block->header.x_unit, units[0], sizeof units[0]);
+    memcpy(block->header.z_unit, units[count - 1], sizeof units[0]);
+    if (count == 3)
+        memcpy(block->header.y_unit, units[1], sizeof units[1]);
     return true;
 }
 
@@ -346,14 +403,16 @@ static bool take_units(struct text_block *block, struct text_line line) {
     char *const units[3] = {block->header.x_unit, block->header.y_unit, block->header.z_unit};
     struct text_field field;
     const char separator = separator_of_names(line);
+    const bool trace = block->columns.trace;
     bool taken = false;
-    for (size_t column = 0; block->columns.named && text_field_next(&line, separator, &field);
-         column++)
+    if (!block->columns.named && !trace)
+        return take_unit_line(block, line);
+    for (size_t column = 0; text_field_next(&line, separator, &field); column++)
         for (size_t axis = 0; axis < 3; axis++) {
             char unit[TEXT_UNIT_ROOM];
             double metres;
             text_unit_copy(unit, field.at, field.end);
-            if (block->columns.of[axis] != column ||
+            if (block->columns.of[axis] != column || (trace && axis == 1) ||
                 !length_unit_metres(unit, strlen(unit), &metres))
                 continue;
             memcpy(units[axis], unit, sizeof unit);
@@ -366,6 +425,20 @@ static bool take_units(struct text_block *block, struct text_line line) {
 static bool take_header_line(struct text_block *block, struct text_line line) {
     return text_header_take(&block->header, line) || take_names(block, line) ||
            take_units(block, line);
+}
+
+/* Returns whether a line is the number of the rows that follow names or units of columns. */
+static bool is_count(const struct text_block *block, struct text_line line, const char *next,
+                     const char *end) {
+    const size_t digits = strspn(line.at, "0123456789");
+    struct text_line row = line;
+    struct text_field field;
+    if ((!block->columns.named && !block->columns.trace) || digits == 0 ||
+        digits != (size_t)(line.end - line.at) || !text_line_next(&row, &next, end) ||
+        !text_is_row(row))
+        return false;
+    const char separator = text_dialect_of(row).separator;
+    return text_field_next(&row, separator, &field) && !field.last;
 }
 
 static int add_block(struct text_blocks *blocks, const struct text_block *block, size_t line,
@@ -415,7 +488,7 @@ int text_blocks_find(struct text_blocks *out, const struct text_file *file, stru
                     "nan for holes",
                     line.number, line.end - line.at < 40 ? (int)(line.end - line.at) : 40, line.at);
             }
-        } else if (*line.at != '#' && text_is_row(line)) {
+        } else if (*line.at != '#' && text_is_row(line) && !is_count(&block, line, next, end)) {
             block.first = line;
             block.next = next;
             separator = text_dialect_of(line).separator;
@@ -463,5 +536,5 @@ bool text_blocks_own(const char *text, size_t size) {
         if (line.at < line.end && !row && rows == 0)
             (void)take_header_line(&block, line);
     }
-    return rows > 0 && (block.header.keyed || block.columns.named);
+    return rows > 0 && (block.header.keyed || block.columns.named || block.columns.trace);
 }

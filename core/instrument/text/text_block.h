@@ -46,10 +46,13 @@ bool text_header_take(struct text_header *header, struct text_line line);
 /* Copies a unit without its brackets and blanks. */
 void text_unit_copy(char unit[TEXT_UNIT_ROOM], const char *at, const char *end);
 
-/* The named columns x, y and z of a list of points, in any order and among others. */
+/* The named columns x, y and z of a list of points, or x and z of a trace, in any order and among
+ * others. */
 struct text_columns {
-    bool named;
+    bool named;   /* all three */
+    bool trace;   /* x and z alone */
     size_t of[3]; /* the column of x, y, z, from 0 */
+    size_t count; /* of the columns that the line of names or units has */
 };
 
 struct text_block {

@@ -3,6 +3,7 @@
 #ifndef RUGO_SERVER_COMMAND_MAP_MAP_FILE_H
 #define RUGO_SERVER_COMMAND_MAP_MAP_FILE_H
 
+#include "core/instrument/formats.h"
 #include "core/map/height_map_file.h"
 #include "core/map/preparation_words.h"
 #include "server/command/options.h"
@@ -11,6 +12,7 @@
 struct map_options {
     const char *name;  /* of the file; NULL: that of its path */
     const char *layer; /* NULL: the first with heights */
+    int columns;       /* enum instrument_columns */
     struct preparation_words words;
 };
 
@@ -31,6 +33,8 @@ struct map_options {
             "of the file, such as patch.x3p, where it comes by standard input (-)"),               \
         MAP_ROW(type, member, "layer", OPTION_TEXT, layer, "NAME|NUMBER", NULL,                    \
                 "layer of the file (the first with heights); a name that is none lists them"),     \
+        MAP_ROW(type, member, "columns", OPTION_CHOICE, columns, INSTRUMENT_COLUMNS, "auto",       \
+                "what plain columns are: a trace x z, points x y z, or rows of a map"),            \
         MAP_ROW(type, member, "dx", OPTION_TEXT, words.dx, "DX[,DY]", NULL,                        \
                 "distance of points, such as 0.5um (what the file says, or 1)"),                   \
         MAP_ROW(type, member, "unit", OPTION_TEXT, words.unit, "UNIT", NULL,                       \

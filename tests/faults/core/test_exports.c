@@ -4,6 +4,7 @@
 
 #include "tests/support/failing/each_allocation.h"
 #include "tests/support/instrument_files.h"
+#include <gsl/gsl_errno.h>
 
 struct export {
     const char *name;
@@ -41,6 +42,9 @@ static void others(void **state) {
                                "1\0 \0002\0\n\0003\0 \0004\0";
     each("wide.csv", bytes_of(wide, sizeof wide - 1));
     each("points.xyz", bytes_of_text("1 1 1\n0 0 2\n1 0 3\n"));
+    each("trace.csv", bytes_of_text("X,Z\n0,1\n1,3\n2.2,2\n3,5\n4.1,4\n"));
+    each("plain.csv", bytes_of_text("0 1\n1 3\n2 2\n3 5\n"));
+    each("list.csv", bytes_of_text("0 0 1\n1 0 3\n0 1 2\n1 1 5\n"));
     each("surfer.grd", bytes_of_text("DSAA\n2 2\n0 1\n0 1\n0 1\n1 2 3 4\n"));
     each("esri.asc", bytes_of_text("ncols 2\nnrows 1\ncellsize 1\n1 2\n"));
     each("zygo.xyz", bytes_of_text("Zygo XYZ Data File - Format 1\n0\n0\n0 0 2 1\n\n\n\n"
@@ -49,5 +53,6 @@ static void others(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(by_gwyddion), cmocka_unit_test(others)};
+    gsl_set_error_handler_off(); /* as the program does */
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -35,7 +35,8 @@ static int read_map(void *context, struct error *err) {
     struct height_map map = {.z = NULL};
     struct preparation_record record = {.count = 0};
     const struct preparation asked = {.fill = true, .boundary = ASK_BOUNDARY_OPEN};
-    int status = map_layer_read(&map, &record, "map.csv", TEXT, strlen(TEXT), NULL, err);
+    const struct map_source source = {.name = "map.csv", .data = TEXT, .size = strlen(TEXT)};
+    int status = map_source_read(&map, &record, &source, err);
     if (status == 0)
         status = map_prepare(&map, &record, "map.csv", &asked, err);
     if (status == 0) {

@@ -6,14 +6,16 @@
 #include "tests/support/fuzz/fuzz.h"
 #include <math.h>
 
-/* Reads the bytes by this reader, a layer by number as the first byte says: a map with finite
- * heights and holes, of at most `share` points a byte, or a refusal in words. */
+/* Reads the bytes by this reader, a layer by number and columns as the first byte says: a map with
+ * finite heights and holes, of at most `share` points a byte, or a refusal in words. */
 static inline int fuzz_instrument(const struct instrument_format *format, const uint8_t *data,
                                   size_t size, size_t share) {
     static const char *const layers[] = {NULL, "1", "2", "Topography"};
     if (size == 0)
         return 0;
-    const struct instrument_request request = {layers[*data % 4]};
+    char done[INSTRUMENT_DONE] = "";
+    const struct instrument_request request = {
+        layers[*data % 4], (enum instrument_columns)(*data / 20 % (COLUMNS_MAP + 1)), done};
     char *text = text_of(data + 1, size - 1);
     struct height_map map = {0};
     struct error err = {0};

@@ -256,6 +256,41 @@ static void a_map_is_converted(void **state) {
 }
 
 /* A sphere's map with units: Hertz's radius of 32 um needs 10.0825 N on a radius of 1 mm. */
+/* A profilometer's columns are a trace to every command, packed or not; what is made of them is in
+ * the record. Columns that can be a map too are asked back, in a study as well. */
+static void columns_are_a_trace(void **state) {
+    (void)state;
+    assert_int_equal(
+        run_shell("awk 'BEGIN { print \"X_(microns),Z_(angstroms)\"; for (i = 0; i < 256; i++) "
+                  "printf \"%.3f,%.2f\\n\", 5 + 0.5 * i, 100 * cos(i * 3.14159265358979 / 16) }' "
+                  "> trace.csv && gzip -k trace.csv && $RUGO convert trace.csv.gz trace.npy"),
+        0);
+    assert_true(contains("shell.out", "columns: x z, 256 rows at even positions\n"));
+    assert_true(contains("shell.out", "unpacked: by gzip, "));
+    assert_true(contains("shell.out", "written: 256 by 1 points, 5e-07 by 5e-07 m apart, "
+                                      "heights in m\n"));
+    assert_int_equal(run_shell("$RUGO characterise trace.csv.gz && $RUGO press trace.csv.gz"), 0);
+    assert_int_equal(run_shell("gzip -c trace.csv | $RUGO characterise - --name trace.csv.gz"), 0);
+    assert_int_equal(run_shell("head -c 300 trace.csv.gz > cut.csv.gz; $RUGO characterise "
+                               "cut.csv.gz"),
+                     2);
+    assert_true(contains("shell.err", "cut.csv.gz: gzip: "));
+    assert_int_equal(
+        run_shell("printf '0 5\\n1 3\\n5 4\\n7 1\\n8 2\\n' > either.txt; $RUGO convert "
+                  "either.txt a.npy"),
+        2);
+    assert_true(contains("shell.err", "either.txt: 5 rows of 2 numbers are either positions and "
+                                      "heights of a trace or a map of 2 x 5 heights; --columns "
+                                      "xz or --columns map says which"));
+    assert_int_equal(run_shell("$RUGO convert either.txt a.npy --columns xz"), 0);
+    assert_true(contains("shell.out", "uneven positions, 0.5 to 2 of their mean distance apart; "
+                                      "resampled at it"));
+    assert_int_equal(run_shell("$RUGO convert either.txt a.npy --columns map"), 0);
+    assert_true(contains("shell.out", "written: 2 by 5 points"));
+    assert_int_equal(run_shell("$RUGO convert trace.npy a.npy --columns xz"), 2);
+    assert_true(contains("shell.err", "a npy file says what it holds"));
+}
+
 static void a_measured_map_is_pressed_in_units(void **state) {
     (void)state;
     assert_int_equal(
@@ -402,6 +437,7 @@ int main(void) {
         cmocka_unit_test(a_measured_map_does_not_repeat),
         cmocka_unit_test(lengths_have_units),
         cmocka_unit_test(a_map_is_converted),
+        cmocka_unit_test(columns_are_a_trace),
         cmocka_unit_test(a_measured_map_is_pressed_in_units),
         cmocka_unit_test(threads_give_the_same_digits),
         cmocka_unit_test(steps_and_ranges_are_written),
