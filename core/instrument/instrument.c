@@ -1,3 +1,5 @@
+#include "core/instrument/archive/zip_archive.h"
+#include "core/instrument/foreign.h"
 #include "core/instrument/formats.h"
 #include "core/instrument/text/columns.h"
 #include "core/map/height_map_file.h"
@@ -27,14 +29,37 @@ static bool has_ending(const char *name, const char *endings) {
     return false;
 }
 
-static const struct instrument_format *format_of(const char *name, const char *data, size_t size) {
+static const struct instrument_format *owner_of(const char *data, size_t size) {
     for (size_t f = 0; INSTRUMENT_FORMATS[f] != NULL; f++)
         if (INSTRUMENT_FORMATS[f]->owns != NULL && INSTRUMENT_FORMATS[f]->owns(data, size))
             return INSTRUMENT_FORMATS[f];
+    return NULL;
+}
+
+static const struct instrument_format *format_of(const char *name, const char *data, size_t size) {
+    const struct instrument_format *owner = owner_of(data, size);
+    if (owner != NULL)
+        return owner;
     for (size_t f = 0; INSTRUMENT_FORMATS[f] != NULL; f++)
         if (has_ending(name, INSTRUMENT_FORMATS[f]->endings))
             return INSTRUMENT_FORMATS[f];
     return INSTRUMENT_TEXT.owns(data, size) ? &INSTRUMENT_TEXT : NULL;
+}
+
+/* Returns whether a zip archive is one of those that are read; other programs pack theirs so too.
+ */
+static bool is_known_archive(const char *data, size_t size) {
+    return zip_archive_names(data, size, "main.xml") || zip_archive_names(data, size, ".npy");
+}
+
+bool instrument_takes(const char *name, const char *data, size_t size) {
+    if (size == 0 || memchr(data, 0, size) == NULL || data[0] == '\x93')
+        return true;
+    const struct instrument_format *owner = owner_of(data, size);
+    if (owner != NULL)
+        return owner != &INSTRUMENT_X3P || is_known_archive(data, size);
+    return foreign_format_of(data, size) == NULL &&
+           (height_map_format_of(name) < HEIGHT_MAP_FORMATS || format_of(name, data, size) != NULL);
 }
 
 /* Writes ".npy, .csv, .xyz, .gwy ...": the endings that files may have, each once. */

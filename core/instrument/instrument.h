@@ -8,6 +8,10 @@
 /* Ends with a row without name. */
 extern const struct instrument_format *const INSTRUMENT_FORMATS[];
 
+/* Returns whether instrument_read() has a reader for a file: false for bytes that are no text and
+ * whose first ones or, without a mark, whose name are of no format of the table. */
+bool instrument_takes(const char *name, const char *data, size_t size);
+
 /* Reads a file. Its format is recognised by its first bytes, or where they have no mark by the
  * ending of its name. dx 0: the spacing in the file, or 1. *format, where not NULL: the format's
  * name, static. */

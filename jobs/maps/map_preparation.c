@@ -16,8 +16,10 @@ static void note_file(struct preparation_record *record, const struct map_source
     preparation_note(record, "file", "%s", slash != NULL ? slash + 1 : source->name);
     preparation_note(record, "bytes", "%zu", source->size);
     preparation_note(record, "sha256", "%s", digits);
-    if (source->content != NULL)
-        preparation_note(record, source->step, "%s", source->step_text);
+    if (source->unpacked != NULL)
+        preparation_note(record, "unpacked", "%s", source->unpacked);
+    if (source->converted != NULL)
+        preparation_note(record, "converted", "%s", source->converted);
     preparation_note(record, "format", "%s", format);
     if (source->layer != NULL)
         preparation_note(record, "layer", "%s", source->layer);

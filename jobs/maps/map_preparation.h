@@ -14,9 +14,8 @@ struct map_source {
     enum instrument_columns columns;
     const char *content; /* what is read in place of the bytes, followed by 0; NULL: these */
     size_t content_size;
-    const char *content_name; /* of a file with the content, as `name` */
-    const char *step;         /* by which the content was made; static */
-    const char *step_text;
+    const char *content_name;         /* of a file with the content, as `name` */
+    const char *unpacked, *converted; /* by what the content was made; NULL: by neither */
 };
 
 /* Reads a map from the bytes of a file, by their first ones or by the ending of its name. *record,

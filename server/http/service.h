@@ -23,6 +23,7 @@ struct service {
     int64_t lease_ms;          /* of a silent worker */
     size_t map_bytes;          /* of the largest file of a map that is taken; 0: none is */
     atomic_bool stopping;
+    bool convert; /* whether Gwyddion converts files of peers */
 
     pthread_mutex_t mutex; /* guards the readers kept */
     struct store *readers[READERS_KEPT];

@@ -169,7 +169,8 @@ static int refuse_name(const char *name, struct error *err) {
 /* Reads them from the value, which lends its texts. ERROR_INPUT names the member, its value and
  * what is allowed. */
 static int like_options_parse(struct like_options *out, const cJSON *like, struct error *err) {
-    *out = (struct like_options){.map.words.boundary = ASK_BOUNDARY_OPEN};
+    *out = (struct like_options){.map.words.boundary = ASK_BOUNDARY_OPEN,
+                                 .map.convert = MAP_CONVERT_SECONDS};
     int status = 0;
     if (cJSON_IsArray(like))
         return error_set(err, ERROR_INPUT,

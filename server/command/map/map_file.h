@@ -10,11 +10,14 @@
 
 /* Part of a command's options. */
 struct map_options {
-    const char *name;  /* of the file; NULL: that of its path */
-    const char *layer; /* NULL: the first with heights */
-    int columns;       /* enum instrument_columns */
+    const char *name;    /* of the file; NULL: that of its path */
+    const char *layer;   /* NULL: the first with heights */
+    int columns;         /* enum instrument_columns */
+    const char *convert; /* seconds that a converter may take; NULL, "0": none is asked */
     struct preparation_words words;
 };
+
+#define MAP_CONVERT_SECONDS "60" /* unless another number is given */
 
 /* Rows of a table of options: those of a struct map_options that is `member` of the struct `type`.
  * The boundary is a row of its own, for commands that know others. */
@@ -35,6 +38,8 @@ struct map_options {
                 "layer of the file (the first with heights); a name that is none lists them"),     \
         MAP_ROW(type, member, "columns", OPTION_CHOICE, columns, INSTRUMENT_COLUMNS, "auto",       \
                 "what plain columns are: a trace x z, points x y z, or rows of a map"),            \
+        MAP_ROW(type, member, "convert", OPTION_TEXT, convert, "SECONDS", MAP_CONVERT_SECONDS,     \
+                "how long Gwyddion may take over a format that is not read here; 0: not at all"),  \
         MAP_ROW(type, member, "dx", OPTION_TEXT, words.dx, "DX[,DY]", NULL,                        \
                 "distance of points, such as 0.5um (what the file says, or 1)"),                   \
         MAP_ROW(type, member, "unit", OPTION_TEXT, words.unit, "UNIT", NULL,                       \

@@ -23,7 +23,7 @@ struct options {
     int64_t per_address; /* -1: not given */
     int log_level;
     const char *tls_certificate, *tls_key;
-    bool insecure;
+    bool insecure, convert;
 };
 #define AT(member) offsetof(struct options, member)
 static const struct option_row OPTIONS[] = {
@@ -46,6 +46,8 @@ static const struct option_row OPTIONS[] = {
      "most time for one request"},
     {"map-size", 0, OPTION_COUNT, 0, 4096, AT(map_mib), "MIB", "64",
      "largest file of a map to characterise, which may take 16 times as much memory; 0: none"},
+    {"convert", 0, OPTION_FLAG, 0, 0, AT(convert), NULL, NULL,
+     "have Gwyddion convert files of peers in formats that are not read here"},
     {"share", 0, OPTION_LIST, 0, 0, AT(shares), "NAME=WEIGHT", NULL,
      "of the workers' time that the studies of a name have beside others; 1 until it is set"},
     {"log-level", 0, OPTION_CHOICE, 0, 0, AT(log_level), LOG_LEVELS, "info", LOG_LEVEL_HELP},
@@ -316,6 +318,7 @@ static int serve_run(struct serve *serve, struct error *err) {
                               1000 * (int64_t)serve->options->lease_s, err);
     if (status == 0)
         status = set_shares(serve, err);
+    serve->service.convert = serve->options->convert;
     serve->service.map_bytes = (size_t)serve->options->map_mib << 20;
     struct http_options options = {.address = serve->address,
                                    .port = serve->port,

@@ -74,6 +74,8 @@ static enum answer_format read_format(struct exchange *exchange, struct fault_li
     return (enum answer_format)format;
 }
 
+static const char CONVERT[] = "--convert=30"; /* seconds, below those of the whole process */
+
 /* Returns false after an answer. */
 static bool write_arguments(struct exchange *exchange, enum answer_format *format,
                             struct command_line *out) {
@@ -92,6 +94,7 @@ static bool write_arguments(struct exchange *exchange, enum answer_format *forma
     }
     if (exchange_query(exchange, "name") == NULL)
         fault_add(&faults, "?name", "missing: the name of the file, such as patch.x3p");
+    out->arguments[out->count++] = exchange->service->convert ? CONVERT : "--convert=0";
     out->arguments[out->count++] = "-";
     out->arguments[out->count] = NULL;
     if (faults.count != 0)

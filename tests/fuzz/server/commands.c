@@ -197,8 +197,10 @@ static bool holds_map(const char *path, const char *text, size_t size, bool any_
     struct height_map map = {0};
     struct error err = {0};
     int status = map_file_read(&map, path, &err);
-    for (int format = 0; status != 0 && any_format && format < HEIGHT_MAP_FORMATS; format++)
-        status = height_map_parse(&map, (enum height_map_format)format, text, size, 1, &err);
+    /* Two or three columns without a header are asked back, whatever wrote them. */
+    for (int format = 0; status != 0 && format < HEIGHT_MAP_FORMATS; format++)
+        if (any_format || format == (int)height_map_format_of(path))
+            status = height_map_parse(&map, (enum height_map_format)format, text, size, 1, &err);
     height_map_clear(&map);
     return status == 0;
 }

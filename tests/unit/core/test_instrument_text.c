@@ -1,6 +1,7 @@
 /* Text exports: those that Gwyddion writes, and others by the layouts that
  * core/instrument/README.md names: headers with units, comma as the decimal mark, lists of points
  * in any order; and damaged ones, each refused with words that name the line. */
+#include "core/instrument/foreign.h"
 #include "tests/support/instrument_files.h"
 #include <time.h>
 
@@ -305,10 +306,51 @@ static void unknown_formats_are_named(void **state) {
     bytes_refused(bytes_of(BYTES, sizeof BYTES - 1), "a.csv", NULL, "zero byte");
 }
 
+/* Files that have a reader, and those that another program may convert. */
+static void other_formats_are_told_apart(void **state) {
+    (void)state;
+    static const struct {
+        const char *name, *bytes;
+        size_t size;
+        bool takes;
+        const char *format; /* among those without a reader; NULL: unknown */
+    } FILES[] = {
+        {"a.al3d", "AliconaImaging\0\r\n", 17, false, "Alicona's AL3D"},
+        {"a.opd", "\1\0Directory\0", 12, false, "Wyko's OPD"},
+        {"a.dat", "\x88\x1b\x03\x70\0\0", 6, false, "Zygo's MetroPro"},
+        {"a.001", "\\*File list\r\n\0", 14, false, "Nanoscope"},
+        {"a.grd", "DSBB\0\0", 6, false, "Surfer's binary grid"}, /* the text has this ending, too */
+        {"a.plu", "Fri Mar 10\0", 11, false, NULL},
+        {"a.plux", "PK\3\4\0\0", 6, false, NULL},
+        {"a.txt", "\\*File list\r\n", 13, true, "Nanoscope"}, /* text, which a reader refuses */
+        {"a.npy", "\x93NUMPY\0", 7, true, NULL},
+        {"a.csv", "1\0002", 3, true, NULL}, /* its reader reports the zero byte */
+        {"a.sdf", "bISO\0", 5, true, NULL},
+        {"a", "Gwyddion\0", 9, false, NULL},
+        {"a.gwy", "GWYPGwyContainer\0", 17, true, NULL},
+        {"a",
+         "\xff\xfe"
+         "1\0",
+         4, true, NULL},
+        {"a", "", 0, true, NULL},
+    };
+    for (size_t f = 0; f < sizeof FILES / sizeof *FILES; f++) {
+        struct bytes bytes = bytes_of(FILES[f].bytes, FILES[f].size);
+        const struct foreign_format *format = foreign_format_of(bytes.data, bytes.size);
+        if (instrument_takes(FILES[f].name, bytes.data, bytes.size) != FILES[f].takes)
+            fail_msg("%s, '%s': not %d", FILES[f].name, FILES[f].bytes, FILES[f].takes);
+        if ((format != NULL) != (FILES[f].format != NULL) ||
+            (format != NULL && strcmp(format->name, FILES[f].format) != 0))
+            fail_msg("%s: %s", FILES[f].name, format != NULL ? format->name : "unknown");
+        free(bytes.data);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(by_gwyddion),
         cmocka_unit_test(unknown_formats_are_named),
+        cmocka_unit_test(other_formats_are_told_apart),
         cmocka_unit_test(matrices),
         cmocka_unit_test(sixteen_bits),
         cmocka_unit_test(blocks),
