@@ -8,6 +8,7 @@
 #include "server/command/output_file.h"
 #include "server/show/map/map_figure.h"
 #include "server/show/map/map_report.h"
+#include "server/show/map/map_summary.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +17,8 @@ struct characterise_options {
     struct map_options map;
     const char *trust_from, *trust_to; /* NULL: by the map */
     int format;
+    bool all;
+    const char *group;            /* NULL: none is asked for */
     const char *picture, *report; /* NULL: none, as the next */
     const char *acf, *psd;
 };
@@ -29,6 +32,10 @@ static const struct option_row OPTIONS[] = {
      "the shortest ones (by the map: where noise, or what the instrument takes, begins)"},
     {"format", 0, OPTION_CHOICE, 0, 0, AT(format), "text|json|svg|study", "text",
      "what to print; svg: the page of --report; study: one of surfaces like the map"},
+    {"all", 0, OPTION_FLAG, 0, 0, AT(all), NULL, NULL,
+     "print all values and tables in place of one screen"},
+    {"group", 0, OPTION_TEXT, 0, 0, AT(group), "NAME[,NAME]", NULL,
+     "print these groups of values and tables, as text or JSON"},
     {"picture", 0, OPTION_TEXT, 0, 0, AT(picture), "FILE.svg|FILE.png", NULL,
      "draw the map as it was measured, without its trend, with its summits marked"},
     {"report", 0, OPTION_TEXT, 0, 0, AT(report), "FILE.svg|FILE.png", NULL,
@@ -53,9 +60,13 @@ static int print_study(const struct map_figure *figure, struct error *err) {
     return status;
 }
 
-static int print(int format, const struct map_figure *figure, struct error *err) {
+static int print(const struct characterise_options *options, const struct map_figure *figure,
+                 struct error *err) {
+    const int format = options->format;
     int status = 0;
-    if (format == FORMAT_TEXT)
+    if (format == FORMAT_TEXT && !options->all && options->group == NULL)
+        map_summary_print(stdout, figure);
+    else if (format == FORMAT_TEXT)
         named_values_print(stdout, figure->found);
     else if (format == FORMAT_SVG)
         status = map_figure_draw(figure, stdout, err);
@@ -68,6 +79,24 @@ static int print(int format, const struct map_figure *figure, struct error *err)
     if (status == 0 && (fflush(stdout) != 0 || ferror(stdout) != 0))
         status = error_set(err, ERROR_SYSTEM, "cannot write to standard output");
     return status;
+}
+
+/* Leaves what --group names. */
+static int keep_groups(struct named_values *found, const char *groups, struct error *err) {
+    const char *unknown;
+    size_t length;
+    if (groups == NULL || named_values_keep(found, groups, &unknown, &length))
+        return 0;
+    return error_set(err, ERROR_INPUT,
+                     "--group %.60s: there is no group '%.*s'; without --group the last lines name "
+                     "those of the map",
+                     groups, length < 40 ? (int)length : 40, unknown);
+}
+
+static int check_group(const struct characterise_options *options, struct error *err) {
+    if (options->group == NULL || (options->format <= FORMAT_JSON && !options->all))
+        return 0;
+    return error_set(err, ERROR_INPUT, "--group goes with --format text or json, and not --all");
 }
 
 static int draw(const char *path, const char *name, const struct height_map *map,
@@ -220,6 +249,8 @@ static int run(const void *values, const char *const *arguments) {
     struct preparation_record record = {0};
     int status = check_report(options->report, &err);
     if (status == 0)
+        status = check_group(options, &err);
+    if (status == 0)
         status = check_planes(options, &err);
     if (status == 0)
         status = map_options_read(&map, &record, arguments[0], &options->map, &err);
@@ -236,7 +267,9 @@ static int run(const void *values, const char *const *arguments) {
     if (status == 0 && options->report != NULL)
         status = report(options->report, &figure, &err);
     if (status == 0)
-        status = print(options->format, &figure, &err);
+        status = keep_groups(&found, options->group, &err);
+    if (status == 0)
+        status = print(options, &figure, &err);
     named_values_clear(&found);
     map_characterisation_clear(&measured);
     height_map_clear(&map);

@@ -64,3 +64,48 @@ const struct named_column *named_column_find(const struct named_values *values, 
             return &values->columns[c];
     return NULL;
 }
+
+static bool is_listed(const char *groups, const char *name) {
+    const size_t length = strlen(name);
+    for (const char *at = groups;; at += strcspn(at, ",") + 1) {
+        if (strcspn(at, ",") == length && strncmp(at, name, length) == 0)
+            return true;
+        if (at[strcspn(at, ",")] == '\0')
+            return false;
+    }
+}
+
+static bool has_group(const struct named_values *values, const char *name, size_t length) {
+    for (size_t n = 0; n < values->count; n++)
+        if (strlen(values->list[n].group) == length &&
+            strncmp(values->list[n].group, name, length) == 0)
+            return true;
+    for (size_t c = 0; c < values->column_count; c++)
+        if (strlen(values->columns[c].group) == length &&
+            strncmp(values->columns[c].group, name, length) == 0)
+            return true;
+    return false;
+}
+
+bool named_values_keep(struct named_values *values, const char *groups, const char **unknown,
+                       size_t *length) {
+    for (*unknown = groups;; *unknown += *length + 1) {
+        *length = strcspn(*unknown, ",");
+        if (!has_group(values, *unknown, *length))
+            return false;
+        if ((*unknown)[*length] == '\0')
+            break;
+    }
+    size_t count = 0, columns = 0;
+    for (size_t n = 0; n < values->count; n++)
+        if (is_listed(groups, values->list[n].group))
+            values->list[count++] = values->list[n];
+    for (size_t c = 0; c < values->column_count; c++)
+        if (is_listed(groups, values->columns[c].group))
+            values->columns[columns++] = values->columns[c];
+        else
+            free(values->columns[c].values);
+    values->count = count;
+    values->column_count = columns;
+    return true;
+}

@@ -44,8 +44,16 @@ void named_values_add_text(struct named_values *out, const char *group, const ch
 double *named_values_column_length(struct named_values *out, const char *group, const char *name,
                                    size_t count, int power);
 
+/* Leaves the groups of a list, "heights,areal", alone. On false, *unknown is the first name of the
+ * list that is none, and its length. */
+bool named_values_keep(struct named_values *values, const char *groups, const char **unknown,
+                       size_t *length);
+
 /* Prints one value a line, its name before it and where there is one its unit behind it, and of
- * long columns some rows. Lengths in metres are printed in the unit in which they are best read. */
+ * long columns some rows. Lengths in metres are printed in the unit in which they are best read.
+ * Values with a standard error or an interval are rounded to two digits of these; one that is
+ * rounding beside the others of its group with its unit, such as a mean that was taken out, is
+ * 0. */
 void named_values_print(FILE *file, const struct named_values *values);
 /* Prints {group: {name: value}}, and arrays of values for columns, null for NaN. Returns false when
  * out of memory. */

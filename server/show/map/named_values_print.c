@@ -64,8 +64,8 @@ static double column_unit(const struct named_column *columns, size_t count, size
     return readable_unit(size, columns[c].power, text);
 }
 
-/* The unit of entry n: that of the largest of its group that have such units. */
-static double entry_unit(const struct named_values *values, size_t n, char text[24]) {
+/* The largest of the group of entry n that have its unit. */
+static double largest_beside(const struct named_values *values, size_t n) {
     const struct named_value *entry = &values->list[n];
     double most = 0;
     for (size_t e = 0; e < values->count; e++) {
@@ -74,7 +74,70 @@ static double entry_unit(const struct named_values *values, size_t n, char text[
             fabs(other->value) > most)
             most = fabs(other->value);
     }
-    return readable_unit(most, entry->power, text);
+    return most;
+}
+
+/* Returns the entry of this group and name; NULL where there is none. */
+static const struct named_value *entry_of(const struct named_values *values, const char *group,
+                                          const char *name, size_t length, const char *ending) {
+    for (size_t e = 0; e < values->count; e++) {
+        const struct named_value *entry = &values->list[e];
+        if (strcmp(entry->group, group) == 0 && strncmp(entry->name, name, length) == 0 &&
+            strcmp(entry->name + length, ending) == 0)
+            return entry;
+    }
+    return NULL;
+}
+
+/* Returns the value of which a name is the error or an end of the interval; its own otherwise. */
+static size_t length_of_owner(const struct named_values *values, const char *group,
+                              const char *name) {
+    static const char *const ENDINGS[] = {"_error", "_low", "_high"};
+    const size_t length = strlen(name);
+    for (size_t e = 0; e < sizeof ENDINGS / sizeof *ENDINGS; e++) {
+        const size_t ending = strlen(ENDINGS[e]);
+        if (length > ending && strcmp(name + length - ending, ENDINGS[e]) == 0 &&
+            entry_of(values, group, name, length - ending, "") != NULL)
+            return length - ending;
+    }
+    return length;
+}
+
+static double value_beside(const struct named_values *values, const char *group, const char *name,
+                           size_t length, const char *ending) {
+    const struct named_value *entry = entry_of(values, group, name, length, ending);
+    return entry != NULL ? entry->value : (double)NAN;
+}
+
+/* Returns the standard error of entry n, or half the interval around it; NaN where none is known.
+ * Errors and ends of intervals have that of their value. */
+static double error_of_entry(const struct named_values *values, size_t n) {
+    const char *group = values->list[n].group, *name = values->list[n].name;
+    const size_t length = length_of_owner(values, group, name);
+    const double error = value_beside(values, group, name, length, "_error");
+    const double low = value_beside(values, group, name, length, "_low");
+    const double high = value_beside(values, group, name, length, "_high");
+    return isfinite(error) ? error : (high - low) / 2;
+}
+
+/* Prints a value, in the unit it is printed in, to two digits of its error in that unit, or to six
+ * digits. Beside `largest` what is rounding is 0; that is not known of numbers without a unit. */
+static void print_rounded(FILE *file, double value, double error, double largest) {
+    static const double ROUNDING = 1e-13, SMALL = 1e-4, LARGE = 1e5;
+    const bool has_error = error > 0 && isfinite(error);
+    const int decimals = has_error ? 1 - (int)floor(log10(error)) : 0;
+    if (fabs(value) < ROUNDING * largest)
+        fputs("0", file);
+    else if (!has_error)
+        fprintf(file, value == floor(value) ? "%.10g" : "%.6g", value);
+    else if (decimals > 9 || (value != 0 && fabs(value) < SMALL))
+        fprintf(file, "%.4g", value);
+    else if (decimals >= 0)
+        fprintf(file, "%.*f", decimals, value);
+    else if (error < LARGE)
+        fprintf(file, "%.0f", round(value * pow(10, decimals)) * pow(10, -decimals));
+    else
+        fprintf(file, "%.*g", (int)fmax(2, 2 + floor(log10(fabs(value) / error))), value);
 }
 
 enum { ROWS_SHOWN = 20, COLUMNS_SHOWN = NAMED_COLUMNS_MOST };
@@ -129,13 +192,14 @@ static void entry_print(FILE *file, const struct named_values *values, size_t n,
     fprintf(file, "  %-*s ", width, entry->name);
     if (entry->text != NULL)
         fprintf(file, "%s\n", entry->text);
-    else if (isfinite(entry->value) && values->in_metres && entry->power != 0) {
-        char unit[24];
-        double one = entry_unit(values, n, unit);
-        fprintf(file, "%.10g %s\n", entry->value / one, unit);
-    } else if (isfinite(entry->value))
-        fprintf(file, "%.10g\n", entry->value);
-    else
+    else if (isfinite(entry->value)) {
+        const bool has_unit = values->in_metres && entry->power != 0;
+        const double most = entry->power != 0 ? largest_beside(values, n) : 0;
+        char unit[24] = "";
+        const double one = has_unit ? readable_unit(most, entry->power, unit) : 1;
+        print_rounded(file, entry->value / one, error_of_entry(values, n) / one, most / one);
+        fprintf(file, "%s%s\n", has_unit ? " " : "", unit);
+    } else
         fprintf(file, "-\n");
 }
 

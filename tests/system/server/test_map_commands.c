@@ -147,17 +147,19 @@ static void a_measured_map_does_not_repeat(void **state) {
     assert_true(contains("map0.json", "\"detrend\":\"plane\",\"trend_height\":73."));
     assert_true(contains("map0.json", "\"acf\":{\"lag\":[0,1,2,"));
     assert_int_equal(
-        run_shell("$RUGO characterise map1.csv && grep -q 'holes *0.0005' shell.out && grep -q "
-                  "'boundary_by *holes' shell.out"),
+        run_shell(
+            "$RUGO characterise map1.csv --all && grep -q 'holes *0.0005' shell.out && grep -q "
+            "'boundary_by *holes' shell.out"),
         0);
     assert_int_equal(
-        run_shell("$RUGO characterise map0.csv --boundary periodic --detrend mean && grep -q "
+        run_shell("$RUGO characterise map0.csv --boundary periodic --detrend mean --all && grep -q "
                   "'^spectral' shell.out"),
         0);
-    assert_int_equal(run_shell("$RUGO characterise map1.csv --picture map1.svg && grep -q '^map' "
-                               "shell.out && grep -q 'map1.csv: open' map1.svg && grep -q summit "
-                               "map1.svg"),
-                     0);
+    assert_int_equal(
+        run_shell("$RUGO characterise map1.csv --picture map1.svg --all && grep -q '^map' "
+                  "shell.out && grep -q 'map1.csv: open' map1.svg && grep -q summit "
+                  "map1.svg"),
+        0);
     assert_int_equal(run_shell("$RUGO characterise map0.csv --picture none/map.svg"), 1);
     assert_true(contains("shell.err", "cannot open none/map.svg"));
     assert_int_equal(run_shell("$RUGO characterise map1.csv --boundary periodic"), 2);
@@ -180,11 +182,11 @@ static void lengths_have_units(void **state) {
             "0.1 * i + cos(i * 0.7) * cos(j * 0.6), i < 49 ? 44 : 10 }' > bare.csv"),
         0);
     assert_int_equal(
-        run_shell("$RUGO characterise bare.csv && ! grep -q m^2 shell.out && grep -q '^  "
+        run_shell("$RUGO characterise bare.csv --all && ! grep -q m^2 shell.out && grep -q '^  "
                   "dx  *1$' shell.out"),
         0);
     assert_int_equal(
-        run_shell("$RUGO characterise bare.csv --dx 0.5um --z-unit 10nm && grep -q '^  dx "
+        run_shell("$RUGO characterise bare.csv --dx 0.5um --z-unit 10nm --all && grep -q '^  dx "
                   " *500 nm$' shell.out && grep -q '^  m0 .* nm^2$' shell.out && grep -q "
                   "'^  rms_slope  *[0-9.]*$' shell.out && grep -q 'density\\[' shell.out"),
         0);
@@ -256,6 +258,30 @@ static void a_map_is_converted(void **state) {
 }
 
 /* A sphere's map with units: Hertz's radius of 32 um needs 10.0825 N on a radius of 1 mm. */
+/* One screen unless more is asked for; groups as text and as JSON; other groups are refused. */
+static void groups_are_printed(void **state) {
+    (void)state;
+    assert_int_equal(run_shell("$RUGO generate -o g.npy one.json >/dev/null && $RUGO characterise "
+                               "g.npy && test $(wc -l <shell.out) -le 45 && ! grep -q '^heights$' "
+                               "shell.out"),
+                     0);
+    assert_true(contains("shell.out", "more: --all, --format json, or --group of preparation"));
+    assert_int_equal(run_shell("$RUGO characterise g.npy --group acf,heights >g.txt && "
+                               "grep '^[a-z_]*$' g.txt"),
+                     0);
+    char *names = slurp("shell.out");
+    assert_string_equal(names, "heights\nacf\n");
+    free(names);
+    assert_int_equal(run_shell("$RUGO characterise g.npy --group grid --format json"), 0);
+    assert_true(contains("shell.out", "{\"grid\":{\"nx\":"));
+    assert_false(contains("shell.out", "heights"));
+    assert_int_equal(run_shell("$RUGO characterise g.npy --group height"), 2);
+    assert_true(contains("shell.err", "--group height: there is no group 'height'"));
+    assert_int_equal(run_shell("$RUGO characterise g.npy --group grid --all"), 2);
+    assert_int_equal(run_shell("$RUGO characterise g.npy --group grid --format svg"), 2);
+    assert_true(contains("shell.err", "--group goes with --format text or json"));
+}
+
 /* A profilometer's columns are a trace to every command, packed or not; what is made of them is in
  * the record. Columns that can be a map too are asked back, in a study as well. */
 static void columns_are_a_trace(void **state) {
@@ -438,6 +464,7 @@ int main(void) {
         cmocka_unit_test(lengths_have_units),
         cmocka_unit_test(a_map_is_converted),
         cmocka_unit_test(columns_are_a_trace),
+        cmocka_unit_test(groups_are_printed),
         cmocka_unit_test(a_measured_map_is_pressed_in_units),
         cmocka_unit_test(threads_give_the_same_digits),
         cmocka_unit_test(steps_and_ranges_are_written),

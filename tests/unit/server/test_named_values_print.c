@@ -27,8 +27,8 @@ static void values_under_each_other(void **state) {
     assert_string_equal(text, "short\n"
                               "  count              3\n"
                               "long\n"
-                              "  curvature_mean       0.2 1/\xc2\xb5m\n"
-                              "  curvature_mean_error 0.05 1/\xc2\xb5m\n"
+                              "  curvature_mean       0.200 1/\xc2\xb5m\n"
+                              "  curvature_mean_error 0.050 1/\xc2\xb5m\n"
                               "  by                   summits\n"
                               "  nothing              -\n");
     free(text);
@@ -74,11 +74,76 @@ static void infinite_values_are_none(void **state) {
     named_values_clear(&found);
 }
 
+/* Two digits of the error, or of half the interval, show how well a value is known. */
+static void values_are_rounded_to_errors(void **state) {
+    (void)state;
+    struct named_values found = {0};
+    named_values_add_length(&found, "heights", "mean", -1.7e-15, 1); /* taken out */
+    named_values_add_length(&found, "heights", "rms", 128.595011, 1);
+    named_values_add_length(&found, "heights", "rms_error", 2.246538, 1);
+    named_values_add(&found, "heights", "skewness", 0.9565817917);
+    named_values_add(&found, "heights", "skewness_error", 0.0414787);
+    named_values_add(&found, "fit", "hurst", 0.6930700654);
+    named_values_add(&found, "fit", "hurst_low", 0.6159386475);
+    named_values_add(&found, "fit", "hurst_high", 0.7754065923);
+    named_values_add(&found, "fit", "amplitude", 172665774.6);
+    named_values_add(&found, "fit", "amplitude_error", 9123445.1);
+    named_values_add(&found, "fit", "m0", 16536.67685);
+    named_values_add(&found, "fit", "m0_error", 577.787);
+    named_values_add(&found, "fit", "p_value", 2.924107827e-14);
+    named_values_add(&found, "fit", "slope_x", 1.23456e-5);
+    named_values_add(&found, "fit", "slope_x_error", 1e-9);
+    named_values_add(&found, "fit", "count", 1048576);
+    named_values_add(&found, "fit", "nothing", 0);
+    named_values_add(&found, "fit", "nothing_error", 0.1);
+    char *text = print(&found);
+    assert_string_equal(text, "heights\n"
+                              "  mean               0\n"
+                              "  rms                128.6\n"
+                              "  rms_error          2.2\n"
+                              "  skewness           0.957\n"
+                              "  skewness_error     0.041\n"
+                              "fit\n"
+                              "  hurst              0.693\n"
+                              "  hurst_low          0.616\n"
+                              "  hurst_high         0.775\n"
+                              "  amplitude          1.73e+08\n"
+                              "  amplitude_error    9.1e+06\n"
+                              "  m0                 16540\n"
+                              "  m0_error           580\n"
+                              "  p_value            2.92411e-14\n"
+                              "  slope_x            1.235e-05\n"
+                              "  slope_x_error      1e-09\n"
+                              "  count              1048576\n"
+                              "  nothing            0.00\n"
+                              "  nothing_error      0.10\n");
+    free(text);
+}
+
+static void groups_are_kept(void **state) {
+    (void)state;
+    struct named_values found = {0};
+    const char *unknown;
+    size_t length;
+    named_values_add(&found, "heights", "rms", 1);
+    named_values_add(&found, "height", "rms", 2);
+    fill_column(&found, "length", 3, 1); /* of scales */
+    assert_false(named_values_keep(&found, "heights,scale", &unknown, &length));
+    assert_true(length == 5 && strncmp(unknown, "scale", 5) == 0);
+    assert_false(named_values_keep(&found, "heights,", &unknown, &length));
+    assert_false(named_values_keep(&found, "", &unknown, &length));
+    assert_true(named_values_keep(&found, "scales,heights", &unknown, &length));
+    assert_true(found.count == 1 && found.column_count == 1 && found.list[0].value == 1);
+    assert_true(named_values_keep(&found, "heights", &unknown, &length));
+    assert_int_equal(found.column_count, 0);
+    named_values_clear(&found);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(values_under_each_other),
-        cmocka_unit_test(columns_share_units),
-        cmocka_unit_test(infinite_values_are_none),
+        cmocka_unit_test(values_under_each_other),  cmocka_unit_test(columns_share_units),
+        cmocka_unit_test(infinite_values_are_none), cmocka_unit_test(values_are_rounded_to_errors),
+        cmocka_unit_test(groups_are_kept),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

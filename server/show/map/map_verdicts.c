@@ -1,0 +1,145 @@
+#include "server/show/map/map_verdicts.h"
+#include "server/show/map/map_figure_internal.h"
+#include "server/show/plot/plot_words.h"
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+/* SURE: a p-value below it says that something differs; of three tests of a map without faults one
+ * is below it in 3 % of the maps. FITS: one above it goes with a law. SPIKY: kurtosis of heights of
+ * which single ones lie far from the rest; an exponential distribution has 9. */
+static const double SURE = 0.01, FITS = 0.05, SPIKY = 10;
+
+struct verdicts {
+    char (*out)[VERDICT_SIZE];
+    size_t count;
+};
+
+__attribute__((format(printf, 2, 3))) static void say(struct verdicts *verdicts, const char *format,
+                                                      ...) {
+    va_list arguments;
+    if (verdicts->count == VERDICTS_MOST)
+        return;
+    va_start(arguments, format);
+    vsnprintf(verdicts->out[verdicts->count++], VERDICT_SIZE, format, arguments);
+    va_end(arguments);
+}
+
+static void judge_errors(struct verdicts *verdicts, const struct named_values *found) {
+    static const char GROUP[] = "uncertainty", NONE[] = "none: ";
+    const char *errors = named_text(found, GROUP, "errors");
+    const double lengths = named_number(found, GROUP, "lengths_inside");
+    if (errors == NULL)
+        return;
+    if (strncmp(errors, NONE, strlen(NONE)) == 0)
+        say(verdicts, "Errors: none are known: %s.", errors + strlen(NONE));
+    else
+        say(verdicts,
+            "Errors: +- one standard error of a patch %.3g correlation lengths wide, of which a 95 "
+            "%% "
+            "interval has %.3g; [ ] a 95 %% interval.",
+            lengths, named_number(found, GROUP, "factor_95"));
+}
+
+/* The deviance per degree of freedom of a law that holds is 1 with a variance of 2/freedom
+ * (FORMULAS.md, F18.15). */
+static void judge_law(struct verdicts *verdicts, const struct named_values *found) {
+    static const char GROUP[] = "spectrum_fit";
+    const double deviance = named_number(found, GROUP, "deviance");
+    const double freedom = named_number(found, GROUP, "freedom");
+    if (!isfinite(deviance))
+        say(verdicts, "Spectrum: no self-affine law is fitted.");
+    else if (deviance <= 1 + 2 * sqrt(2 / freedom))
+        say(verdicts, "Spectrum: the self-affine law holds (deviance %.2g).", deviance);
+    else
+        say(verdicts,
+            "Spectrum: the self-affine law does not hold (deviance %.2g, about 1 where it does); "
+            "its "
+            "intervals are widened.",
+            deviance);
+}
+
+static void judge_short_waves(struct verdicts *verdicts, const struct map_figure *figure) {
+    static const char GROUP[] = "spectrum_fit";
+    const struct figure_units units = figure_units_of(figure);
+    const char *by = named_text(figure->found, GROUP, "trusted_to_by");
+    const double length = named_number(figure->found, GROUP, "trusted_to") / units.x;
+    const char *gap = *units.x_name != '\0' ? " " : "";
+    if (by == NULL || !isfinite(length))
+        return;
+    if (strcmp(by, SPECTRUM_END_NAMES[SPECTRUM_END_NOISE]) == 0)
+        say(verdicts,
+            "Short waves: below %.3g%s%s they are noise, which slopes, curvatures and summits have "
+            "in "
+            "them; --filter S=LENGTH takes it out.",
+            length, gap, units.x_name);
+    else if (strcmp(by, SPECTRUM_END_NAMES[SPECTRUM_END_LOW_PASS]) == 0)
+        say(verdicts,
+            "Short waves: below %.3g%s%s they fall off as in an instrument that does not transmit "
+            "them; slopes, curvatures and summits lack them.",
+            length, gap, units.x_name);
+    else if (strcmp(by, SPECTRUM_END_NAMES[SPECTRUM_END_CUTOFF]) == 0)
+        say(verdicts, "Short waves: the spectrum ends at %.3g%s%s.", length, gap, units.x_name);
+}
+
+static void judge_heights(struct verdicts *verdicts, const struct named_values *found) {
+    static const char GROUP[] = "height_fit";
+    const char *law = named_text(found, GROUP, "distribution");
+    const double p_value = named_number(found, GROUP, "p_value");
+    const double kurtosis = named_number(found, "heights", "kurtosis");
+    char name[64];
+    if (kurtosis > SPIKY)
+        say(verdicts,
+            "Heights: kurtosis %.3g, 3 of Gaussian ones: single points lie far from the rest, as "
+            "spikes do.",
+            kurtosis);
+    if (law == NULL)
+        return;
+    plot_in_words(law, name, sizeof name);
+    if (!isfinite(p_value))
+        say(verdicts, "Heights: nearest to %s; without errors there is no p-value.", name);
+    else if (p_value >= FITS)
+        say(verdicts, "Heights: %s holds (p-value %.2g).", name, p_value);
+    else
+        say(verdicts, "Heights: no law of one shape holds; the nearest is %s (p-value %.2g).", name,
+            p_value);
+}
+
+static void judge_directions(struct verdicts *verdicts, const struct named_values *found) {
+    static const char GROUP[] = "isotropy";
+    const double p_value = named_number(found, GROUP, "p_value");
+    if (!isfinite(p_value))
+        return;
+    if (p_value >= SURE)
+        say(verdicts, "Directions: none differs (p-value %.2g).", p_value);
+    else
+        say(verdicts,
+            "Directions: they differ (p-value %.2g): slopes by a factor of %.3g. The law of the "
+            "spectrum takes the map as isotropic, so that its intervals do not hold.",
+            p_value, named_number(found, GROUP, "slope_ratio"));
+}
+
+static void judge_parts(struct verdicts *verdicts, const struct named_values *found) {
+    const double p_value = named_number(found, "stationarity", "p_value");
+    if (!isfinite(p_value))
+        return;
+    if (p_value >= SURE)
+        say(verdicts, "Parts: none differs (p-value %.2g).", p_value);
+    else
+        say(verdicts,
+            "Parts: they differ (p-value %.2g), as with a form, a step or two kinds of surface; "
+            "see "
+            "--detrend quadratic and --crop.",
+            p_value);
+}
+
+size_t map_verdicts_list(char out[VERDICTS_MOST][VERDICT_SIZE], const struct map_figure *figure) {
+    struct verdicts verdicts = {out, 0};
+    judge_errors(&verdicts, figure->found);
+    judge_law(&verdicts, figure->found);
+    judge_short_waves(&verdicts, figure);
+    judge_heights(&verdicts, figure->found);
+    judge_directions(&verdicts, figure->found);
+    judge_parts(&verdicts, figure->found);
+    return verdicts.count;
+}

@@ -1,0 +1,139 @@
+/* Protects: what `characterise` prints of a map is one screen, also where all that can be wrong
+ * with a map is wrong with it; its sentences follow from the values; and it has no mean of 1e-18.
+ */
+#include "server/show/map/map_report.h"
+#include "server/show/map/map_summary.h"
+#include "server/show/map/map_verdicts.h"
+#include "tests/support/check.h"
+#include "tests/support/noise.h"
+#include <stdlib.h>
+#include <string.h>
+
+enum { SIDE = 256, POINTS = SIDE * SIDE, LINES_MOST = 45, LINE_WIDTH = 120 };
+
+static double z[POINTS];
+static struct map_characterisation measured;
+static struct named_values found;
+
+/* Characterises the heights; the caller frees the text. */
+static char *summary_of(const struct preparation_record *record) {
+    const struct height_map map = {
+        .grid = {SIDE, SIDE, 128e-6, 128e-6}, .z = z, .xy_unit = "m", .z_unit = "m"};
+    const struct map_figure figure = {&measured, &found, &map, record};
+    struct error err = {0};
+    char *text = NULL;
+    size_t size = 0;
+    if (map_characterise(&measured, &map, record, &(struct spectrum_fit_request){0}, &err) != 0 ||
+        map_report_fill(&found, &measured, &map, record, &err) != 0)
+        fail_msg("%s", err.text);
+    FILE *file = open_memstream(&text, &size);
+    assert_non_null(file);
+    map_summary_print(file, &figure);
+    assert_int_equal(fclose(file), 0);
+    named_values_clear(&found);
+    map_characterisation_clear(&measured);
+    return text;
+}
+
+static void check_screen(const char *text) {
+    size_t lines = 0;
+    for (const char *at = text; *at != '\0'; at++, lines++) {
+        const size_t width = strcspn(at, "\n");
+        if (width > LINE_WIDTH)
+            fail_msg("%zu bytes: %.*s", width, (int)width, at);
+        at += width;
+    }
+    if (lines > LINES_MOST)
+        fail_msg("%zu lines: %s", lines, text);
+}
+
+static void expect(const char *text, const char *const *words) {
+    for (; *words != NULL; words++)
+        if (strstr(text, *words) == NULL)
+            fail_msg("no '%s' in %s", *words, text);
+}
+
+/* Heights of a known mean of rounding, correlated over a few points by sums of neighbours. */
+static void fill_smooth(uint64_t seed, double along_x) {
+    static double white[POINTS];
+    noise_fill(&seed, POINTS, white);
+    const int reach_x = (int)(3 * along_x), reach_y = 3;
+    for (int j = 0; j < SIDE; j++)
+        for (int i = 0; i < SIDE; i++) {
+            double sum = 0;
+            for (int b = -reach_y; b <= reach_y; b++)
+                for (int a = -reach_x; a <= reach_x; a++)
+                    sum += white[(j + b + SIDE) % SIDE * SIDE + (i + a + SIDE) % SIDE] *
+                           (reach_x + 1 - abs(a)) * (reach_y + 1 - abs(b));
+            z[j * SIDE + i] = 1e-9 * sum;
+        }
+}
+
+static void a_clean_map_is_one_screen(void **state) {
+    (void)state;
+    struct preparation_record record = {
+        .boundary = BOUNDARY_PERIODIC, .boundary_by = "option", .window_power = 1};
+    preparation_note(&record, "file", "patch.x3p");
+    preparation_note(&record, "bytes", "114518");
+    preparation_note(&record, "format", "x3p");
+    fill_smooth(3, 1);
+    char *text = summary_of(&record);
+    check_screen(text);
+    expect(text, (const char *const[]){
+                     "patch.x3p: x3p, 114518 bytes\n256 by 256 points, 0.5 \xc2\xb5m apart, 128 by "
+                     "128 \xc2\xb5m; periodic; no holes\nprepared: as it was read\n",
+                     "RMS height Sq", " +- ", "Errors: +- one standard error",
+                     "Directions: none differs (p-value ", "Parts: none differs (p-value ",
+                     "Heights: Gaussian holds (p-value ",
+                     "more: --all, --format json, or --group of preparation map grid",
+                     " quantiles\n", NULL});
+    assert_null(strstr(text, "e-1")); /* neither a mean nor a p-value that is 0 but for rounding */
+    free(text);
+}
+
+/* Spikes, a lay, a form and a long history. */
+static void faults_fit_on_it_too(void **state) {
+    (void)state;
+    struct preparation_record record = {
+        .boundary = BOUNDARY_OPEN, .boundary_by = "option", .window_power = 1, .holes = 0.125};
+    const char *const names[] = {"file", "unpacked", "converted", "format", "columns",
+                                 "crop", "detrend",  "fill",      "filter", "resample"};
+    for (size_t n = 0; n < sizeof names / sizeof *names; n++)
+        preparation_note(&record, names[n], "%060d", 7);
+    fill_smooth(5, 3);
+    for (int n = 0; n < POINTS; n++)
+        z[n] *= n < POINTS / 2 ? 1 : 1.5;
+    for (int n = 0; n < 40; n++)
+        z[(997 * n) % POINTS] += 3e-6;
+    char *text = summary_of(&record);
+    check_screen(text);
+    expect(text, (const char *const[]){"; open; 12.5 % not measured\n", "Heights: kurtosis ",
+                                       "Directions: they differ (p-value ",
+                                       "so that its intervals do not hold",
+                                       "Parts: they differ (p-value ", NULL});
+    free(text);
+}
+
+/* A wave of the side of the map has no errors, which the sentences say. */
+static void what_is_unknown_is_said(void **state) {
+    (void)state;
+    const struct preparation_record record = {
+        .boundary = BOUNDARY_PERIODIC, .boundary_by = "option", .window_power = 1};
+    for (int n = 0; n < POINTS; n++)
+        z[n] = 1e-7 * cos(2 * M_PI * (n % SIDE) / SIDE);
+    char *text = summary_of(&record);
+    check_screen(text);
+    expect(text, (const char *const[]){"Errors: none are known: too few correlation lengths.",
+                                       "without errors there is no p-value", NULL});
+    assert_null(strstr(text, "Directions"));
+    free(text);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_clean_map_is_one_screen),
+        cmocka_unit_test(faults_fit_on_it_too),
+        cmocka_unit_test(what_is_unknown_is_said),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
