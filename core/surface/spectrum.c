@@ -123,6 +123,8 @@ static int self_affine_check(const struct spectrum *s, struct error *err) {
         return refuse(err, "hurst", s->hurst, "0 to 1");
     if (!(s->anisotropy >= 0 && isfinite(s->anisotropy)))
         return refuse(err, "anisotropy", s->anisotropy, "above 0, finite; 0 is as 1");
+    if (!isfinite(s->lay_angle))
+        return refuse(err, "angle of the lay", s->lay_angle, "finite, in radians");
     if (!is_length(s->wavelength_long))
         return refuse(err, "longest wavelength", s->wavelength_long, "above 0, finite");
     if (!is_length(s->wavelength_short) ||
@@ -174,14 +176,20 @@ static int spectrum_check(const struct spectrum *s, const struct grid *grid, str
 }
 
 static double density(const struct spectrum *s, bool profile, double kx, double ky) {
-    double x = s->anisotropy > 0 ? kx * s->anisotropy : kx;
-    double k = profile ? fabs(kx) : hypot(x, ky);
+    double along = kx, across = ky;
+    if (s->lay_angle != 0) {
+        along = kx * cos(s->lay_angle) + ky * sin(s->lay_angle);
+        across = ky * cos(s->lay_angle) - kx * sin(s->lay_angle);
+    }
+    double x = s->anisotropy > 0 ? along * s->anisotropy : along;
+    double k = profile ? fabs(kx) : hypot(x, across);
     double asked = spectrum_density(s, profile, k);
     return s->translation != NULL ? asked * translation_factor(s->translation, k) : asked;
 }
 
 /* Returns the highest wave number along a side of `length` with `points`: the band edge, or Nyquist
- * for a spectrum without one. anisotropy: of waves along this side. */
+ * for a spectrum without one. anisotropy: of the longest wave of the band's edge along this side.
+ */
 static int band_edge(const struct spectrum *s, double length, size_t points, double anisotropy,
                      size_t *mode, struct error *err) {
     size_t nyquist = points / 2;
@@ -201,9 +209,19 @@ static int band_edge(const struct spectrum *s, double length, size_t points, dou
     return 0;
 }
 
+/* Returns the density of a mode. One with as many waves as half of the points is also its mirror
+ * image, of which an oblique lay makes another. */
+static double mode_density(const struct grid *grid, const struct spectrum *s, size_t mx, long my) {
+    const bool profile = grid_is_profile(grid);
+    double kx = 2 * M_PI * (double)mx / grid->lx;
+    double ky = profile ? 0 : 2 * M_PI * (double)my / grid->ly;
+    bool twice = 2 * mx == grid->nx || 2 * (size_t)labs(my) == grid->ny;
+    double own = density(s, profile, kx, ky);
+    return twice && s->lay_angle != 0 ? (own + density(s, profile, kx, -ky)) / 2 : own;
+}
+
 static void modes_fill(struct modes *modes, const struct spectrum *s) {
     const struct grid *grid = &modes->grid;
-    bool profile = grid_is_profile(grid);
     long mode_y = (long)modes->mode_y;
     double *power = modes->power;
     for (size_t mx = 0; mx <= modes->mode_x; mx++)
@@ -211,9 +229,7 @@ static void modes_fill(struct modes *modes, const struct spectrum *s) {
             bool twin = my < 0 && 2 * (size_t)-my == grid->ny;
             if ((mx == 0 && my == 0) || twin)
                 continue;
-            double kx = 2 * M_PI * (double)mx / grid->lx;
-            double ky = profile ? 0 : 2 * M_PI * (double)my / grid->ly;
-            *power = density(s, profile, kx, ky);
+            *power = mode_density(grid, s, mx, my);
             if (*power > 0)
                 modes->count += modes_weight(grid, mx);
         }
@@ -253,6 +269,13 @@ static int modes_scale(struct modes *modes, const struct spectrum *s, struct err
     return 0;
 }
 
+/* Returns how many times as long the waves along a side are at least as the shortest of all, where
+ * this side has an angle to the lay. */
+static double shortest_along(const struct spectrum *s, double angle) {
+    double ratio = s->anisotropy > 0 ? s->anisotropy : 1;
+    return angle == 0 ? ratio : 1 / hypot(cos(angle) / ratio, sin(angle));
+}
+
 /* Makes the modes of the first face. */
 static int face_modes_create(struct modes **out, const struct spectrum *spectrum,
                              const struct grid *grid, struct error *err) {
@@ -265,11 +288,13 @@ static int face_modes_create(struct modes **out, const struct spectrum *spectrum
     if (modes == NULL)
         return error_memory(err, sizeof *modes, "a discrete spectrum");
     modes->grid = *grid;
-    bool anisotropic = spectrum->anisotropy > 0 && !grid_is_profile(grid);
-    status = band_edge(spectrum, grid->lx, grid->nx, anisotropic ? spectrum->anisotropy : 1,
-                       &modes->mode_x, err);
-    if (status == 0 && !grid_is_profile(grid))
-        status = band_edge(spectrum, grid->ly, grid->ny, 1, &modes->mode_y, err);
+    double along_x = grid_is_profile(grid) ? 1 : shortest_along(spectrum, spectrum->lay_angle);
+    status = band_edge(spectrum, grid->lx, grid->nx, along_x, &modes->mode_x, err);
+    if (status == 0 && !grid_is_profile(grid)) {
+        double along_y =
+            spectrum->lay_angle != 0 ? shortest_along(spectrum, M_PI / 2 - spectrum->lay_angle) : 1;
+        status = band_edge(spectrum, grid->ly, grid->ny, along_y, &modes->mode_y, err);
+    }
     if (status == 0) {
         size_t count = (modes->mode_x + 1) * (2 * modes->mode_y + 1);
         modes->power = array_create(count, sizeof *modes->power);

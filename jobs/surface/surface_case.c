@@ -269,15 +269,23 @@ static bool band_has_mode(const struct surface_case *surface) {
 static void read_anisotropy(struct surface_case *out, struct values *values) {
     static const char path[] = "/surface/anisotropy";
     double anisotropy = values_number(values, path);
+    double degrees = values_number(values, "/surface/lay_angle");
     out->spectrum.anisotropy = anisotropy;
     if (!(anisotropy > 1))
-        return;
+        return; /* no direction has longer waves, whatever the angle */
+    out->spectrum.lay_angle = degrees * M_PI / 180;
     if (out->dimension == 1)
         values_fault(values, path, "%g: profiles have one direction", anisotropy);
     if (out->spectrum.type == SPECTRUM_SELF_AFFINE &&
         anisotropy > out->length_ratio * (1 + ROUNDING))
         values_fault(values, path, "%g is more than length_ratio, %g: no longest wave fits along x",
                      anisotropy, out->length_ratio);
+    else if (out->spectrum.type == SPECTRUM_SELF_AFFINE && degrees != 0 &&
+             anisotropy > out->length_ratio_y * (1 + ROUNDING))
+        values_fault(
+            values, path,
+            "%g is more than length_ratio_y, %g: no longest wave fits along an oblique lay",
+            anisotropy, out->length_ratio_y);
     if (!isnan(values_number(values, "/surface/nayak_alpha")))
         values_fault(values, path,
                      "%g: nayak_alpha is of isotropic surfaces; give wavelength_ratio", anisotropy);

@@ -76,6 +76,17 @@
      .example_json = "[1, 4]",
      .help = "of self-affine surfaces and tables: all waves are so many times as long along x, "
              "lambda_l, lambda_s and wave numbers of tables being those along y"},
+    {.path = FACE "/lay_angle",
+     .later = true,
+     .type = PARAMETER_NUMBER,
+     .minimum = -90,
+     .maximum = 90,
+     .unit = "degrees",
+     .sweep = true,
+     .default_json = USUAL("0"),
+     .example_json = "30",
+     .help = "with anisotropy: from x to the lay, the direction of the long waves, "
+             "counter-clockwise; the cell stays"},
 #ifndef COUNTER_FACE
     {.path = FACE "/length_ratio",
      .later = SECOND,

@@ -3,6 +3,7 @@
 #include "core/surface/spectrum.h"
 #include "tests/support/check.h"
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static struct spectrum self_affine(double hurst, double ratio) {
@@ -366,6 +367,53 @@ static void anisotropic_spectrum(void **state) {
     modes_destroy(&isotropic);
 }
 
+/* Turned by a right angle the powers are those of swapped waves, turned back those of a mirror;
+ * slopes are steepest across the lay, as a cell of eight of the longest waves along it has it.
+ * Waves as short as two points are their own mirror images, of one power. */
+static void oblique_spectrum(void **state) {
+    (void)state;
+    struct grid grid = {256, 256, 32, 32}, coarse = {64, 64, 32, 32};
+    struct spectrum spectrum = self_affine(0.7, 4);
+    struct modes *along = NULL, *turned = NULL, *back = NULL;
+    struct moments moments;
+    struct error err = {0};
+    spectrum.anisotropy = 2;
+    assert_int_equal(modes_create(&along, &spectrum, &grid, NULL), 0);
+    spectrum.lay_angle = M_PI / 2;
+    assert_int_equal(modes_create(&turned, &spectrum, &grid, NULL), 0);
+    assert_true(turned->mode_x == along->mode_y && turned->mode_y == along->mode_x);
+    for (size_t mx = 0; mx <= 16; mx++)
+        for (long my = -16; my <= 16; my++)
+            check_close(modes_power(turned, mx, my),
+                        modes_power(along, (size_t)labs(my), my < 0 ? -(long)mx : (long)mx), 1e-15);
+    modes_destroy(&turned);
+    for (int degrees = 10; degrees < 90; degrees += 20) {
+        spectrum.lay_angle = degrees * M_PI / 180;
+        assert_int_equal(modes_create(&turned, &spectrum, &grid, NULL), 0);
+        modes_moments(turned, &moments);
+        check_close(atan2(-2 * moments.m11, moments.m02 - moments.m20) * 90 / M_PI, degrees, 1);
+        spectrum.lay_angle *= -1;
+        assert_int_equal(modes_create(&back, &spectrum, &grid, NULL), 0);
+        for (long my = -18; my <= 18; my++)
+            check_close(modes_power(back, 7, my), modes_power(turned, 7, -my), 1e-15);
+        modes_destroy(&back);
+        modes_destroy(&turned);
+    }
+    spectrum.lay_angle = 0.5;
+    assert_int_equal(modes_create(&turned, &spectrum, &coarse, NULL), 0);
+    assert_true(turned->mode_y < 32 && turned->mode_x < 32);
+    spectrum.wavelength_short = 0.9;
+    assert_int_equal(modes_create(&back, &spectrum, &coarse, NULL), 0);
+    assert_int_equal(back->mode_y, 32);
+    assert_true(modes_power(back, 12, 32) > 0);
+    spectrum.lay_angle = NAN;
+    modes_destroy(&turned);
+    assert_int_equal(modes_create(&turned, &spectrum, &grid, &err), ERROR_INPUT);
+    assert_non_null(strstr(err.text, "angle of the lay = nan"));
+    modes_destroy(&back);
+    modes_destroy(&along);
+}
+
 static void table_spectrum(void **state) {
     (void)state;
     const double k[] = {0.5, 1, 4}, density[] = {4, 2, 2.0 / 64};
@@ -453,6 +501,7 @@ int main(void) {
         cmocka_unit_test(exponential_spectrum),
         cmocka_unit_test(short_cells_are_clipped),
         cmocka_unit_test(anisotropic_spectrum),
+        cmocka_unit_test(oblique_spectrum),
         cmocka_unit_test(table_spectrum),
         cmocka_unit_test(scale_by_slope),
         cmocka_unit_test(units_do_not_matter),
