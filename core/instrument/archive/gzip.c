@@ -1,3 +1,4 @@
+#define ZLIB_CONST /* what is unpacked is not changed */
 #include "core/instrument/archive/gzip.h"
 #include <stdint.h>
 #include <stdlib.h>
@@ -23,7 +24,7 @@ static uInt part_of(size_t left) {
 
 /* Returns whether the bytes unpack to `room` others and end there. */
 static int unpack(char *to, size_t room, const char *data, size_t size, bool *whole) {
-    z_stream stream = {.next_in = (z_const Bytef *)(uintptr_t)data};
+    z_stream stream = {.next_in = (const Bytef *)data};
     size_t used = 0;
     int state = inflateInit2(&stream, MAX_WBITS + GZIP_ALONE);
     if (state != Z_OK)

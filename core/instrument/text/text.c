@@ -308,14 +308,14 @@ static int choose_columns(enum instrument_columns *out, const struct text_block 
     bool matrix = false;
     for (int key = TEXT_COLUMNS; key <= TEXT_DY; key++)
         matrix = matrix || numbers[key].there;
-    if (block->columns.named)
+    const bool trace = block->columns.trace && block->columns.count == table->columns;
+    const bool list = table->columns == 3 && (points || block->header.x_unit[0] != '\0');
+    if (block->columns.named || (list && !trace && !matrix))
         *out = COLUMNS_XYZ;
-    else if (block->columns.trace && block->columns.count == table->columns)
+    else if (trace)
         *out = COLUMNS_XZ;
     else if (matrix)
         *out = COLUMNS_MAP;
-    else if (table->columns == 3 && (points || block->header.x_unit[0] != '\0'))
-        *out = COLUMNS_XYZ;
     else
         return columns_choose(out, &columns, err);
     return 0;

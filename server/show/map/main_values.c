@@ -89,7 +89,7 @@ static bool write_range(const struct list *list, const struct table_row *row, do
                         char out[MAIN_VALUE_SIZE]) {
     double high = named_number(list->found, row->group, row->other) /
                   figure_unit(&list->units, row->x_power, row->z_power);
-    snprintf(out, MAIN_VALUE_SIZE, "%.3g to %.3g", low, high);
+    snprintf(out, MAIN_VALUE_SIZE, high < 1000 ? "%.3g to %.3g" : "%.4g to %.4g", low, high);
     return high > low;
 }
 

@@ -25,6 +25,7 @@ static const struct {
     {"load", {"0.05", "0.2", "1"}, {"1e-300", "1e300", "nan", "inf", "-0.1", "0x1p-3", "0.1x"}},
     {"name", {"a.csv"}, {"a.x3p", "-x", "a", "../a.csv", "a\nb.csv", "\xff.csv"}},
     {"layer", {NULL}, {"1", "2", "Topography"}},
+    {"columns", {"auto", "map"}, {"xz", "xyz", "rows"}},
     {"dx", {"0.5um", "1um"}, {"1e300", "0", "-1um", "0.5", "1xx", "nan", "1e-300um"}},
     {"unit", {"um"}, {"nm", "m", "lightyear"}},
     {"z_unit", {"nm", "um", "m"}, {"kg"}},

@@ -226,13 +226,14 @@ static void studies_are_like_converted_files(void **state) {
 }
 
 static int post_file(unsigned port, char **answer) {
+    static const char FILE_BYTES[] = "AliconaImaging\0\r\nVersion";
     static const char HEAD[] =
         "POST /v1/characterise?name=patch.al3d HTTP/1.1\r\nHost: localhost\r\n"
         "Content-Type: application/octet-stream\r\nConnection: close\r\n"
         "Content-Length: 24\r\n\r\n";
-    char bytes[sizeof HEAD + 24];
+    char bytes[sizeof HEAD + sizeof FILE_BYTES];
     memcpy(bytes, HEAD, sizeof HEAD - 1);
-    memcpy(bytes + sizeof HEAD - 1, "AliconaImaging\0\r\nVersion", 24);
+    memcpy(bytes + sizeof HEAD - 1, FILE_BYTES, sizeof FILE_BYTES - 1);
     *answer = http_raw(port, bytes, sizeof HEAD - 1 + 24);
     return atoi(*answer + strlen("HTTP/1.1 "));
 }

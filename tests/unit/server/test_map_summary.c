@@ -79,10 +79,11 @@ static void a_clean_map_is_one_screen(void **state) {
     fill_smooth(3, 1);
     char *text = summary_of(&record);
     check_screen(text);
+    static const char HEAD[] =
+        "patch.x3p: x3p, 114518 bytes\n256 by 256 points, 0.5 \xc2\xb5m apart, 128 by 128 "
+        "\xc2\xb5m; periodic; no holes\nprepared: as it was read\n";
     expect(text, (const char *const[]){
-                     "patch.x3p: x3p, 114518 bytes\n256 by 256 points, 0.5 \xc2\xb5m apart, 128 by "
-                     "128 \xc2\xb5m; periodic; no holes\nprepared: as it was read\n",
-                     "RMS height Sq", " +- ", "Errors: +- one standard error",
+                     HEAD, "RMS height Sq", " +- ", "Errors: +- one standard error",
                      "Directions: none differs (p-value ", "Parts: none differs (p-value ",
                      "Heights: Gaussian holds (p-value ",
                      "more: --all, --format json, or --group of preparation map grid",
