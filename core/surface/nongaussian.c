@@ -85,7 +85,6 @@ static const double WIDER = 1.0 / 16;
 struct fast_step {
     const struct modes *modes;
     struct rank_table *table;
-    double *block;    /* ROWS x nx: ordered heights, then the next iterate */
     double low, high; /* range of the last keys */
 };
 
@@ -93,7 +92,6 @@ static void fast_step_destroy(struct fast_step **step) {
     if (*step == NULL)
         return;
     rank_table_destroy(&(*step)->table);
-    free((*step)->block);
     free(*step);
     *step = NULL;
 }
@@ -103,12 +101,8 @@ static int fast_step_create(struct fast_step **out, const struct modes *modes, s
     struct fast_step *step = array_create(1, sizeof *step);
     if (step == NULL)
         return error_memory(err, sizeof *step, "a step of generation");
-    size_t block = ROWS * modes->grid.nx;
     step->modes = modes;
-    step->block = array_create(block, sizeof *step->block);
-    int status = step->block != NULL
-                     ? rank_table_create(&step->table, grid_points(&modes->grid), err)
-                     : error_memory(err, block * sizeof *step->block, "rows");
+    int status = rank_table_create(&step->table, grid_points(&modes->grid), err);
     if (status != 0)
         fast_step_destroy(&step);
     *out = step;
@@ -116,8 +110,7 @@ static int fast_step_create(struct fast_step **out, const struct modes *modes, s
 }
 
 static double fast_step_bytes(const struct grid *grid) {
-    return sizeof(struct fast_step) + ROWS * sizeof(double) * (double)grid->nx +
-           rank_table_bytes(grid_points(grid));
+    return sizeof(struct fast_step) + rank_table_bytes(grid_points(grid));
 }
 
 /* Begins a run with this surface. */
@@ -191,13 +184,14 @@ static double fast_step_run(struct fast_step *step, struct transform *transform,
     rank_table_finish(step->table, sorted, &step->low, &step->high);
     for (size_t j = 0; j < ny; j += ROWS) {
         size_t rows = ny - j < ROWS ? ny - j : ROWS;
+        double *h = transform_strip(transform);
         for (size_t i = 0; i < rows * nx; i += POINTS) {
             size_t n = rows * nx - i < POINTS ? rows * nx - i : POINTS;
             const double *y = z + j * nx + i;
-            rank_table_order(step->table, n, y, step->block + i);
-            move_points(move, n, y, step->block + i, x + j * nx + i);
+            rank_table_order(step->table, n, y, h + i);
+            move_points(move, n, y, h + i, x + j * nx + i);
         }
-        transform_forward_rows(transform, j, rows, step->block);
+        transform_forward_strip(transform, j, rows);
     }
     transform_forward_columns(transform);
     return errors != NULL ? height_error_heights(errors) : (double)NAN;

@@ -242,6 +242,10 @@ double complex *transform_spectrum(struct transform *transform) {
     return transform->spectrum;
 }
 
+static double scale_of(const struct transform *t) {
+    return 1 / ((double)t->nx * (double)t->ny);
+}
+
 /* --- lines of a group of rows, on one thread's desk --- */
 
 /* Computes the lines of rows j .. j + rows - 1, at most a group, from the spectrum. */
@@ -347,6 +351,14 @@ double *transform_inverse_strip(struct transform *t, size_t first, size_t count)
     return t->desks->lines;
 }
 
+double *transform_strip(struct transform *t) {
+    return t->desks->lines;
+}
+
+void transform_forward_strip(struct transform *t, size_t first, size_t count) {
+    forward_lines(t, t->desks, first, count, scale_of(t));
+}
+
 void transform_inverse_rows(struct transform *t, size_t first, size_t count, double *z) {
     share_rows(&(struct field){t, first, count, t->nx, .out = z}, inverse_rows);
 }
@@ -374,10 +386,6 @@ void transform_pad(struct transform *from, struct transform *to) {
         column_pad(from->spectrum + mx * from->ny, from->ny, to->spectrum + mx * to->ny, to->ny,
                    from->mode_y, split ? 0.5 : 1);
     }
-}
-
-static double scale_of(const struct transform *t) {
-    return 1 / ((double)t->nx * (double)t->ny);
 }
 
 void transform_forward_rows(struct transform *t, size_t first, size_t count, const double *z) {

@@ -45,6 +45,10 @@ void transform_inverse_rows(struct transform *transform, size_t first, size_t co
  * caller may change until the plan is used again. */
 enum { TRANSFORM_ROWS = 8 };
 double *transform_inverse_strip(struct transform *transform, size_t first, size_t count);
+/* As transform_forward_rows, of at most TRANSFORM_ROWS rows that the caller has put into memory of
+ * the plan, which transform_strip() returns. */
+double *transform_strip(struct transform *transform);
+void transform_forward_strip(struct transform *transform, size_t first, size_t count);
 /* Copies the spectrum of `from` into that of `to`, which has the same band and another grid: zero
  * padding. A Nyquist mode of an even grid stands for two modes of a finer one, each of half its
  * amplitude. */
