@@ -121,7 +121,8 @@ static double clamp(double value, double low, double high) {
     return fmin(fmax(value, low), high);
 }
 
-/* Fills slope at p, of which the rings are as expected; a step is taken inwards where p is at its upper bound. */
+/* Fills slope at p, of which the rings are as expected; a step is taken inwards where p is at its
+ * upper bound. */
 static void differentiate(struct law_problem *problem, const struct law *law) {
     static const double STEP = 1e-4;
     size_t count = problem->leakage->count;

@@ -40,14 +40,14 @@ struct law_problem {
      * which hold leakage alone, do not count. */
     double floor;
     double low[LAW_PARAMETERS], high[LAW_PARAMETERS];
-    double *found;     /* per ring */
-    double *expected;  /* per ring */
-    double *density;   /* per node */
-    double *plain;     /* per node: without ends and blur, ... */
+    double *found;              /* per ring */
+    double *expected;           /* per ring */
+    double *density;            /* per node */
+    double *plain;              /* per node: without ends and blur, ... */
     double plain_of[LAW_PLAIN]; /* ... of these parameters */
-    double *logarithm; /* per node: of its wave number */
-    double *trial;     /* per ring: of a step that is tried */
-    double *slope;     /* LAW_PARAMETERS per ring: of the logarithm of what is expected */
+    double *logarithm;          /* per node: of its wave number */
+    double *trial;              /* per ring: of a step that is tried */
+    double *slope;              /* LAW_PARAMETERS per ring: of the logarithm of what is expected */
 };
 int law_problem_create(struct law_problem **out, const struct map_spectrum *spectrum, size_t first,
                        size_t last, double floor, struct error *err);
