@@ -157,10 +157,13 @@ void correlation_destroy(struct correlation **correlation) {
     *correlation = NULL;
 }
 
-/* Returns the index of a lag on the padded grid of n points. */
+/* Returns the index of a lag, at most a few points outside, on the padded grid of n points. */
 static size_t inside(long lag, long n) {
-    lag = lag < 0 || lag >= n ? lag % n : lag;
-    return (size_t)(lag < 0 ? lag + n : lag);
+    while (lag < 0)
+        lag += n;
+    while (lag >= n)
+        lag -= n;
+    return (size_t)lag;
 }
 
 /* Returns the row of the lag y, or that of -y, in which x has the other sign. */

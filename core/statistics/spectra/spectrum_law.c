@@ -77,7 +77,10 @@ static double density_at(const struct law_problem *problem, const double *p, dou
 /* Fills the plain densities, unless they are those of a law that differs only in ends, blur and
  * noise: their exponentials take most of the time of a trial. */
 static void plain_fill(struct law_problem *problem, const double *p) {
-    if (memcmp(problem->plain_of, p, sizeof problem->plain_of) == 0)
+    bool same = true;
+    for (size_t a = 0; a < LAW_PLAIN; a++)
+        same = same && problem->plain_of[a] == p[a];
+    if (same)
         return;
     for (size_t a = 0; a < problem->leakage->nodes; a++)
         problem->plain[a] = density_at(problem, p, problem->logarithm[a]);
