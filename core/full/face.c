@@ -19,6 +19,24 @@ double face_contact_stretch(const struct mesh *mesh, const double *u, const bool
     return corners > 0 ? sum_value(&now) / (double)corners : NAN;
 }
 
+bool face_folds(const struct mesh *mesh, const double *u) {
+    const struct level *face = &mesh->level[0];
+    for (size_t j = 0; j < face->ny; j++)
+        for (size_t i = 0; i < face->nx; i++)
+            if (mesh_stretch(mesh, u, j, i) <= 0)
+                return true;
+    return false;
+}
+
+double face_stretch_change(const struct mesh *mesh, const double *u, const double *before) {
+    const struct level *face = &mesh->level[0];
+    double most = 0;
+    for (size_t j = 0; j < face->ny; j++)
+        for (size_t i = 0; i < face->nx; i++)
+            most = fmax(most, fabs(mesh_stretch(mesh, u, j, i) - mesh_stretch(mesh, before, j, i)));
+    return most;
+}
+
 /* A cell of the face; values are by corner, in the order of element.h. Of profiles the second half
  * is 0. */
 struct cell {

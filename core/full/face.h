@@ -11,6 +11,15 @@
  * face); NaN where there are none. */
 double face_contact_stretch(const struct mesh *mesh, const double *u, const bool *active);
 
+/* Returns whether a cell of the face is turned away from the flat. The contact condition compares
+ * heights alone, so that the face could pass through itself there. */
+bool face_folds(const struct mesh *mesh, const double *u);
+/* Returns the largest change of the relative area of a cell between two states. */
+double face_stretch_change(const struct mesh *mesh, const double *u, const double *before);
+/* The largest such change that a step may make: beyond it the face may have folded on its course.
+ */
+#define FACE_CHANGE_MOST 0.25
+
 /* Returns the volume between the face and the flat over the area of the periodic cell, which is
  * exact for gaps that are bilinear between nodes. gap: by node of the face. u may be NULL: the
  * cells are undeformed. */

@@ -12,9 +12,6 @@ const struct full_options FULL_DEFAULTS = {.kinematics = KINEMATICS_HENCKY,
                                            .max_iterations = 60,
                                            .least_step = 1.0 / 256};
 
-/* The largest change of the relative area of a cell of the face in one load step. */
-static const double STRETCH_MOST = 0.25;
-
 /* All lengths in this file are in units of dx, the mesh's unit. */
 struct full {
     struct grid grid;
@@ -233,21 +230,9 @@ static void restore(struct full *f) {
     memcpy(f->newton.active, f->kept_active, f->mesh->face * sizeof *f->kept_active);
 }
 
-/* Returns the largest change of the relative area of a cell of the face since the last load that
- * converged. */
-static double stretch_change(const struct full *f) {
-    const struct mesh *m = f->mesh;
-    double most = 0;
-    for (size_t j = 0; j < m->level[0].ny; j++)
-        for (size_t i = 0; i < m->level[0].nx; i++)
-            most = fmax(most,
-                        fabs(mesh_stretch(m, f->newton.u, j, i) - mesh_stretch(m, f->kept, j, i)));
-    return most;
-}
-
-/* Takes one load step; *change is stretch_change after it, 0 where it failed. An equilibrium that
- * changed by more than STRETCH_MOST is refused, because the face may have reached it only by
- * folding. */
+/* Takes one load step; *change is face_stretch_change after it, 0 where it failed. An equilibrium
+ * that changed by more than FACE_CHANGE_MOST is refused, because the face may have reached it only
+ * by folding. */
 static int step_to(struct full *f, double load, double *change, struct newton_end *end,
                    struct full_report *report, struct error *err) {
     predict(f, load);
@@ -257,8 +242,8 @@ static int step_to(struct full *f, double load, double *change, struct newton_en
     report->factored += end->factored;
     report->changes += end->changes;
     report->cycles += end->cycles;
-    *change = status == 0 ? stretch_change(f) : 0;
-    if (*change > STRETCH_MOST)
+    *change = status == 0 ? face_stretch_change(f->mesh, f->newton.u, f->kept) : 0;
+    if (*change > FACE_CHANGE_MOST)
         status = error_set(err, ERROR_NUMERIC, "the face jumps, by %.2g of a cell", *change);
     if (status != 0)
         restore(f);
@@ -270,7 +255,7 @@ static int step_to(struct full *f, double load, double *change, struct newton_en
 }
 
 /* Goes from the last load to another, in one step or in smaller ones. Steps grow again once two in
- * a row have converged with changes below half of STRETCH_MOST. */
+ * a row have converged with changes below half of FACE_CHANGE_MOST. */
 static int raise_load(struct full *f, double goal, struct newton_end *end,
                       struct full_report *report, struct error *err) {
     double whole = goal - f->load, step = whole, change;
@@ -281,7 +266,7 @@ static int raise_load(struct full *f, double goal, struct newton_end *end,
         double next = step == goal - f->load ? goal : f->load + step;
         status = step_to(f, next, &change, end, report, err);
         if (status == 0) {
-            step *= cut || 2 * change > STRETCH_MOST ? 1 : 2;
+            step *= cut || 2 * change > FACE_CHANGE_MOST ? 1 : 2;
             cut = false;
             continue;
         }
@@ -395,6 +380,10 @@ int full_press(struct full *f, double pressure, struct contact_state *out,
     if (report != NULL)
         *report = full_report;
     return status;
+}
+
+const struct newton *full_newton(const struct full *f) {
+    return &f->newton;
 }
 
 const struct mesh *full_mesh(const struct full *f) {

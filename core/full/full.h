@@ -84,5 +84,8 @@ int full_press(struct full *full, double pressure, struct contact_state *out,
  * node is at node*dimension + k. Valid until the next call. */
 const struct mesh *full_mesh(const struct full *full);
 const double *full_displacement(struct full *full);
+/* The equilibrium of the last state (core/full/friction goes on from there). Valid until the next
+ * call. */
+const struct newton *full_newton(const struct full *full);
 
 #endif

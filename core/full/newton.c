@@ -283,17 +283,6 @@ static int newton_change(struct newton *n, double off, struct newton_end *end, s
     return (n->factored ? solve_factored : solve_iterated)(n, tolerance, end, err);
 }
 
-/* Returns whether a cell of the face is turned away from the flat. The contact condition compares
- * heights alone, so that the face could pass through itself there. */
-static bool face_folds(const struct newton *n) {
-    const struct level *face = &n->mesh->level[0];
-    for (size_t j = 0; j < face->ny; j++)
-        for (size_t i = 0; i < face->nx; i++)
-            if (mesh_stretch(n->mesh, n->u, j, i) <= 0)
-                return true;
-    return false;
-}
-
 /* Advances u by the longest of the step and its halves that neither folds the face nor inverts an
  * element. */
 static int advance(struct newton *n, struct error *err) {
@@ -304,7 +293,7 @@ static int advance(struct newton *n, struct error *err) {
     for (int halving = 0; halving < HALVINGS; halving++, length /= 2) {
         for (size_t f = 0; f < unknowns; f++)
             n->u[f] = n->before[f] + length * n->change[f];
-        folds = face_folds(n);
+        folds = face_folds(n->mesh, n->u);
         if (!folds && evaluate(n))
             return 0;
     }
