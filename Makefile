@@ -28,7 +28,7 @@ APT      = build-essential pkg-config libfftw3-dev libgsl-dev librandom123-dev l
            libsqlite3-dev libmicrohttpd-dev libcjson-dev libcurl4-openssl-dev libgnutls28-dev nettle-dev zlib1g-dev libpng-dev \
            libzip-dev libexpat1-dev libcmocka-dev
 # those without a pkg-config file
-HEADERS  = Random123/philox.h suitesparse/cholmod.h
+HEADERS  = Random123/philox.h suitesparse/cholmod.h suitesparse/umfpack.h
 
 MODE     = $(SAN)$(COV)$(DEBUG)
 LEVEL    = -O3
@@ -45,7 +45,7 @@ NEEDED   = $(LANGUAGE) -ffp-contract=off -fno-math-errno -fno-trapping-math -fPI
            $(TESTED) $(if $(SAN),-fno-omit-frame-pointer -fno-sanitize-recover=all)
 COMPILE  = $(CC) $(WARN) $(CPPFLAGS) $(CFLAGS) $(NEEDED)
 LINK     = $(CC) $(CFLAGS) $(LDFLAGS) -pthread $(TESTED)
-LIBS_library = -lcholmod -lfftw3 -lgsl -lgslcblas -lm
+LIBS_library = -lumfpack -lcholmod -lfftw3 -lgsl -lgslcblas -lm
 LIBS_core   = -lzip -lz -lexpat -lnettle $(LIBS_library)
 LIBS_schema = -lcjson -lsqlite3 $(LIBS_core)
 LIBS_jobs   = $(LIBS_schema)
@@ -142,7 +142,7 @@ $(BUILD)/rugo: $(call objects,$(MAIN)) $(BUILD)/commit.o $(call archive,$(BELOW_
 # The program without shared libraries, for machines that have none of them or older ones. Its libraries are made from
 # the distribution's sources where Debian has no archives of them (server/static/libraries).
 STATIC      = $(BUILD)/static
-LIBS_static = -lmicrohttpd -lpng -lcurl -lssl -lcrypto -lcjson -lsqlite3 -lcholmod -lamd -lcamd -lcolamd -lccolamd \
+LIBS_static = -lmicrohttpd -lpng -lcurl -lssl -lcrypto -lcjson -lsqlite3 -lumfpack -lcholmod -lamd -lcamd -lcolamd -lccolamd \
               -lsuitesparseconfig -lmetis -llapack -lblas -lgfortran -lquadmath -lgomp -lfftw3 -lgsl -lgslcblas -lgnutls \
               -ltasn1 -lhogweed -lnettle -lgmp -lunistring -lzip -lexpat -lz -lm
 static: static-deps
