@@ -6,6 +6,7 @@
 #include "core/contact/contact.h"
 #include "core/contact/patches.h"
 #include "core/full/file/mesh_vtu.h"
+#include "core/full/friction/friction.h"
 #include "core/full/full.h"
 #include "core/statistics/fit.h"
 #include "tests/support/failing/each_allocation.h"
@@ -150,6 +151,32 @@ static void full_model(void **state) {
                                                .may_succeed = cases[c].solver == SOLVER_FACTORED});
 }
 
+static int drag_solid(void *context, struct error *err) {
+    static const struct friction_options FRICTION = {.coefficient = 0.3, .press_steps = 1};
+    struct friction *friction = NULL;
+    struct friction_state state;
+    double z[POINTS];
+    (void)context;
+    heights(&LINE, 0.02, z);
+    int status = friction_create(&friction, &LINE, &MESHED, &FULL_DEFAULTS, &FRICTION, err);
+    if (status == 0)
+        status = friction_begin(friction, z, err);
+    if (status == 0)
+        status = friction_press(friction, 0.02, &state, err);
+    if (status == 0)
+        status = friction_load(friction, 0.003, &state, err);
+    if (status == 0)
+        check_close(state.traction, 0.003, 1e-10);
+    friction_destroy(&friction);
+    return status;
+}
+
+/* UMFPACK tries again with less memory. */
+static void friction(void **state) {
+    (void)state;
+    each_allocation(&(struct failing_call){.name = "friction", drag_solid, .may_succeed = true});
+}
+
 static int fit_all(void *context, struct error *err) {
     static const double LOAD[] = {0.01, 0.02, 0.03, 0.1}, FRACTION[] = {0.02, 0.04, 0.06, 0.2};
     struct fit fit;
@@ -171,6 +198,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(linear_models),
         cmocka_unit_test(full_model),
+        cmocka_unit_test(friction),
         cmocka_unit_test(fits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,432 @@
+#include "core/full/friction/friction.h"
+#include "core/full/face.h"
+#include "core/full/friction/friction_newton.h"
+#include "core/sum.h"
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What a step starts from. Lengths in this file are in units of dx, the mesh's unit. */
+struct point {
+    double *u;           /* unknowns of friction_newton */
+    double *traction;    /* by node of the face: force along it */
+    unsigned char *node; /* enum face_node */
+    double shear, flat, pressure;
+};
+
+struct friction {
+    struct full_options options;
+    double coefficient;
+    size_t press_steps;
+    size_t face;
+    struct full *full; /* owned, as all below: the contact without friction */
+    const struct mesh *mesh;
+    struct friction_newton newton;
+    struct point kept; /* of the last step that converged */
+    bool pressed;
+    double start_flat, start_sliding, start_far, start_energy; /* at the end of pressing */
+    double work, dissipation;                                  /* since then */
+    double *start;              /* by node of the face: displacement over the flat then */
+    double *p, *q, *gap, *slip; /* by node of the face: results */
+};
+
+static int options_check(const struct friction_options *friction, struct error *err) {
+    if (!(friction->coefficient > 0 && isfinite(friction->coefficient)))
+        return error_set(err, ERROR_INPUT, "friction = %g; allowed: above 0, finite",
+                         friction->coefficient);
+    return 0;
+}
+
+static int arrays_create(struct friction *f, struct error *err) {
+    struct {
+        double **array;
+        size_t count;
+    } const arrays[] = {{&f->kept.u, f->newton.unknowns},
+                        {&f->kept.traction, f->face},
+                        {&f->start, f->face},
+                        {&f->p, f->face},
+                        {&f->q, f->face},
+                        {&f->gap, f->face},
+                        {&f->slip, f->face}};
+    for (size_t a = 0; a < sizeof arrays / sizeof *arrays; a++) {
+        *arrays[a].array = array_create(arrays[a].count, sizeof(double));
+        if (*arrays[a].array == NULL)
+            return error_memory(err, arrays[a].count * sizeof(double), "contact with friction");
+    }
+    f->kept.node = array_create(f->face, sizeof *f->kept.node);
+    return f->kept.node != NULL ? 0 : error_memory(err, f->face, "contact with friction");
+}
+
+int friction_create(struct friction **out, const struct grid *grid, const struct block *block,
+                    const struct full_options *options, const struct friction_options *friction,
+                    struct error *err) {
+    *out = NULL;
+    int status = options_check(friction, err);
+    if (status != 0)
+        return status;
+    struct friction *f = array_create(1, sizeof *f);
+    if (f == NULL)
+        return error_memory(err, sizeof *f, "contact with friction");
+    *f = (struct friction){.options = *options,
+                           .coefficient = friction->coefficient,
+                           .press_steps = friction->press_steps};
+    struct material material = material_of(block->poisson, options->kinematics);
+    status = full_create(&f->full, grid, block, options, err);
+    if (status == 0) {
+        f->mesh = full_mesh(f->full);
+        f->face = f->mesh->face;
+        status = friction_newton_create(&f->newton, f->mesh, &material, block->weighting,
+                                        friction->coefficient, err);
+    }
+    if (status == 0)
+        status = arrays_create(f, err);
+    if (status != 0)
+        friction_destroy(&f);
+    else {
+        f->newton.tolerance = options->tolerance;
+        f->newton.max_iterations = options->max_iterations;
+    }
+    *out = f;
+    return status;
+}
+
+void friction_destroy(struct friction **friction) {
+    struct friction *f = *friction;
+    if (f == NULL)
+        return;
+    friction_newton_clear(&f->newton);
+    full_destroy(&f->full);
+    free(f->kept.u);
+    free(f->kept.traction);
+    free(f->kept.node);
+    free(f->p);
+    free(f->q);
+    free(f->gap);
+    free(f->slip);
+    free(f->start);
+    free(f);
+    *friction = NULL;
+}
+
+void friction_set_stop(struct friction *f, int (*stop)(void *context), void *context) {
+    full_set_stop(f->full, stop, context);
+    f->newton.stop = stop;
+    f->newton.context = context;
+}
+
+int friction_begin(struct friction *f, const double *z, struct error *err) {
+    f->pressed = false;
+    int status = full_begin(f->full, z, err);
+    if (status == 0)
+        f->newton.flat_height = full_newton(f->full)->flat_height;
+    return status;
+}
+
+/* --- steps --- */
+
+static void keep(struct friction *f, double pressure) {
+    const struct friction_newton *n = &f->newton;
+    memcpy(f->kept.u, n->u, n->unknowns * sizeof *n->u);
+    memcpy(f->kept.node, n->node, f->face);
+    for (size_t node = 0; node < f->face; node++)
+        f->kept.traction[node] = n->force[node * 2];
+    f->kept.shear = n->shear;
+    f->kept.flat = n->flat;
+    f->kept.pressure = pressure;
+}
+
+static void restore(struct friction *f) {
+    struct friction_newton *n = &f->newton;
+    memcpy(n->u, f->kept.u, n->unknowns * sizeof *n->u);
+    memcpy(n->node, f->kept.node, f->face);
+    n->shear = f->kept.shear;
+    n->flat = f->kept.flat;
+    n->evaluated = false;
+}
+
+/* Slip counts from the last point. */
+static void settle(struct friction *f) {
+    for (size_t node = 0; node < f->face; node++)
+        f->newton.reference[node] = f->kept.u[node * 2] - f->kept.flat;
+}
+
+/* Adds what the step to the present state worked and dissipated. */
+static void add_works(struct friction *f) {
+    const struct friction_newton *n = &f->newton;
+    struct sum slid = {0};
+    for (size_t node = 0; node < f->face; node++)
+        sum_add(&slid,
+                (n->force[node * 2] + f->kept.traction[node]) / 2 * friction_newton_slip(n, node));
+    f->dissipation -= sum_value(&slid);
+    f->work += (n->shear + f->kept.shear) / 2 * (n->flat - f->kept.flat);
+}
+
+/* Takes the nodes in contact without friction under this pressure for a guess; from no contact the
+ * displacements too. */
+static int guess(struct friction *f, double pressure, struct friction_state *out,
+                 struct error *err) {
+    struct contact_state state;
+    struct full_report report;
+    int status = full_press(f->full, pressure, &state, &report, err);
+    out->newton += report.newton;
+    if (status != 0)
+        return status;
+    const struct newton *without = full_newton(f->full);
+    if (f->kept.pressure == 0) {
+        memcpy(f->newton.u, without->u, f->newton.unknowns * sizeof(double));
+        f->newton.evaluated = false;
+    }
+    for (size_t node = 0; node < f->face; node++) {
+        enum face_node does = f->newton.node[node];
+        if (!without->active[node])
+            does = NODE_FREE;
+        else if (does == NODE_FREE)
+            does = NODE_STICKS;
+        f->newton.node[node] = (unsigned char)does;
+    }
+    return 0;
+}
+
+static int step_to(struct friction *f, const struct friction_goal *goal, double *change,
+                   struct friction_state *out, struct error *err) {
+    struct friction_end end = {0};
+    *change = 0;
+    settle(f);
+    int status = goal->pressure != f->kept.pressure ? guess(f, goal->pressure, out, err) : 0;
+    if (status == 0)
+        status = friction_newton_solve(&f->newton, goal, &end, err);
+    out->newton += end.iterations;
+    out->linear += end.work.iterations;
+    out->factored += end.work.factored;
+    if (status == 0) {
+        *change = face_stretch_change(f->mesh, f->newton.u, f->kept.u);
+        if (*change > FACE_CHANGE_MOST)
+            status = error_set(err, ERROR_NUMERIC, "the face jumps, by %.2g of a cell", *change);
+    }
+    if (status != 0) {
+        restore(f);
+        return status;
+    }
+    add_works(f);
+    keep(f, goal->pressure);
+    out->residual = end.residual;
+    out->steps++;
+    return 0;
+}
+
+static double drive_now(const struct friction *f) {
+    const struct drive *drive = &f->newton.conditions.drive;
+    return drive->flat * f->kept.flat + drive->shear * f->kept.shear;
+}
+
+/* Goes from the last point to a goal, in one step or in smaller ones, which grow again as those of
+ * full_press do. */
+static int follow(struct friction *f, const struct friction_goal *goal, struct friction_state *out,
+                  struct error *err) {
+    struct friction_goal from = {f->kept.pressure, drive_now(f)};
+    double done = 0, step = 1, change;
+    bool cut = false;
+    while (done < 1) {
+        step = fmin(step, 1 - done);
+        double to = done + step;
+        struct friction_goal next = *goal;
+        if (to < 1) {
+            next.pressure = from.pressure + to * (goal->pressure - from.pressure);
+            next.drive = from.drive + to * (goal->drive - from.drive);
+        }
+        int status = step_to(f, &next, &change, out, err);
+        if (status == 0) {
+            done = to;
+            step *= cut || 2 * change > FACE_CHANGE_MOST ? 1 : 2;
+            cut = false;
+            continue;
+        }
+        if (status != ERROR_NUMERIC)
+            return status;
+        cut = true;
+        step /= 2;
+        out->cuts++;
+        if (step < f->options.least_step)
+            return error_context(err,
+                                 "contact with friction %g under a mean pressure of %g E* and a "
+                                 "traction of %g E* was followed over %.3g of a step only; the "
+                                 "next %.2g of it failed",
+                                 f->coefficient, f->kept.pressure, f->kept.shear / (double)f->face,
+                                 done, 2 * step);
+    }
+    return 0;
+}
+
+/* --- results --- */
+
+static double far_height(const struct friction *f) {
+    return f->kept.u[mesh_vertical(f->mesh, mesh_far_side(f->mesh))];
+}
+
+/* Displacement of the flat over the mean of the face. */
+static double flat_over_face(const struct friction *f) {
+    struct sum sum = {0};
+    for (size_t node = 0; node < f->face; node++)
+        sum_add(&sum, f->kept.flat - f->kept.u[node * 2]);
+    return sum_value(&sum) / (double)f->face;
+}
+
+static void fill_nodes(struct friction *f, struct friction_state *out) {
+    struct friction_newton *n = &f->newton;
+    struct sum all = {0}, stuck = {0};
+    friction_newton_measure_gaps(n);
+    for (size_t node = 0; node < f->face; node++) {
+        bool touches = n->node[node] != NODE_FREE, sticks = n->node[node] == NODE_STICKS;
+        double force = n->force[node * 2 + 1];
+        /* As in full_press, callers recognise contact by p > 0. */
+        f->p[node] = touches ? fmax(DBL_MIN, force) : 0;
+        f->q[node] = touches ? n->force[node * 2] : 0;
+        f->gap[node] = n->gap[node] * f->mesh->unit;
+        f->slip[node] = touches ? (n->u[node * 2] - n->flat - f->start[node]) * f->mesh->unit : NAN;
+        out->nodes += touches;
+        out->stuck += sticks;
+        sum_add(&all, f->p[node]);
+        sum_add(&stuck, sticks ? f->p[node] : 0);
+    }
+    out->stick_area = (double)out->stuck / (double)out->nodes;
+    out->stick_load = sum_value(&stuck) / sum_value(&all);
+}
+
+static void fill_state(struct friction *f, struct friction_state *out) {
+    const struct friction_newton *n = &f->newton;
+    double by_area = f->mesh->unit / (double)f->face;
+    bool deforms = n->material.kinematics != KINEMATICS_SMALL;
+    fill_nodes(f, out);
+    out->pressure = f->kept.pressure;
+    out->traction = f->kept.shear / (double)f->face;
+    out->p = f->p;
+    out->q = f->q;
+    out->gap = f->gap;
+    out->slip = f->slip;
+    out->mean_gap = face_mean_gap(f->mesh, deforms ? n->u : NULL, n->gap) * f->mesh->unit;
+    out->displacement = (f->kept.flat - f->start_flat) * f->mesh->unit;
+    out->sliding = (flat_over_face(f) - f->start_sliding) * f->mesh->unit;
+    out->work = f->work * by_area;
+    out->dissipation = f->dissipation * by_area;
+    out->energy = (n->energy - f->start_energy) * by_area;
+    out->pressing_work = f->kept.pressure * (f->start_far - far_height(f)) * f->mesh->unit;
+}
+
+/* --- pressing and dragging --- */
+
+/* The unloaded block. */
+static void lift(struct friction *f) {
+    struct friction_newton *n = &f->newton;
+    memset(n->u, 0, n->unknowns * sizeof *n->u);
+    memset(n->force, 0, n->unknowns * sizeof *n->force);
+    memset(n->node, NODE_FREE, f->face);
+    n->shear = n->flat = 0;
+    n->evaluated = false;
+    keep(f, 0);
+}
+
+/* Goes on from contact without friction: no node has slid, all stick. The flat and the far side's
+ * mean are set to 0. */
+static int press_without(struct friction *f, double pressure, struct friction_state *out,
+                         struct error *err) {
+    struct friction_newton *n = &f->newton;
+    size_t first = mesh_far_side(f->mesh);
+    struct sum sum = {0};
+    int status = guess(f, pressure, out, err);
+    if (status != 0)
+        return status;
+    for (size_t node = first; node < f->mesh->nodes; node++)
+        sum_add(&sum, n->u[node * 2]);
+    double mean = sum_value(&sum) / (double)(f->mesh->nodes - first);
+    for (size_t node = 0; node < f->mesh->nodes; node++)
+        n->u[node * 2] -= mean;
+    if (!tangent_evaluate(f->mesh, &n->material, n->u, &n->energy, n->force, n->tangent))
+        return error_set(err, ERROR_NUMERIC,
+                         "an element is turned inside out under a mean pressure of %g E*",
+                         pressure);
+    n->evaluated = true;
+    keep(f, pressure);
+    return 0;
+}
+
+static int press_with(struct friction *f, double pressure, struct friction_state *out,
+                      struct error *err) {
+    int status = 0;
+    f->newton.conditions.drive = (struct drive){.shear = 1};
+    for (size_t step = 1; status == 0 && step <= f->press_steps; step++) {
+        double root = (double)step / (double)f->press_steps;
+        struct friction_goal goal = {.pressure = pressure * root * root};
+        status = follow(f, &goal, out, err);
+    }
+    return status;
+}
+
+int friction_press(struct friction *f, double pressure, struct friction_state *out,
+                   struct error *err) {
+    if (!(pressure > 0 && isfinite(pressure)))
+        return error_set(err, ERROR_INPUT, "mean pressure = %g; allowed: above 0, finite",
+                         pressure);
+    struct friction_state state = {0};
+    f->pressed = false;
+    unsymmetric_forget(f->newton.lu);
+    lift(f);
+    int status = f->press_steps > 0 ? press_with(f, pressure, &state, err)
+                                    : press_without(f, pressure, &state, err);
+    if (status != 0)
+        return status;
+    f->pressed = true;
+    f->work = f->dissipation = 0;
+    f->start_flat = f->kept.flat;
+    f->start_sliding = flat_over_face(f);
+    f->start_far = far_height(f);
+    f->start_energy = f->newton.energy;
+    for (size_t node = 0; node < f->face; node++)
+        f->start[node] = f->kept.u[node * 2] - f->kept.flat;
+    fill_state(f, &state);
+    *out = state;
+    return 0;
+}
+
+static int pressed_check(const struct friction *f, struct error *err) {
+    return f->pressed ? 0
+                      : error_set(err, ERROR_STATE, "a load along the face before friction_press");
+}
+
+static int move(struct friction *f, struct drive drive, double goal, struct friction_state *out,
+                struct error *err) {
+    struct friction_state state = {0};
+    f->newton.conditions.drive = drive;
+    struct friction_goal end = {f->kept.pressure, goal};
+    int status = follow(f, &end, &state, err);
+    if (status != 0)
+        return status;
+    fill_state(f, &state);
+    *out = state;
+    return 0;
+}
+
+int friction_drag(struct friction *f, double displacement, struct friction_state *out,
+                  struct error *err) {
+    int status = pressed_check(f, err);
+    if (status == 0 && !isfinite(displacement))
+        status = error_set(err, ERROR_INPUT, "displacement = %g; allowed: finite", displacement);
+    if (status != 0)
+        return status;
+    return move(f, (struct drive){.flat = 1}, f->start_flat + displacement / f->mesh->unit, out,
+                err);
+}
+
+int friction_load(struct friction *f, double traction, struct friction_state *out,
+                  struct error *err) {
+    int status = pressed_check(f, err);
+    if (status == 0 && !(fabs(traction) < f->coefficient * f->kept.pressure))
+        status = error_set(err, ERROR_INPUT,
+                           "mean traction = %g E*; allowed: between -%g and %g, friction times the "
+                           "mean pressure",
+                           traction, f->coefficient * f->kept.pressure,
+                           f->coefficient * f->kept.pressure);
+    if (status != 0)
+        return status;
+    return move(f, (struct drive){.shear = 1}, traction * (double)f->face, out, err);
+}

@@ -1,0 +1,78 @@
+/* Equilibrium of a meshed profile on a rigid flat with Coulomb's friction, after one increment of
+ * the load and of the flat's displacement along the face (F14.7). Pressures, tractions and the sets
+ * of free, sticking and sliding nodes are solved together by one Newton's method (Hueber, Stadler
+ * & Wohlmuth 2008; Gitterle, Popp, Gee & Wall 2010). Private to core/full/friction.
+ *
+ * Multipliers have dual functions, one vector a node: the force on the node over its tributary
+ * area. So they are the inner forces at the face, and are not unknowns. With pressure p, gap g,
+ * traction q of the flat on the block and slip w of the face over the flat in this increment, and
+ * any c > 0, nodes meet
+ *
+ *   p - max(0, p - c g) = 0,  q - P(q - c w) = 0,  P: to within friction * max(0, p - c g) of 0
+ *
+ * Slip is the change of the node's displacement along the flat, less that of the flat: a motion of
+ * both alike is none, whatever the strain. Of GAP_STANDARD the gap is a mean over neighbours, but
+ * the slip is of the node alone, so that its work on the traction is that of the forces.
+ *
+ * The far side bears the load and the shear evenly; its mean displacement along the face is 0.
+ * Lengths are in the mesh's unit, pressures in E*. */
+#ifndef RUGO_CORE_FULL_FRICTION_FRICTION_NEWTON_H
+#define RUGO_CORE_FULL_FRICTION_FRICTION_NEWTON_H
+
+#include "core/full/linear/unsymmetric.h"
+#include "core/full/newton.h"
+
+struct friction_newton {
+    const struct mesh *mesh; /* borrowed */
+    struct material material;
+    struct face_conditions conditions; /* what nodes do is owned, as all below */
+    unsigned char *node;               /* by node of the face: enum face_node */
+    struct tangent *tangent;
+    struct unsymmetric *lu;
+    double *u;     /* unknowns: displacements, then pressures of elements where they are unknowns
+                      (gmres.h); whoever changes them sets evaluated to false */
+    double *force; /* unknowns: inner forces, and the excess of the pressures */
+    double *before, *change; /* unknowns: scratch */
+    double *step;            /* degrees of freedom + 2: scratch */
+    double *reference;       /* by node of the face: displacement over the flat, along the face, at
+                                the beginning of the increment */
+    double *gap, *opening;   /* by node of the face, at u */
+    double shear, flat;      /* force along the face on the block, and the flat's displacement */
+    double energy;           /* of the block at u, E* times the square of the mesh's unit */
+    double flat_height;      /* vertical position of the flat */
+    double tolerance;        /* largest residual, over the largest contact force */
+    size_t unknowns, max_iterations;
+    bool evaluated;             /* force, tangent and energy belong to u */
+    int (*stop)(void *context); /* called before each iteration, non-zero stops; may be NULL */
+    void *context;
+};
+
+/* ERROR_INPUT for a surface; ERROR_MEMORY. */
+int friction_newton_create(struct friction_newton *out, const struct mesh *mesh,
+                           const struct material *material, enum gap_weighting weighting,
+                           double friction, struct error *err);
+void friction_newton_clear(struct friction_newton *newton);
+
+/* The loads at the end of the increment. */
+struct friction_goal {
+    double pressure; /* mean, above 0 */
+    double drive;    /* value of conditions.drive */
+};
+/* The course of a solution; as newton_end. */
+struct friction_end {
+    size_t iterations, changes, cycles;
+    struct unsymmetric_work work;
+    double residual; /* largest out-of-balance force, over the largest contact force */
+    double inside;   /* largest |weighted gap| in contact, and |slip| of sticking nodes */
+    double penetration;
+};
+/* Solves for u, shear, flat and the nodes, starting from those given. After ERROR_NUMERIC, and
+ * ERROR_STOPPED when stop returned non-zero, these are undefined. */
+int friction_newton_solve(struct friction_newton *newton, const struct friction_goal *goal,
+                          struct friction_end *end, struct error *err);
+/* Computes gap and opening from u. */
+void friction_newton_measure_gaps(struct friction_newton *newton);
+/* Returns a node's slip since the beginning of the increment. */
+double friction_newton_slip(const struct friction_newton *newton, size_t node);
+
+#endif
