@@ -23,7 +23,7 @@ enum { HALVINGS_MOST = 8, ITERATIONS_MOST = 60, PATIENCE = 8 };
 /* The equations of a set are solved to this part of the violation with which they begin, or to
  * ENOUGH of the tolerance. After a set that was no better they are solved CLOSER times better
  * still: nodes that change by what was left over would change back again and again. */
-static const double PROFILE_PART = 0.03, SURFACE_PART = 0.1, CLOSER = 0.3, ENOUGH = 0.3;
+static const double PROFILE_PART = 0.03, SURFACE_PART = 0.3, CLOSER = 0.5, ENOUGH = 0.3;
 /* Of sets that do not improve, nodes with faults above this part of the largest change. */
 static const double FEW = 0.5;
 /* The largest turn over the local compliance. */

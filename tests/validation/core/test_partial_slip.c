@@ -322,6 +322,13 @@ static void refusals(void **unused) {
     assert_int_equal(slip_load(slip, 0.19, &state, &err), ERROR_NUMERIC);
     assert_non_null(strstr(err.text, "mean pressure of 1 E*"));
     slip_destroy(&slip);
+    options.max_sets = SLIP_DEFAULTS.max_sets;
+    options.max_iterations = 2;
+    slip = made(&grid, &options);
+    press(slip, z, 1);
+    assert_int_equal(slip_load(slip, 0.19, &state, &err), ERROR_NUMERIC);
+    assert_non_null(strstr(err.text, "2 iterations"));
+    slip_destroy(&slip);
 }
 
 int main(void) {
