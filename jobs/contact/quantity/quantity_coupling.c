@@ -29,7 +29,7 @@ static const struct parameter ROWS[] = {
      .target_refusal = TARGET,
      .example_json = "true",
      .help = "with friction: also solve slip with what pressures move along the face and tractions "
-             "across it, on an infinite half-space and a rigid flat; surfaces take 6 to 10 times "
+             "across it, on an infinite half-space and a rigid flat; surfaces take 7 to 12 times "
              "as long as their contact, profiles twice"},
     {.path = "/contact/slip/pressing",
      .type = PARAMETER_CHOICE,
@@ -87,7 +87,7 @@ static double bytes_of(const struct quantity_scene *scene) {
 }
 
 static double seconds_of(const struct quantity_scene *scene) {
-    static const double PROFILE = 2, SURFACE = 8; /* times the transforms of contact */
+    static const double PROFILE = 2, SURFACE = 10; /* times the transforms of contact */
     const struct contact_case *one_case = scene->one_case;
     const size_t loads = one_case->slip_load + (one_case->slip_pressing ? PRESS_STEPS : 0);
     return is_solved(scene) ? (grid_is_profile(&scene->grid) ? PROFILE : SURFACE) *
