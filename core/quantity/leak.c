@@ -132,21 +132,20 @@ static void fill_cubes(struct leak *leak, const double *gap, const double *p, do
 static struct conductances nodes_of(const struct leak *leak, size_t direction) {
     const struct grid *grid = &leak->grid;
     double ratio = grid_dx(grid) / grid_dy(grid);
-    return direction == 0
-               ? (struct conductances){.values = leak->cubes,
-                                       .nx = grid->nx,
-                                       .ny = grid->ny,
-                                       .step_across = 1,
-                                       .step_along = grid->nx,
-                                       .along = ratio * ratio,
-                                       .walled = leak->options.walled}
-               : (struct conductances){.values = leak->cubes,
-                                       .nx = grid->ny,
-                                       .ny = grid->nx,
-                                       .step_across = grid->nx,
-                                       .step_along = 1,
-                                       .along = 1 / (ratio * ratio),
-                                       .walled = leak->options.walled};
+    return direction == 0 ? (struct conductances){.values = leak->cubes,
+                                                  .nx = grid->nx,
+                                                  .ny = grid->ny,
+                                                  .step_across = 1,
+                                                  .step_along = grid->nx,
+                                                  .along = ratio * ratio,
+                                                  .walled = leak->options.walled}
+                          : (struct conductances){.values = leak->cubes,
+                                                  .nx = grid->ny,
+                                                  .ny = grid->nx,
+                                                  .step_across = grid->nx,
+                                                  .step_along = 1,
+                                                  .along = 1 / (ratio * ratio),
+                                                  .walled = leak->options.walled};
 }
 
 /* A uniform gap has ny/nx, across and along. */

@@ -23,15 +23,15 @@ struct spectrum {
      * <= |m| <= lx/short includes both edges, with a relative guard of 1e-9 against rounding */
     double hurst; /* [0, 1] */
     double wavelength_long, wavelength_rolloff, wavelength_short;
-    /* of self-affine surfaces and tables: ratio of the wavelengths along the lay to those across it;
-     * 0 is as 1 */
+    /* of self-affine surfaces and tables: ratio of the wavelengths along the lay to those across
+     * it; 0 is as 1 */
     double anisotropy;
     double lay_angle; /* from the x axis to the lay, counter-clockwise, in radians */
     /* exponential autocorrelation exp(-sqrt((tx/bx)^2 + (ty/by)^2)) (F2.2) at the points of the
      * grid; it has no band limit and fills the grid */
     double correlation_x, correlation_y;
-    /* table: density of any scale at rising |k|, of waves across the lay, interpolated in logarithms, 0
-     * outside; borrowed */
+    /* table: density of any scale at rising |k|, of waves across the lay, interpolated in
+     * logarithms, 0 outside; borrowed */
     size_t table_count;
     const double *table_wave_number; /* radians per length */
     const double *table_density;

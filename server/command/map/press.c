@@ -190,7 +190,8 @@ static const struct option_row OPTIONS[] = {
      "under the highest load; loads below it are added"},
     {"direction", 0, OPTION_CHOICE, 0, 0, AT(along_y), "x|y", "x", "of the tangential load"},
     {"coupling", 0, OPTION_CHOICE, 0, 0, AT(coupling), COUPLINGS, "none",
-     "with --friction: also solve slip with pressures and tractions coupled, after pressing the map "
+     "with --friction: also solve slip with pressures and tractions coupled, after pressing the "
+     "map "
      "without friction or with it"},
     {"resistivity", 0, OPTION_TEXT, 0, 0, AT(words.resistivity), "RHO[,RHO]", NULL,
      "electric resistivity of both bodies, or of each, in ohm m: the conductance of the contact"},
@@ -599,18 +600,18 @@ static int order_models(struct press_order *order, struct error *err) {
     if (!models_find(options->model, positions, &order->model_count))
         return error_set(err, ERROR_INPUT, "there is no model %.40s", options->model);
     for (size_t m = 0; m < order->model_count; m++)
-        order->blocks[m] = (struct press_block){.model = CONTACT_MODELS[positions[m]],
-                                                .poisson = options->words.poisson,
-                                                .lengths = options->lengths,
-                                                .tolerance = options->tolerance,
-                                                .hardness = order->loads.hardness,
-                                                .conducts = order->loads.resistivity > 0,
-                                                .friction = options->words.friction,
-                                                .angle = options->along_y ? M_PI / 2 : 0,
-                                                .coupled = options->coupling != COUPLING_NONE,
-                                                .pressing =
-                                                    options->coupling == COUPLING_FRICTIONAL,
-                                                .leaks = options->leak};
+        order->blocks[m] =
+            (struct press_block){.model = CONTACT_MODELS[positions[m]],
+                                 .poisson = options->words.poisson,
+                                 .lengths = options->lengths,
+                                 .tolerance = options->tolerance,
+                                 .hardness = order->loads.hardness,
+                                 .conducts = order->loads.resistivity > 0,
+                                 .friction = options->words.friction,
+                                 .angle = options->along_y ? M_PI / 2 : 0,
+                                 .coupled = options->coupling != COUPLING_NONE,
+                                 .pressing = options->coupling == COUPLING_FRICTIONAL,
+                                 .leaks = options->leak};
     if (options->coupling != COUPLING_NONE && check_coupling(order, err) != 0)
         return ERROR_INPUT;
     if (order->loads.resistivity > 0 && options->coating != NULL)

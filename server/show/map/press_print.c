@@ -345,8 +345,7 @@ static void print_slip(FILE *file, const struct part *part) {
                     table_cell(&table, "%.2g", bound_at(curves[c], i) * scales[c]);
             }
     }
-    fprintf(file,
-            "\ntangential load Q along %s under p/(E* h') = %.4g, friction %.4g%s\n\n",
+    fprintf(file, "\ntangential load Q along %s under p/(E* h') = %.4g, friction %.4g%s\n\n",
             block->angle > 0 ? "y" : "x", first->pressure, block->friction,
             some ? "; +- errors that are known" : "");
     if (part->report->press->boundary == PRESS_OPEN && !grid_is_profile(&part->report->press->map))

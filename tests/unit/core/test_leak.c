@@ -133,8 +133,8 @@ static void diagonal_lines_close(void **state) {
     assert_true(!result.x.open && result.y.open);
 }
 
-/* Between walls gaps leak as they do mirrored, where nothing crosses a side: mirrored both along and
- * across, as half of the pressure falls over each half. Of a third closed some paths go through
+/* Between walls gaps leak as they do mirrored, where nothing crosses a side: mirrored both along
+ * and across, as half of the pressure falls over each half. Of a third closed some paths go through
  * sides. */
 static void walled_gaps_leak_as_mirrored(void **state) {
     (void)state;
@@ -150,8 +150,8 @@ static void walled_gaps_leak_as_mirrored(void **state) {
         draw(nx * ny, 0.36, &words, gap);
         for (size_t j = 0; j < 2 * ny; j++)
             for (size_t i = 0; i < 2 * nx; i++)
-                mirrored[j * 2 * nx + i] = gap[(j < ny ? j : 2 * ny - 1 - j) * nx +
-                                               (i < nx ? i : 2 * nx - 1 - i)];
+                mirrored[j * 2 * nx + i] =
+                    gap[(j < ny ? j : 2 * ny - 1 - j) * nx + (i < nx ? i : 2 * nx - 1 - i)];
         assert_int_equal(leak_create(&leak, &SHAPES[g], &walled, NULL), 0);
         const struct leak_result result = measure(leak, gap, NULL);
         const struct leak_result expected = measure_once(twice, mirrored, NULL);

@@ -1,10 +1,10 @@
 /* Protects what studies ask of a solved contact: the conductance is the stiffness of a half-space
  * without end, and of other blocks that of half-spaces through their nodes; what yields bears the
- * hardness, and stays flat as the load falls; faces slip by the contact of lighter loads, and as that does where
- * nothing couples pressures and tractions; leaks lie
- * between those of both means, and close where free space does. All have the errors of other curves
- * and do not depend on how realisations are cut into blocks. A case that does not ask for them
- * keeps the bytes of its partial results. */
+ * hardness, and stays flat as the load falls; faces slip by the contact of lighter loads, and as
+ * that does where nothing couples pressures and tractions; leaks lie between those of both means,
+ * and close where free space does. All have the errors of other curves and do not depend on how
+ * realisations are cut into blocks. A case that does not ask for them keeps the bytes of its
+ * partial results. */
 #include "jobs/contact/contact_case_read.h"
 #include "jobs/contact/contact_loads.h"
 #include "jobs/contact/contact_measure.h"
@@ -243,31 +243,32 @@ static void a_load_is_held(void **state) {
     cJSON_Delete(document);
 }
 
-/* At a Poisson's ratio of nearly a half pressures do not move a profile along its face, so that both
- * solutions are one but for nodes whose pressure is within the tolerance of none. At 0.3 pressing
- * with friction leaves less that sticks (0.75 becomes 0.49 of a cylinder at 0.45 of full slip), and
- * friction while only the tangential load rises about as much. */
+/* At a Poisson's ratio of nearly a half pressures do not move a profile along its face, so that
+ * both solutions are one but for nodes whose pressure is within the tolerance of none. At 0.3
+ * pressing with friction leaves less that sticks (0.75 becomes 0.49 of a cylinder at 0.45 of full
+ * slip), and friction while only the tangential load rises about as much. */
 static void pressures_and_tractions_couple(void **state) {
     (void)state;
     static const struct {
         const char *contact;
         double stick_least, stick_most, moved_least, moved_most;
-    } CASES[] = {{"\"friction\": 0.3, \"slip\": {\"coupling\": true}, \"poisson\": 0.499", 0.97, 1.03,
-                  0.998, 1.002},
-                 {"\"friction\": 0.3, \"slip\": {\"coupling\": true}, \"poisson\": 0.3", 0.9, 1.1,
-                  0.9, 1.05},
-                 {"\"friction\": 0.3, \"slip\": {\"coupling\": true, \"pressing\": \"frictional\"}, "
-                  "\"poisson\": 0.3",
-                  0.5, 0.92, 1.01, 1.3}};
+    } CASES[] = {
+        {"\"friction\": 0.3, \"slip\": {\"coupling\": true}, \"poisson\": 0.499", 0.97, 1.03, 0.998,
+         1.002},
+        {"\"friction\": 0.3, \"slip\": {\"coupling\": true}, \"poisson\": 0.3", 0.9, 1.1, 0.9,
+         1.05},
+        {"\"friction\": 0.3, \"slip\": {\"coupling\": true, \"pressing\": \"frictional\"}, "
+         "\"poisson\": 0.3",
+         0.5, 0.92, 1.01, 1.3}};
     for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
         char study[600];
         snprintf(study, sizeof study, STUDY("\"tolerance\": 1e-6, %s"), CASES[c].contact);
         cJSON *document = solve(study, 2);
         const cJSON *stick[] = {curve_of(document, "stick_area", "nodes", "halfspace"),
                                 curve_of(document, "stick_area", "coupled", "halfspace")};
-        const cJSON *moved[] = {curve_of(document, "tangential_displacement", "", "halfspace"),
-                                curve_of(document, "tangential_displacement", "coupled",
-                                         "halfspace")};
+        const cJSON *moved[] = {
+            curve_of(document, "tangential_displacement", "", "halfspace"),
+            curve_of(document, "tangential_displacement", "coupled", "halfspace")};
         for (int i = 0; i < 5; i++) {
             double sticks = at(stick[1], "/y", i) / at(stick[0], "/y", i);
             double moves = at(moved[1], "/y", i) / at(moved[0], "/y", i);
