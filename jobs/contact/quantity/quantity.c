@@ -1,5 +1,4 @@
 #include "jobs/contact/quantity/quantity.h"
-#include "jobs/contact/contact_measure.h"
 
 #define ADDRESS(name, count) &name##_QUANTITY,
 static const struct contact_quantity *const QUANTITIES[] = {CONTACT_QUANTITY_LIST(ADDRESS)};
@@ -128,7 +127,7 @@ int contact_quantities_complete(const struct contact_quantities *quantities,
                                 size_t stride, double *values, struct error *err) {
     int status = 0;
     for (size_t q = 0; q < CONTACT_QUANTITIES && status == 0; q++)
-        if (context->one_case->asked.of[q] && QUANTITIES[q]->complete != NULL)
+        if (quantities->one_case->asked.of[q] && QUANTITIES[q]->complete != NULL)
             status = QUANTITIES[q]->complete(quantities->of[q], context, z, stride, values, err);
     return status;
 }
