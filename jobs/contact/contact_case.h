@@ -67,12 +67,12 @@ struct contact_case {
     bool asperities;               /* theories by counted summits are wanted */
     bool unloads;                  /* the loads fall again, from the highest */
     bool slip_measured;            /* its stiffness, of each contact: where faces have lay */
+    bool slip_pressing;            /* friction acts while the block is pressed: coupled slip */
     double hardness;               /* over E* h', above all loads; 0: the contact is elastic */
     double yield;                  /* the same over E* */
     double friction;               /* coefficient; 0: nothing slips */
     size_t slip_load;              /* the load that is held while a tangential one rises */
     double slip_angle;             /* of the tangential load from x, in radians */
-    bool slip_pressing; /* friction acts while the block is pressed, where slip is coupled */
     double tolerance;   /* of solutions (contact_tolerance.h) */
     size_t pdf_count;
     size_t *pdf_loads;    /* owned: loads whose pressures are counted, rising */

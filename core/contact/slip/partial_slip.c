@@ -394,7 +394,8 @@ static size_t change_sets(struct slip *s, double part) {
     return changed;
 }
 
-/* Returns what the equations of a node leave, and fills turn. */
+/* Returns what the equations of a node leave, and fills turn. Slip across the direction of a
+ * sliding node counts by the traction that is wrong with it, times the local compliance. */
 static struct fault equation_fault(struct slip *s, size_t i, const struct judged *state) {
     const unsigned char node = s->sets.node[i];
     const double slip = length_along(s, i, state->r);
@@ -403,13 +404,13 @@ static struct fault equation_fault(struct slip *s, size_t i, const struct judged
                           node == NODE_STUCK ? slip : 0};
     s->sets.turn[i] = 0;
     if (node == NODE_SLIDING) {
-        double towards = slip_towards(s, i, state);
-        double bound = s->options.friction * state->t[NORMAL][i];
+        const double local = s->sets.local, bound = s->options.friction * state->t[NORMAL][i];
+        const double towards = slip_towards(s, i, state);
+        s->sets.turn[i] = fmin(fmax(0, -towards) / bound, TURN_MOST * local);
+        const double share = local / (s->sets.turn[i] + local);
         if (s->sets.fields == FIELDS)
-            fault.along =
-                fmax(fabs(state->r[ALONG_X][i] * y - state->r[ALONG_Y][i] * x),
-                     s->sets.local * fabs(state->t[ALONG_X][i] * y - state->t[ALONG_Y][i] * x));
-        s->sets.turn[i] = fmin(fmax(0, -towards) / bound, TURN_MOST * s->sets.local);
+            fault.along = fmax(share * fabs(state->r[ALONG_X][i] * y - state->r[ALONG_Y][i] * x),
+                               local * fabs(state->t[ALONG_X][i] * y - state->t[ALONG_Y][i] * x));
     }
     return fault;
 }

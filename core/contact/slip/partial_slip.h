@@ -20,7 +20,8 @@ struct slip_options {
     size_t press_steps; /* 0: pressed without friction; else friction acts in so many steps of the
                            pressure, whose root rises evenly */
     double tolerance;   /* on the largest violation of gaps over the largest displacement; of slips
-                           over that times friction, where this is below 1; default 1e-8 */
+                           over that times friction, where this is below 1, and of directions
+                           of tractions by what these move a node; default 1e-8 */
     size_t max_sets;    /* sets of nodes a step, after which it is halved; default 40 */
     size_t max_iterations; /* of linear equations a load with all its halves, after which it fails;
                               of each step of pressing; default 400 */
