@@ -73,7 +73,7 @@ struct contact_case {
     double friction;               /* coefficient; 0: nothing slips */
     size_t slip_load;              /* the load that is held while a tangential one rises */
     double slip_angle;             /* of the tangential load from x, in radians */
-    double tolerance;   /* of solutions (contact_tolerance.h) */
+    double tolerance;              /* of solutions (contact_tolerance.h) */
     size_t pdf_count;
     size_t *pdf_loads;    /* owned: loads whose pressures are counted, rising */
     bool pdf_pairs;       /* on all levels, with their differences (contact_densities.h) */
