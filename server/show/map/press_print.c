@@ -313,42 +313,64 @@ static double head_slip(struct text_table *table, const struct part *part,
     return scale;
 }
 
+/* The curves of what slips that a model has, NULL where it has none, with the scales of their
+ * values, and whether errors of each are known. */
+struct slip_curves {
+    const struct curve *of[SLIP_COLUMN_COUNT], *first;
+    double scales[SLIP_COLUMN_COUNT];
+    bool bounded[SLIP_COLUMN_COUNT], some;
+};
+
+static struct slip_curves slip_curves_of(const struct part *part) {
+    struct slip_curves curves = {0};
+    for (size_t c = 0; c < SLIP_COLUMN_COUNT; c++) {
+        curves.of[c] = slip_curve(part, &SLIP_COLUMNS[c]);
+        curves.bounded[c] = curves.of[c] != NULL && has_bounds(curves.of[c]);
+        curves.some = curves.some || curves.bounded[c];
+        curves.first = curves.first != NULL ? curves.first : curves.of[c];
+    }
+    return curves;
+}
+
+static void head_slips(struct text_table *table, const struct part *part,
+                       struct slip_curves *curves) {
+    table->columns = 1;
+    for (size_t c = 0; c < SLIP_COLUMN_COUNT; c++)
+        table->columns += curves->of[c] != NULL ? 1 + curves->bounded[c] : 0;
+    table_cell(table, "Q/(mu P)");
+    for (size_t c = 0; c < SLIP_COLUMN_COUNT; c++) {
+        if (curves->of[c] != NULL)
+            curves->scales[c] = head_slip(table, part, &SLIP_COLUMNS[c], curves->of[c]);
+        if (curves->bounded[c])
+            table_cell(table, "+-");
+    }
+}
+
+static void fill_slips(struct text_table *table, const struct slip_curves *curves, size_t point) {
+    table_number(table, curves->first->x[point]);
+    for (size_t c = 0; c < SLIP_COLUMN_COUNT; c++) {
+        if (curves->of[c] != NULL)
+            table_number(table, curves->of[c]->y[point] * curves->scales[c]);
+        if (curves->bounded[c])
+            table_cell(table, "%.2g", bound_at(curves->of[c], point) * curves->scales[c]);
+    }
+}
+
 /* Prints what slips, with the sums of the bounds of its errors, where friction is asked for. */
 static void print_slip(FILE *file, const struct part *part) {
-    const struct curve *curves[SLIP_COLUMN_COUNT], *first = slip_curve(part, SLIP_COLUMNS);
+    const struct map_press *press = part->report->press;
     const struct press_block *block = &part->series->block;
-    struct text_table table = {.columns = 1};
-    double scales[SLIP_COLUMN_COUNT];
-    bool bounded[SLIP_COLUMN_COUNT], some = false;
-    for (size_t c = 0; c < SLIP_COLUMN_COUNT; c++) {
-        curves[c] = slip_curve(part, &SLIP_COLUMNS[c]);
-        bounded[c] = curves[c] != NULL && has_bounds(curves[c]);
-        table.columns += curves[c] != NULL ? 1 + bounded[c] : 0;
-        first = first != NULL ? first : curves[c];
-    }
-    if (first == NULL || first->n == 0)
+    struct slip_curves curves = slip_curves_of(part);
+    struct text_table table = {0};
+    if (curves.first == NULL || curves.first->n == 0)
         return;
-    table_cell(&table, "Q/(mu P)");
-    for (size_t c = 0; c < SLIP_COLUMN_COUNT; c++)
-        if (curves[c] != NULL) {
-            scales[c] = head_slip(&table, part, &SLIP_COLUMNS[c], curves[c]);
-            if (bounded[c])
-                table_cell(&table, "+-");
-            some = some || bounded[c];
-        }
-    for (size_t i = 0; i < first->n; i++) {
-        table_number(&table, first->x[i]);
-        for (size_t c = 0; c < SLIP_COLUMN_COUNT; c++)
-            if (curves[c] != NULL) {
-                table_number(&table, curves[c]->y[i] * scales[c]);
-                if (bounded[c])
-                    table_cell(&table, "%.2g", bound_at(curves[c], i) * scales[c]);
-            }
-    }
+    head_slips(&table, part, &curves);
+    for (size_t i = 0; i < curves.first->n; i++)
+        fill_slips(&table, &curves, i);
     fprintf(file, "\ntangential load Q along %s under p/(E* h') = %.4g, friction %.4g%s\n\n",
-            block->angle > 0 ? "y" : "x", first->pressure, block->friction,
-            some ? "; +- errors that are known" : "");
-    if (part->report->press->boundary == PRESS_OPEN && !grid_is_profile(&part->report->press->map))
+            block->angle > 0 ? "y" : "x", curves.first->pressure, block->friction,
+            curves.some ? "; +- errors that are known" : "");
+    if (press->boundary == PRESS_OPEN && !grid_is_profile(&press->map))
         fprintf(file,
                 "stiffness along the face over that across: %.4g, as where no direction has longer "
                 "waves; else between %.4g and 1\n\n",
