@@ -21,7 +21,7 @@ struct ending {
 
 /* --- the program's process, until it is the program --- */
 
-static int limit(int resource, uint64_t most) {
+static int limit(__rlimit_resource_t resource, uint64_t most) {
     struct rlimit now;
     if (getrlimit(resource, &now) != 0)
         return errno;

@@ -47,8 +47,9 @@ enum measure_theories {
 };
 /* How the solver's tolerance changes it: smoothly with the forces; as a gap, which is closed within
  * a length; by counted points, one of which may fall on either side; as a stiffness, to which few
- * open points matter as much as few in contact; as a flow, which narrow passages decide; by
- * patches, which a counted point may join or divide; or by points in bins of pressure. */
+ * open points matter as much as few in contact; as a flow, which narrow passages decide, or a work,
+ * which is left of large ones; by patches, which a counted point may join or divide; or by points
+ * in bins of pressure. */
 enum measure_solver {
     SOLVER_SMOOTH,
     SOLVER_GAP,

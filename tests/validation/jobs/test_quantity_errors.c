@@ -235,8 +235,10 @@ static struct scene scene_at(const struct question *question, size_t s) {
         scene.dimension = 2;
         scene.hurst = 1.1 - scene.hurst;
     }
-    if (question->halfspace)
+    if (question->halfspace) {
         scene.model = "halfspace";
+        scene.weighting = "standard";
+    }
     return scene;
 }
 
