@@ -103,7 +103,7 @@ LIST(CONDITIONS)
                 load, cell, values, over)                                                          \
     [MEASURE_##name] = {quantity, series, label, shown_##name, kept_##name, order,                 \
                         THEORIES_##theories, SOLVER_##solver, FIELD_##field,                       \
-                        LOAD_##load, CELL_##cell, VALUES_##values, OVER_##over},
+                        LOAD_##load, CELL_##cell, VALUES_##values, OVER_##over, BY_LOAD},
 static const struct measure MEASURES[MEASURE_COUNT] = {LIST(MEMBERS)};
 /* clang-format on */
 

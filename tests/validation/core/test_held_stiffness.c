@@ -12,7 +12,7 @@ static struct held_stiffness measure(const struct grid *grid, double poisson, co
                                      double angle) {
     struct error err = {0};
     struct held *held = NULL;
-    struct held_stiffness out;
+    struct held_stiffness out = {0};
     if (held_create(&held, grid, poisson, &err) != 0 ||
         held_measure(held, p, angle, 1e-5, &out, &err) != 0)
         fail_msg("%s", err.text);

@@ -11,7 +11,7 @@
 
 static struct leak_result measure(struct grid grid, const double *gap, const double *p) {
     struct leak *leak = NULL;
-    struct leak_result result;
+    struct leak_result result = {0};
     struct error err = {0};
     if (leak_create(&leak, &grid, &LEAK_DEFAULTS, &err) != 0 ||
         leak_measure(leak, gap, p, &result, &err) != 0)
