@@ -32,13 +32,14 @@ int map_modes_measure(const struct grid *grid, const double *z, struct modes *mo
 /* Returns the number of radial bins of the functions below for a grid: rings of width one in |m|
  * (min(lx,ly)). */
 size_t radial_bins(const struct grid *grid);
-/* Returns the nearest whole number to the length of (x, y), (size_t)(hypot(x, y) + 0.5). A root of
- * squares, which takes a fraction of the time, decides it but where its rounding may matter. */
+/* Returns the nearest whole number to the length of (x, y), (size_t)(hypot(x, y) + 0.5), 2^52 of
+ * those beyond. A root of squares, which takes a fraction of the time, decides it but where its
+ * rounding may matter. */
 static inline size_t ring_of(double x, double y) {
     static const double ROUNDING = 1e-12, WHOLE_MOST = 0x1p52;
     double reach = sqrt(x * x + y * y) + 0.5, margin = ROUNDING * reach;
-    if (!(reach < WHOLE_MOST)) /* squares of lengths in a unit of any size may overflow */
-        return (size_t)(hypot(x, y) + 0.5);
+    if (!(reach < WHOLE_MOST)) /* squares of lengths may overflow, and no grid has such a ring */
+        return (size_t)WHOLE_MOST;
     size_t ring = (size_t)reach;
     double beyond = reach - (double)ring;
     return beyond > margin && 1 - beyond > margin ? ring : (size_t)(hypot(x, y) + 0.5);
