@@ -1,5 +1,6 @@
 #include "core/full/newton.h"
 #include "core/full/face.h"
+#include "core/full/set_history.h"
 #include "core/sum.h"
 #include <float.h>
 #include <math.h>
@@ -158,31 +159,10 @@ static size_t active_update(struct newton *n, bool one) {
     return changes;
 }
 
-/* Returns a hash of the active set (Fowler, Noll & Vo 1991), by which a set that was met before is
- * recognised. */
-static uint64_t active_hash(const struct newton *n) {
-    uint64_t hash = UINT64_C(14695981039346656037);
-    for (size_t node = 0; node < n->mesh->face; node++)
-        hash = (hash ^ (n->active[node] ? 1 : 2)) * UINT64_C(1099511628211);
-    return hash;
-}
-
-enum { REMEMBERED = 64 };
-struct set_history {
-    uint64_t hash[REMEMBERED];
-    size_t count;
-};
-
-/* Returns whether this set was met before, and remembers it. A set that was met empties the memory.
- */
-static bool set_history_meets(struct set_history *history, uint64_t hash) {
-    for (size_t a = 0; a < history->count && a < REMEMBERED; a++)
-        if (history->hash[a] == hash) {
-            history->count = 0;
-            return true;
-        }
-    history->hash[history->count++ % REMEMBERED] = hash;
-    return false;
+/* Returns whether the active set was met before, and remembers it. */
+static bool active_met(const struct newton *n, struct set_history *history) {
+    _Static_assert(sizeof *n->active == 1, "a byte a node");
+    return set_history_meets(history, n->mesh->face, (const unsigned char *)n->active);
 }
 
 /* --- equilibrium --- */
@@ -333,7 +313,7 @@ static struct round assess(struct newton *n, double pressure, bool first,
     if (round.changes > 0) {
         end->changes += round.changes;
         round.residual = residual(n, pressure, n->change);
-        end->cycles += set_history_meets(history, active_hash(n));
+        end->cycles += active_met(n, history);
     }
     measure(n, end);
     round.inside = end->inside;
@@ -381,7 +361,7 @@ int newton_solve(struct newton *n, double pressure, struct newton_end *end, stru
         return error_set(err, ERROR_NUMERIC, "an element is turned inside out");
     newton_measure_gaps(n);
     active_fill(n);
-    (void)set_history_meets(&history, active_hash(n));
+    (void)active_met(n, &history);
     for (;;) {
         bool first = end->iterations == 0;
         struct round round = assess(n, pressure, first, &history, end);

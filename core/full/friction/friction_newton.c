@@ -1,5 +1,6 @@
 #include "core/full/friction/friction_newton.h"
 #include "core/full/face.h"
+#include "core/full/set_history.h"
 #include "core/sum.h"
 #include <float.h>
 #include <math.h>
@@ -200,33 +201,6 @@ static size_t update(struct friction_newton *n, double least, bool one) {
     return changes;
 }
 
-/* A hash of what nodes do (Fowler, Noll & Vo 1991), by which sets that were met before are
- * recognised. */
-static uint64_t nodes_hash(const struct friction_newton *n) {
-    uint64_t hash = UINT64_C(14695981039346656037);
-    for (size_t node = 0; node < n->mesh->face; node++)
-        hash = (hash ^ (n->node[node] + 1u)) * UINT64_C(1099511628211);
-    return hash;
-}
-
-enum { REMEMBERED = 64 };
-struct history {
-    uint64_t hash[REMEMBERED];
-    size_t count;
-};
-
-/* Returns whether these sets were met before, and remembers them. Sets that were met empty the
- * memory. */
-static bool history_meets(struct history *history, uint64_t hash) {
-    for (size_t a = 0; a < history->count && a < REMEMBERED; a++)
-        if (history->hash[a] == hash) {
-            history->count = 0;
-            return true;
-        }
-    history->hash[history->count++ % REMEMBERED] = hash;
-    return false;
-}
-
 /* --- equilibrium --- */
 
 /* Turns forces x, outer less inner, into the right side of the equations of the nodes in contact:
@@ -367,7 +341,7 @@ static void measure(const struct friction_newton *n, struct friction_end *end) {
 }
 
 static struct round assess(struct friction_newton *n, const struct friction_goal *goal,
-                           struct history *history, struct friction_end *end) {
+                           struct set_history *history, struct friction_end *end) {
     struct round round = {.largest = 0};
     const struct drive *drive = &n->conditions.drive;
     bool first = end->iterations == 0, careful = end->cycles > 0;
@@ -381,7 +355,7 @@ static struct round assess(struct friction_newton *n, const struct friction_goal
     if (round.changes > 0) {
         end->changes += round.changes;
         round.residual = residual(n, goal);
-        end->cycles += history_meets(history, nodes_hash(n));
+        end->cycles += set_history_meets(history, n->mesh->face, n->node);
     }
     measure(n, end);
     round.inside = end->inside;
@@ -421,7 +395,7 @@ static int check_progress(const struct friction_newton *n, struct progress *prog
 
 int friction_newton_solve(struct friction_newton *n, const struct friction_goal *goal,
                           struct friction_end *end, struct error *err) {
-    struct history history = {0};
+    struct set_history history = {0};
     struct progress progress = {.least = INFINITY};
     *end = (struct friction_end){0};
     double load = goal->pressure * (double)n->mesh->face;
@@ -433,7 +407,7 @@ int friction_newton_solve(struct friction_newton *n, const struct friction_goal 
     friction_newton_measure_gaps(n);
     fill_contact(n);
     fill_sticking(n);
-    (void)history_meets(&history, nodes_hash(n));
+    (void)set_history_meets(&history, n->mesh->face, n->node);
     for (;;) {
         struct round round = assess(n, goal, &history, end);
         if (end->iterations > 0 && round.changes == 0 && round.residual <= round.balanced &&

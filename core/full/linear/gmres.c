@@ -1,11 +1,12 @@
 #include "core/full/linear/gmres.h"
 #include "core/full/linear/aliasing.h"
+#include "core/full/linear/hessenberg.h"
 #include "core/vectors.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { BASIS = 24, RESTARTS = 10, LANES = 8 };
+enum { BASIS = HESSENBERG_MOST, RESTARTS = 10, LANES = 8 };
 /* A restart that leaves more than this part of the residual is the last one. */
 static const double STALLED = 0.5;
 /* Bulk over shear modulus above which pressures are unknowns of their own. */
@@ -22,9 +23,8 @@ struct gmres {
     double *basis[BASIS + 1];            /* orthonormal residuals */
     double *direction[BASIS];            /* preconditioned */
     double *load, *moved, *pressures;
-    double *face, *target, *forces;      /* by node of the face */
-    double hessenberg[BASIS + 1][BASIS]; /* made upper triangular by rotate() */
-    double cosine[BASIS], sine[BASIS], right[BASIS + 1];
+    double *face, *target, *forces; /* by node of the face */
+    struct hessenberg hessenberg;
 };
 
 int gmres_create(struct gmres **out, const struct mesh *mesh, const struct material *material,
@@ -211,31 +211,9 @@ static void preconditioner_apply_flat(struct gmres *gmres, const bool *active, c
 
 /* --- minimal residuals --- */
 
-/* Givens' rotations make column c upper triangular. Returns the size of the residual. */
-static double rotate(struct gmres *gmres, size_t c) {
-    double(*h)[BASIS] = gmres->hessenberg;
-    for (size_t a = 0; a < c; a++) {
-        double upper = h[a][c], lower = h[a + 1][c];
-        h[a][c] = gmres->cosine[a] * upper + gmres->sine[a] * lower;
-        h[a + 1][c] = gmres->cosine[a] * lower - gmres->sine[a] * upper;
-    }
-    double size = hypot(h[c][c], h[c + 1][c]);
-    gmres->cosine[c] = h[c][c] / size;
-    gmres->sine[c] = h[c + 1][c] / size;
-    h[c][c] = size;
-    gmres->right[c + 1] = -gmres->sine[c] * gmres->right[c];
-    gmres->right[c] *= gmres->cosine[c];
-    return fabs(gmres->right[c + 1]);
-}
-
 static void combine(struct gmres *gmres, size_t n, size_t count, double *x) {
     double factor[BASIS];
-    for (size_t a = count; a-- > 0;) {
-        factor[a] = gmres->right[a];
-        for (size_t b = a + 1; b < count; b++)
-            factor[a] -= gmres->hessenberg[a][b] * factor[b];
-        factor[a] /= gmres->hessenberg[a][a];
-    }
+    hessenberg_solve(&gmres->hessenberg, count, factor);
     for (size_t a = 0; a < count; a++)
         add(n, factor[a], gmres->direction[a], x);
 }
@@ -246,7 +224,7 @@ static int cycle(struct gmres *gmres, const struct linear_system *system, double
                  double *left, size_t *iterations, struct error *err) {
     size_t n = unknowns_of(gmres, system), c = 0;
     scale(n, 1 / *left, gmres->basis[0]);
-    gmres->right[0] = *left;
+    gmres->hessenberg.right[0] = *left;
     for (double size = 1; c<BASIS && * left> goal && size > 0; c++) {
         double *next = gmres->basis[c + 1];
         int status = 0;
@@ -259,14 +237,14 @@ static int cycle(struct gmres *gmres, const struct linear_system *system, double
             return status;
         operate(gmres, system, gmres->direction[c], next);
         for (size_t a = 0; a <= c; a++) {
-            gmres->hessenberg[a][c] = dot(n, next, gmres->basis[a]);
-            add(n, -gmres->hessenberg[a][c], gmres->basis[a], next);
+            gmres->hessenberg.h[a][c] = dot(n, next, gmres->basis[a]);
+            add(n, -gmres->hessenberg.h[a][c], gmres->basis[a], next);
         }
         size = sqrt(dot(n, next, next));
-        gmres->hessenberg[c + 1][c] = size;
+        gmres->hessenberg.h[c + 1][c] = size;
         if (size > 0)
             scale(n, 1 / size, next);
-        *left = rotate(gmres, c);
+        *left = hessenberg_rotate(&gmres->hessenberg, c);
     }
     combine(gmres, n, c, x);
     *iterations += c;

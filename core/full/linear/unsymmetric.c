@@ -1,4 +1,5 @@
 #include "core/full/linear/unsymmetric.h"
+#include "core/full/linear/hessenberg.h"
 #include <limits.h>
 #include <math.h>
 #include <stdint.h>
@@ -8,6 +9,7 @@
 
 /* Solves with an old factorisation, after which it is made anew. */
 enum { BASIS = 16 };
+_Static_assert((int)BASIS <= (int)HESSENBERG_MOST, "a longer basis than the matrix has");
 
 struct unsymmetric {
     const struct mesh *mesh; /* borrowed */
@@ -19,10 +21,9 @@ struct unsymmetric {
     int *start, *index; /* compressed columns, as number */
     double *number;
     double *load, *solution;
-    double *basis[BASIS + 1];            /* orthonormal residuals */
-    double *direction[BASIS];            /* preconditioned */
-    double hessenberg[BASIS + 1][BASIS]; /* made upper triangular by rotate() */
-    double cosine[BASIS], sine[BASIS], right[BASIS + 1];
+    double *basis[BASIS + 1]; /* orthonormal residuals */
+    double *direction[BASIS]; /* preconditioned */
+    struct hessenberg hessenberg;
     void *symbolic, *numeric;
     double control[UMFPACK_CONTROL];
 };
@@ -268,34 +269,13 @@ static int precondition(struct unsymmetric *lu, const double *r, double *x, stru
     return status == UMFPACK_OK ? 0 : failure(lu, status, err);
 }
 
-/* Givens' rotations make column c upper triangular. Returns the size of the residual. */
-static double rotate(struct unsymmetric *lu, size_t c) {
-    double(*h)[BASIS] = lu->hessenberg;
-    for (size_t a = 0; a < c; a++) {
-        double upper = h[a][c], lower = h[a + 1][c];
-        h[a][c] = lu->cosine[a] * upper + lu->sine[a] * lower;
-        h[a + 1][c] = lu->cosine[a] * lower - lu->sine[a] * upper;
-    }
-    double size = hypot(h[c][c], h[c + 1][c]);
-    lu->cosine[c] = h[c][c] / size;
-    lu->sine[c] = h[c + 1][c] / size;
-    h[c][c] = size;
-    lu->right[c + 1] = -lu->sine[c] * lu->right[c];
-    lu->right[c] *= lu->cosine[c];
-    return fabs(lu->right[c + 1]);
-}
-
 static void combine(struct unsymmetric *lu, size_t count) {
     double factor[BASIS];
     memset(lu->solution, 0, lu->unknowns * sizeof *lu->solution);
-    for (size_t a = count; a-- > 0;) {
-        factor[a] = lu->right[a];
-        for (size_t b = a + 1; b < count; b++)
-            factor[a] -= lu->hessenberg[a][b] * factor[b];
-        factor[a] /= lu->hessenberg[a][a];
+    hessenberg_solve(&lu->hessenberg, count, factor);
+    for (size_t a = count; a-- > 0;)
         for (size_t i = 0; i < lu->unknowns; i++)
             lu->solution[i] += factor[a] * lu->direction[a][i];
-    }
 }
 
 /* Extends the basis by direction c, and makes it orthonormal. Returns the size that was left. */
@@ -304,11 +284,11 @@ static double extend(struct unsymmetric *lu, size_t c) {
     double *next = lu->basis[c + 1];
     operate(lu, lu->direction[c], next);
     for (size_t a = 0; a <= c; a++) {
-        double part = lu->hessenberg[a][c] = dot(n, next, lu->basis[a]);
+        double part = lu->hessenberg.h[a][c] = dot(n, next, lu->basis[a]);
         for (size_t i = 0; i < n; i++)
             next[i] -= part * lu->basis[a][i];
     }
-    double size = lu->hessenberg[c + 1][c] = sqrt(dot(n, next, next));
+    double size = lu->hessenberg.h[c + 1][c] = sqrt(dot(n, next, next));
     for (size_t i = 0; size > 0 && i < n; i++)
         next[i] /= size;
     return size;
@@ -321,13 +301,13 @@ static int iterate(struct unsymmetric *lu, double tolerance, bool *reached,
     double first = sqrt(dot(n, lu->load, lu->load)), left = first, size = 1;
     for (size_t i = 0; i < n; i++)
         lu->basis[0][i] = first > 0 ? lu->load[i] / first : 0;
-    lu->right[0] = first;
+    lu->hessenberg.right[0] = first;
     for (; c < BASIS && left > tolerance * first && size > 0; c++) {
         int status = precondition(lu, lu->basis[c], lu->direction[c], err);
         if (status != 0)
             return status;
         size = extend(lu, c);
-        left = rotate(lu, c);
+        left = hessenberg_rotate(&lu->hessenberg, c);
     }
     combine(lu, c);
     work->iterations += c;

@@ -100,7 +100,7 @@ int contact_quantities_measure(const struct contact_quantities *quantities,
     for (size_t a = 0; a < QUANTITY_MEASURES_MOST; a++)
         values[a] = (double)NAN;
     for (size_t q = 0; q < CONTACT_QUANTITIES && status == 0; first += COUNTS[q++])
-        if (one_case != NULL && one_case->asked.of[q])
+        if (one_case != NULL && one_case->asked.of[q] && QUANTITIES[q]->measure != NULL)
             status = QUANTITIES[q]->measure(quantities->of[q], context, pressed, area,
                                             values + first, err);
     return status;

@@ -28,6 +28,9 @@ enum {
 };
 _Static_assert((int)CONTACT_QUANTITY_BEHIND <= (int)MEASURE_PAIRED, "too many measures");
 
+/* Why targets refuse what slips, of all quantities that do. */
+#define FRICTION_NO_TARGET "a target answers contact without friction"
+
 struct measure_context; /* contact_measure.h */
 struct contact_area;    /* core/contact/area.h */
 
@@ -88,7 +91,8 @@ struct contact_quantity {
     int (*create)(struct quantity_state **out, const struct quantity_scene *scene,
                   struct error *err);
     void (*destroy)(struct quantity_state **state);
-    /* Measures a solved load into as many values as the quantity has; NaN: none. */
+    /* Measures a solved load into as many values as the quantity has, which are NaN: none. NULL
+     * where no load by itself has a value. */
     int (*measure)(struct quantity_state *state, const struct measure_context *context,
                    const struct contact_pressed *pressed, const struct contact_area *area,
                    double *values, struct error *err);

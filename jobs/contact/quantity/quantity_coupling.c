@@ -20,13 +20,12 @@ static const char COUPLING[] = "/contact/slip/coupling", PRESSING[] = "/contact/
 enum { PRESSING_FRICTIONLESS, PRESSING_FRICTIONAL };
 static const struct choice PRESSINGS[] = {
     {"frictionless", PRESSING_FRICTIONLESS}, {"frictional", PRESSING_FRICTIONAL}, {0}};
-#define TARGET "a target answers contact without friction"
 
 static const struct parameter ROWS[] = {
     {.path = "/contact/slip/coupling",
      .type = PARAMETER_FLAG,
      .later = true,
-     .target_refusal = TARGET,
+     .target_refusal = FRICTION_NO_TARGET,
      .example_json = "true",
      .help = "with friction: also solve slip with what pressures move along the face and tractions "
              "across it, on an infinite half-space and a rigid flat; surfaces take 7 to 12 times "
@@ -35,7 +34,7 @@ static const struct parameter ROWS[] = {
      .type = PARAMETER_CHOICE,
      .choices = PRESSINGS,
      .later = true,
-     .target_refusal = TARGET,
+     .target_refusal = FRICTION_NO_TARGET,
      .example_json = "\"frictional\"",
      .help = "with coupling: whether friction acts while the block is pressed (frictionless unless "
              "given)"},
@@ -126,16 +125,6 @@ static int create(struct quantity_state **out, const struct quantity_scene *scen
     return status;
 }
 
-/* No load by itself has a value. */
-static int measure(struct quantity_state *state, const struct measure_context *context,
-                   const struct contact_pressed *pressed, const struct contact_area *area,
-                   double *values, struct error *err) {
-    (void)state, (void)context, (void)pressed, (void)area, (void)err;
-    for (size_t a = 0; a < COUPLING_MEASURES; a++)
-        values[a] = NAN;
-    return 0;
-}
-
 /* Solves the tangential loads from the lightest on. Points from one on that finds no solution have
  * no value. */
 static int complete(struct quantity_state *state, const struct measure_context *context,
@@ -219,5 +208,4 @@ const struct contact_quantity COUPLING_QUANTITY = {.measures = MEASURES,
                                                    .seconds = seconds_of,
                                                    .create = create,
                                                    .destroy = destroy,
-                                                   .measure = measure,
                                                    .complete = complete};

@@ -35,7 +35,6 @@ _Static_assert((int)FRICTION_MEASURE + WORK == (int)SLIP_WORK &&
 #define FRICTION "/contact/friction"
 static const char PRESSURE[] = "/contact/slip/pressure", DIRECTION[] = "/contact/slip/direction";
 static const struct choice DIRECTIONS[] = {{"x", 0}, {"y", 1}, {0}};
-#define TARGET "a target answers contact without friction"
 
 static const struct parameter ROWS[] = {
     {.path = FRICTION,
@@ -46,7 +45,7 @@ static const struct parameter ROWS[] = {
      .above_minimum = true,
      .sweep = true,
      .later = true,
-     .target_refusal = TARGET,
+     .target_refusal = FRICTION_NO_TARGET,
      .example_json = "0.2",
      .help = "coefficient of friction: the block is pressed, and a tangential load then rises to "
              "full slip; what sticks, how far it gives, and what a cycle takes, by the loads "
@@ -57,7 +56,7 @@ static const struct parameter ROWS[] = {
      .maximum = CONTACT_LOAD_NUMBER_MOST,
      .above_minimum = true,
      .later = true,
-     .target_refusal = TARGET,
+     .target_refusal = FRICTION_NO_TARGET,
      .unit = "that of the loads",
      .example_json = "0.1",
      .help = "with friction: the load that is held while the tangential one rises; unless given "
@@ -66,7 +65,7 @@ static const struct parameter ROWS[] = {
      .type = PARAMETER_CHOICE,
      .choices = DIRECTIONS,
      .later = true,
-     .target_refusal = TARGET,
+     .target_refusal = FRICTION_NO_TARGET,
      .example_json = "\"y\"",
      .help = "with friction: direction of the tangential load (x unless given), which matters on "
              "surfaces with lay"},
