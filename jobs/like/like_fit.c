@@ -5,8 +5,8 @@
 #include "core/statistics/patch.h"
 #include "core/statistics/spectra/map_spectrum.h"
 #include "core/statistics/spectra/spectrum_fit.h"
-#include "core/statistics/uncertainty/isotropy.h"
 #include "core/statistics/uncertainty/map_chance.h"
+#include "core/statistics/uncertainty/map_directions.h"
 #include "core/surface/spectrum.h"
 #include "jobs/like/like_spectrum.h"
 #include "jobs/surface/surface_case.h"
@@ -17,29 +17,6 @@
 #include <string.h>
 
 /* Laws that fit a measured surface, as parameters of a study. */
-
-/* Probability with which an isotropic surface is taken for an anisotropic one. */
-static const double SIGNIFICANCE = 0.01;
-/* A surface with this ratio is taken as anisotropic where the map is too small for a test. */
-static const double RATIO_PLAIN = 2;
-
-/* Fits the self-affine law to an open map. law: NULL if it is not wanted. trusted: the longest and
- * the shortest wavelength at which the map determines its spectrum. ERROR_INPUT where a law is
- * wanted and none fits. */
-static int like_law_fit(const struct measured_map *map, struct spectrum *law, double trusted[2],
-                        struct error *err) {
-    struct map_spectrum *spectrum = NULL;
-    struct spectrum_fit fit;
-    int status = map_spectrum_create(&spectrum, map, err);
-    if (status == 0)
-        status = spectrum_fit_measure(spectrum, &(struct spectrum_fit_request){0}, &fit, err);
-    map_spectrum_destroy(&spectrum);
-    if (status != 0)
-        return status;
-    trusted[0] = fit.trusted_from;
-    trusted[1] = fit.trusted_to;
-    return law != NULL ? spectrum_fit_law(&fit, law, err) : 0;
-}
 
 #define NAME(type, name, value) name,
 static const char *const NAMES[HEIGHTS_QUANTILE] = {RUGO_DISTRIBUTIONS(NAME)};
@@ -60,34 +37,6 @@ static int like_law_heights(const struct measured_map *map, const char **name, d
     return 0;
 }
 
-/* Finds how many times longer waves are along the grooves of a surface than across: 1 for profiles,
- * and where an isotropic surface may look so. across: the angle from x of the steepest slopes. */
-static int like_law_anisotropy(const struct measured_map *map, double *ratio, double *across,
-                               struct error *err) {
-    struct map_chance *chance = NULL;
-    struct cell_differences differences;
-    struct isotropy isotropy;
-    *ratio = 1;
-    *across = 0;
-    if (grid_is_profile(map->grid))
-        return 0;
-    int status = map_chance_create(&chance, map, err);
-    if (status != 0)
-        return status;
-    double spacing = grid_dx(map->grid);
-    double excess = chance->told ? low_modes_excess_slopes(&chance->modes, chance->correlation,
-                                                           map->grid, spacing)
-                                 : (double)NAN;
-    cell_differences_measure(map, &chance->modes, 1, &differences);
-    isotropy_measure(&differences, spacing, &chance->modes, excess, &isotropy);
-    bool sure = isnan(isotropy.p_value) ? isotropy.ratio > RATIO_PLAIN
-                                        : isotropy.p_value < SIGNIFICANCE && isotropy.ratio > 1;
-    *ratio = sure ? isotropy.ratio : 1;
-    *across = sure ? isotropy.direction : 0;
-    map_chance_destroy(&chance);
-    return 0;
-}
-
 static const double SAME_SPACING = 1e-4; /* relative, of distances along x and along y */
 static const double HURST_LEAST = 0.01;
 enum { CELL_SIDES = 2 }; /* of a cell, in sides of the map */
@@ -105,9 +54,10 @@ struct fit {
     struct grid cell;
     struct like_table table;
     double measured[PATCH_QUANTITY_COUNT];
-    double trusted[2];         /* the longest and the shortest wavelength, in units of the map */
-    double anisotropy, across; /* of the map, and the angle of its steepest slopes from x */
-    double rms_slope;          /* of random surfaces on the cell */
+    struct map_spectrum *circles;  /* owned, as the next: of the map */
+    struct map_spectrum *ellipses; /* along its lay; NULL where it has none */
+    struct spectrum_fit law;
+    double rms_slope; /* of random surfaces on the cell */
 };
 
 /* --- the map --- */
@@ -128,23 +78,45 @@ static int check_map(const struct height_map *map, struct error *err) {
     return 0;
 }
 
-/* Random surfaces can have grooves along x, or none. */
-static int check_grooves(const struct fit *fit, struct error *err) {
-    static const double ASIDE = 22.5, LONGEST = 1000; /* the range of /surface/anisotropy */
-    double degrees = fit->across * 180 / M_PI;
-    if (fit->spectrum != LIKE_SPECTRUM_GIVEN && !(fit->anisotropy <= LONGEST))
-        return error_set(err, ERROR_INPUT,
-                         "the waves of the map are more than %g times as long in one direction as "
-                         "across, which those of random surfaces are not; give the spectrum",
-                         LONGEST);
-    if (fit->spectrum == LIKE_SPECTRUM_GIVEN || fit->anisotropy == 1 || fabs(degrees) > 90 - ASIDE)
+/* Finds whether directions differ, from the map alone. */
+static int find_lay(struct fit *fit, struct lay *lay, struct error *err) {
+    const struct spectrum_fit_request by_the_map = {0};
+    struct map_chance *chance = NULL;
+    struct cell_differences nearest;
+    struct map_directions directions;
+    *lay = LAY_NONE;
+    if (fit->profile)
         return 0;
-    return error_set(err, ERROR_INPUT,
-                     "the waves of the map are %.2f times as long in one direction as across, and "
-                     "steepest at %.0f degrees from x: random surfaces have their long waves "
-                     "along x; turn the map so that slopes are steepest along y, or give the "
-                     "spectrum",
-                     fit->anisotropy, degrees);
+    int status = map_chance_create(&chance, &fit->map, err);
+    if (status != 0)
+        return status;
+    cell_differences_measure(&fit->map, &chance->modes, 1, &nearest);
+    map_directions_measure(&directions, &fit->map, chance, fit->circles, &nearest);
+    map_chance_destroy(&chance);
+    status = map_directions_lay(lay, &directions, fit->circles, &by_the_map, err);
+    if (status != 0 || !lay_is_plain(lay) || !map_directions_differ(&directions) ||
+        fit->spectrum == LIKE_SPECTRUM_GIVEN)
+        return status;
+    return error_set(
+        err, ERROR_INPUT,
+        "the map differs by direction (slopes by a factor of %.3g), and its waves have "
+        "no one lay, as those of grooves that do not end; random surfaces have one: "
+        "give the spectrum",
+        directions.fine.ratio);
+}
+
+/* Measures the rings of the map and the law that fits them, over the ellipses of its lay. */
+static int measure_rings(struct fit *fit, struct error *err) {
+    struct lay lay;
+    int status = map_spectrum_create(&fit->circles, &fit->map, err);
+    if (status == 0)
+        status = find_lay(fit, &lay, err);
+    if (status == 0 && !lay_is_plain(&lay))
+        status = map_spectrum_create_along(&fit->ellipses, fit->circles, &lay, err);
+    if (status == 0)
+        status = spectrum_fit_measure(fit->ellipses != NULL ? fit->ellipses : fit->circles,
+                                      &(struct spectrum_fit_request){0}, &fit->law, err);
+    return status;
 }
 
 static void choose_cell(struct fit *fit) {
@@ -198,7 +170,9 @@ static bool put_spectrum(cJSON *surface, const struct fit *fit) {
 }
 
 static bool put_scale(cJSON *surface, const struct fit *fit) {
-    if (fit->anisotropy > 1 && !put_number(surface, "anisotropy", fit->anisotropy))
+    const struct lay *lay = fit->ellipses != NULL ? &fit->ellipses->lay : NULL;
+    if (lay != NULL && !(put_number(surface, "anisotropy", lay->ratio) &&
+                         put_number(surface, "lay_angle", lay->angle * 180 / M_PI)))
         return false;
     return has(surface, "rms_height") || put_number(surface, "rms_slope", fit->rms_slope);
 }
@@ -208,10 +182,9 @@ static bool put_scale(cJSON *surface, const struct fit *fit) {
 static int put_law(cJSON *surface, struct fit *fit, struct error *err) {
     struct spectrum law;
     struct moments moments;
-    int status = like_law_fit(&fit->map, &law, fit->trusted, err);
+    int status = spectrum_fit_law(&fit->law, &law, err);
     if (status != 0)
         return status;
-    law.anisotropy = fit->anisotropy;
     law.wavelength_short = fmax(law.wavelength_short, 2 * grid_dx(fit->map.grid));
     law.wavelength_long = fmax(law.wavelength_long, law.wavelength_short);
     law.wavelength_rolloff = fmax(law.wavelength_rolloff, law.wavelength_short);
@@ -305,7 +278,8 @@ static bool put_marks(cJSON *like, const struct fit *fit) {
     const struct like_source *source = fit->source;
     const struct grid *grid = fit->map.grid;
     const double points[] = {(double)grid->nx, (double)grid->ny};
-    const double trusted[] = {fit->trusted[0] / fit->wavelength, fit->trusted[1] / fit->wavelength};
+    const double trusted[] = {fit->law.trusted_from / fit->wavelength,
+                              fit->law.trusted_to / fit->wavelength};
     return field_put_text(like, "file", source->file) &&
            field_put_text(like, "sha256", source->sha256) &&
            field_put_count(like, "bytes", source->bytes) &&
@@ -332,14 +306,31 @@ static int put_like(cJSON *surface, const struct fit *fit, struct error *err) {
 
 /* --- together --- */
 
+/* Refuses a table whose surfaces would not be like the map. */
+static int check_left(const struct like_left *left, struct error *err) {
+    static const double MOST = 0.05;
+    static const char *const WHAT[LIKE_MOMENTS] = {"height", "slope", "curvature"};
+    if (fabs(left->relative) <= MOST)
+        return 0;
+    return error_set(
+        err, ERROR_INPUT,
+        "no smooth spectrum has the map's: the RMS %s of its surfaces would be %.2g %% "
+        "off; %.2g %% is allowed; give \"spectrum\": \"fit\", or prepare the map",
+        WHAT[left->moment], 100 * left->relative, 100 * MOST);
+}
+
 static int fit_table(cJSON *surface, struct fit *fit, struct error *err) {
     const double squares[LIKE_MOMENTS] = {pow(fit->measured[PATCH_RMS_HEIGHT], 2),
                                           pow(fit->measured[PATCH_RMS_SLOPE], 2),
                                           pow(fit->measured[PATCH_RMS_CURVATURE], 2)};
-    int status = like_table_measure(&fit->table, &fit->map, fit->anisotropy, 0, err);
+    const struct map_spectrum *rings = fit->ellipses != NULL ? fit->ellipses : fit->circles;
+    struct like_left left;
+    int status = like_table_measure(&fit->table, rings, err);
     if (status == 0)
-        status = like_table_calibrate(&fit->table, fit->map.grid, fit->source->detrend, &fit->cell,
-                                      squares, err);
+        status = like_table_calibrate(&fit->table, rings, fit->source->detrend, &fit->cell, squares,
+                                      &left, err);
+    if (status == 0)
+        status = check_left(&left, err);
     if (status != 0)
         return status;
     fit->wavelength = 2 * M_PI / fit->table.highest;
@@ -351,11 +342,7 @@ static int fit_table(cJSON *surface, struct fit *fit, struct error *err) {
 }
 
 static int fit_spectrum(cJSON *surface, struct fit *fit, struct error *err) {
-    int status = like_law_fit(&fit->map, NULL, fit->trusted, err);
-    if (status == 0)
-        status = like_law_anisotropy(&fit->map, &fit->anisotropy, &fit->across, err);
-    if (status == 0)
-        status = check_grooves(fit, err);
+    int status = measure_rings(fit, err);
     if (status == 0 && fit->spectrum == LIKE_SPECTRUM_TABLE)
         status = fit_table(surface, fit, err);
     if (status == 0 && fit->spectrum == LIKE_SPECTRUM_FIT)
@@ -403,5 +390,7 @@ int like_fit(cJSON *surface, const struct height_map *map, const struct like_sou
     if (status == 0)
         status = put_like(surface, &fit, err);
     like_table_clear(&fit.table);
+    map_spectrum_destroy(&fit.ellipses);
+    map_spectrum_destroy(&fit.circles);
     return status;
 }

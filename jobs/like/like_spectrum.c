@@ -1,11 +1,9 @@
 #include "jobs/like/like_spectrum.h"
-#include "core/statistics/heights/roughness.h"
-#include "core/statistics/spectra/windowed_psd.h"
 #include "core/theory/sampled_field.h"
 #include <math.h>
 #include <stdlib.h>
 
-enum { PARTS_OF_OCTAVE = 4 };
+enum { PARTS_OF_OCTAVE = 4, FEWEST_RINGS = 4 };
 static const double ROUNDING = 1e-9; /* relative, of wave numbers */
 static const double LONGER = 64;     /* the table has waves of cells so many times as long */
 
@@ -39,18 +37,6 @@ static void add_rings(struct like_table *table, size_t first, size_t last,
     add_row(table, middle, sum / weight);
 }
 
-/* Measures rings of the map stretched along x by the anisotropy, in which they are circles. */
-static int measure_rings(const struct measured_map *map, const struct grid *stretched,
-                         double **wave_number, double **density, struct error *err) {
-    size_t bins = radial_bins(stretched);
-    *wave_number = array_create(bins, sizeof **wave_number);
-    *density = array_create(bins, sizeof **density);
-    if (*wave_number == NULL || *density == NULL)
-        return error_memory(err, 2 * bins * sizeof **density, "a spectral density");
-    const struct measured_map seen = {stretched, map->z, BOUNDARY_OPEN};
-    return windowed_psd_measure(&seen, *wave_number, *density, err);
-}
-
 /* Returns the wave number below which all but a small part of the fourth moment lies. Beyond it a
  * spectrum with a cut-off has only leakage of the window. */
 static double highest_of(const double *wave_number, const double *density, size_t bins, double most,
@@ -70,11 +56,11 @@ static double highest_of(const double *wave_number, const double *density, size_
     return most;
 }
 
+/* first: the first ring. */
 static void smooth(struct like_table *out, const double *wave_number, const double *density,
-                   size_t bins, double most, bool profile) {
+                   size_t first, size_t bins, double most, bool profile) {
     double octave = pow(2, 1.0 / PARTS_OF_OCTAVE);
-    size_t first = 1;
-    add_row(out, wave_number[1] / LONGER, density[1]);
+    add_row(out, wave_number[first] / LONGER, density[first]);
     while (first < bins && wave_number[first] <= most * (1 + ROUNDING)) {
         size_t last = first + 1;
         while (last < bins && wave_number[last] <= wave_number[first] * octave &&
@@ -88,42 +74,70 @@ static void smooth(struct like_table *out, const double *wave_number, const doub
         add_row(out, most, out->density[out->count - 1] * pow(most / last, -fall_of(profile)));
 }
 
-int like_table_measure(struct like_table *out, const struct measured_map *map, double anisotropy,
-                       double most, struct error *err) {
-    struct grid stretched = *map->grid;
-    stretched.lx /= anisotropy;
-    double *wave_number = NULL, *density = NULL;
-    size_t bins = radial_bins(&stretched);
-    bool profile = grid_is_profile(map->grid);
-    *out = (struct like_table){.anisotropy = anisotropy,
+/* Returns the first ring behind those without waves, which small ellipses may be. */
+static size_t first_of(const struct map_spectrum *rings) {
+    size_t first = 1;
+    for (size_t r = 1; r < rings->rings; r++)
+        first = rings->freedom[r] > 0 ? first : r + 1;
+    return first;
+}
+
+static int rows_fill(struct like_table *out, const struct map_spectrum *rings,
+                     const double *density, size_t bins, double most, struct error *err) {
+    const struct grid *grid = &rings->modes.grid;
+    const bool profile = grid_is_profile(grid);
+    const size_t first = first_of(rings);
+    *out = (struct like_table){.lay = rings->lay,
                                .wave_number = array_create(bins + 2, sizeof *out->wave_number),
                                .density = array_create(bins + 2, sizeof *out->density)};
-    int status = out->wave_number != NULL && out->density != NULL
-                     ? measure_rings(map, &stretched, &wave_number, &density, err)
-                     : error_memory(err, 2 * bins * sizeof *density, "a table spectrum");
-    if (status == 0) {
-        if (most == 0)
-            most = highest_of(wave_number, density, bins, M_PI / grid_dx(map->grid), profile);
-        smooth(out, wave_number, density, bins, most, profile);
-        out->highest = out->wave_number[out->count - 1];
-    }
-    free(wave_number);
-    free(density);
-    if (status != 0)
+    if (out->wave_number == NULL || out->density == NULL) {
         like_table_clear(out);
-    return status;
+        return error_memory(err, 2 * bins * sizeof *density, "a table spectrum");
+    }
+    if (first + FEWEST_RINGS > bins) {
+        like_table_clear(out);
+        return error_set(err, ERROR_INPUT, "the map is too small for a spectrum");
+    }
+    if (most == 0)
+        most = highest_of(rings->wave_number, density, bins, M_PI / grid_dx(grid), profile);
+    smooth(out, rings->wave_number, density, first, bins, most, profile);
+    out->highest = out->wave_number[out->count - 1];
+    return 0;
+}
+
+int like_table_measure(struct like_table *out, const struct map_spectrum *rings,
+                       struct error *err) {
+    return rows_fill(out, rings, rings->density, rings->rings, 0, err);
+}
+
+int like_table_rows(const struct like_table *table, const struct map_spectrum *rings,
+                    const double *density, double *rows, struct error *err) {
+    struct like_table found;
+    int status = rows_fill(&found, rings, density, rings->rings, table->highest, err);
+    if (status != 0)
+        return status;
+    for (size_t row = 0; row < table->count; row++)
+        rows[row] = row < found.count ? found.density[row] : (double)NAN;
+    like_table_clear(&found);
+    return 0;
+}
+
+void like_table_spectrum(const struct like_table *table, struct spectrum *out) {
+    *out = (struct spectrum){.type = SPECTRUM_TABLE,
+                             .anisotropy = table->lay.ratio,
+                             .lay_angle = table->lay.angle,
+                             .table_count = table->count,
+                             .table_wave_number = table->wave_number,
+                             .table_density = table->density};
 }
 
 int like_table_slope(const struct like_table *table, const struct grid *cell, double measured,
                      double *rms_slope, struct error *err) {
-    const struct spectrum spectrum = {.type = SPECTRUM_TABLE,
-                                      .anisotropy = table->anisotropy,
-                                      .table_count = table->count,
-                                      .table_wave_number = table->wave_number,
-                                      .table_density = table->density};
+    struct spectrum spectrum;
     struct modes *modes = NULL;
     struct moments moments;
     struct sampled_moments sampled;
+    like_table_spectrum(table, &spectrum);
     int status = modes_create(&modes, &spectrum, cell, err);
     if (status != 0)
         return status;

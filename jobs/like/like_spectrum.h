@@ -3,11 +3,12 @@
 #define RUGO_JOBS_LIKE_LIKE_SPECTRUM_H
 
 #include "core/map/detrend.h"
-#include "core/statistics/measured_map.h"
+#include "core/statistics/spectra/map_spectrum.h"
 #include "core/surface/spectrum.h"
+#include "jobs/like/like_expectation.h"
 
 struct like_table {
-    double anisotropy;   /* of waves along x; 1: isotropic */
+    struct lay lay;      /* wave numbers are those across it */
     double highest;      /* wave number of the last row */
     size_t count;        /* rows */
     double *wave_number; /* owned, as the density: count values, rising, in radians per length */
@@ -15,24 +16,29 @@ struct like_table {
 };
 void like_table_clear(struct like_table *table);
 
-/* Measures the density over the wave numbers of an open map, smoothed over quarters of octaves. The
- * last is `most`, or where that is 0 its Nyquist frequency or an earlier end of the spectrum. Below
+/* Takes the density over the rings of an open map, smoothed over quarters of octaves. The last row
+ * is at the Nyquist frequency of the points along x, or at an earlier end of the spectrum. Below
  * the first ring the density is constant. */
-int like_table_measure(struct like_table *out, const struct measured_map *map, double anisotropy,
-                       double most, struct error *err);
+int like_table_measure(struct like_table *out, const struct map_spectrum *rings, struct error *err);
+/* Fills rows[table->count] with what other densities, one a ring, have at the rows of the table. */
+int like_table_rows(const struct like_table *table, const struct map_spectrum *rings,
+                    const double *density, double *rows, struct error *err);
+/* Fills a spectrum with the table, which it borrows. */
+void like_table_spectrum(const struct like_table *table, struct spectrum *out);
+
 /* Changes the density so that sub-maps of random surfaces on the cell, as large as the map and
  * without such a trend, have the density of the map in the mean: a window mixes waves, and a trend
  * contains the longest ones. A small and smooth change follows, so that they have the map's mean
- * squares of height, slope and curvature (forward and central differences). */
-enum { LIKE_MOMENTS = 3 };
-int like_table_calibrate(struct like_table *table, const struct grid *map, enum detrend kind,
-                         const struct grid *cell, const double squares[LIKE_MOMENTS],
+ * squares of height, slope and curvature (forward and central differences). *left: the largest
+ * relative difference that remains in one of their roots, which is that of LIKE_MOMENTS. */
+struct like_left {
+    double relative; /* (surfaces - map)/map */
+    int moment;      /* 0: height, 1: slope, 2: curvature */
+};
+int like_table_calibrate(struct like_table *table, const struct map_spectrum *rings,
+                         enum detrend kind, const struct grid *cell,
+                         const double squares[LIKE_MOMENTS], struct like_left *left,
                          struct error *err);
-/* Changes the density by a parabola of logarithms, so that the zeroth, second and fourth moments of
- * the table on the cell change by these factors. Does nothing where that takes more than a factor
- * of four somewhere. */
-void like_table_bend(struct like_table *table, const struct grid *cell,
-                     const double factors[LIKE_MOMENTS]);
 
 /* Computes the RMS slope of surfaces with this density on a cell, in a scale such that forward
  * differences between the points of the cell have the measured RMS. */

@@ -28,7 +28,15 @@ struct fitted {
 
 static const double NONE = (double)NAN;
 
+/* Returns by how many rings the errors of a lay blur what is sharp at one: twice the root mean
+ * square over directions; 0 of circles. */
+static double blur_at(const struct lay *lay, double ring) {
+    double turn = lay->ratio - 1 / lay->ratio;
+    return ring * hypot(lay->ratio_error, turn * lay->angle_error) * M_SQRT1_2;
+}
+
 static void problem_bounds(struct law_problem *problem, const struct spectrum_range *range) {
+    double blur = blur_at(&problem->spectrum->lay, (double)range->edge);
     double last = (double)range->last, edge = (double)range->edge;
     double *low = problem->low, *high = problem->high;
     low[LAW_AMPLITUDE] = -INFINITY;
@@ -37,8 +45,10 @@ static void problem_bounds(struct law_problem *problem, const struct spectrum_ra
     high[LAW_HURST] = 1;
     low[LAW_ROLLOFF] = log(LAW_FEWEST_WAVES);
     high[LAW_ROLLOFF] = log(last);
-    low[LAW_SHORT] = edge > 0 ? log(edge - 2) : 0;
-    high[LAW_SHORT] = edge > 0 ? log(edge + 2.5) : INFINITY;
+    low[LAW_SHORT] = edge > 0 ? log(fmax(edge - 2 - blur, 1)) : 0;
+    high[LAW_SHORT] = edge > 0 ? log(edge + 2.5 + blur) : INFINITY;
+    if (edge > 0 && blur > 0)
+        law_problem_leave_out(problem, edge - 1 - blur, edge + 1 + blur);
     low[LAW_LONG] = log(LAW_FEWEST_WAVES / 2);
     high[LAW_LONG] = log(last / 2);
     low[LAW_BLUR] = log(1e-3 / (last * last));
@@ -107,14 +117,16 @@ static double deviance_scatter(const struct law_problem *problem) {
     for (size_t r = first; r < first + count; r++)
         for (size_t d = 0; d < RING_REACH && r + d < first + count; d++) {
             double both = s->covariance[r][d];
+            if (problem->freedom[r - first] == 0 || problem->freedom[r + d - first] == 0)
+                continue;
             variance +=
                 (d == 0 ? 2 : 4) * both * both / (s->covariance[r][0] * s->covariance[r + d][0]);
         }
-    return sqrt(variance) / (double)count;
+    return sqrt(variance) / (double)problem->counted;
 }
 
 static double freedom(const struct fitted *fitted) {
-    double left = (double)fitted->problem->leakage->count;
+    double left = (double)fitted->problem->counted;
     for (size_t a = 0; a < LAW_PARAMETERS; a++)
         left -= fitted->law.free[a] ? 1 : 0;
     return left;

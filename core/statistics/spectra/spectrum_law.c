@@ -26,15 +26,16 @@ int law_problem_create(struct law_problem **out, const struct map_spectrum *spec
     int status = spectrum_leakage_create(&problem->leakage, spectrum, first, last, err);
     if (status == 0) {
         problem->found = array_create(count, sizeof *problem->found);
+        problem->freedom = array_create(count, sizeof *problem->freedom);
         problem->expected = array_create(count, sizeof *problem->expected);
         problem->trial = array_create(count, sizeof *problem->trial);
         problem->slope = array_create(LAW_PARAMETERS * count, sizeof *problem->slope);
         problem->density = array_create(problem->leakage->nodes, sizeof *problem->density);
         problem->plain = array_create(problem->leakage->nodes, sizeof *problem->plain);
         problem->logarithm = array_create(problem->leakage->nodes, sizeof *problem->logarithm);
-        if (problem->found == NULL || problem->expected == NULL || problem->trial == NULL ||
-            problem->slope == NULL || problem->density == NULL || problem->plain == NULL ||
-            problem->logarithm == NULL)
+        if (problem->found == NULL || problem->freedom == NULL || problem->expected == NULL ||
+            problem->trial == NULL || problem->slope == NULL || problem->density == NULL ||
+            problem->plain == NULL || problem->logarithm == NULL)
             status = error_memory(err, count * sizeof *problem->slope, "the fit of a spectrum");
     }
     if (status != 0) {
@@ -43,6 +44,8 @@ int law_problem_create(struct law_problem **out, const struct map_spectrum *spec
     }
     for (size_t r = 0; r < count; r++)
         problem->found[r] = spectrum->density[first + r] + floor;
+    memcpy(problem->freedom, spectrum->freedom + first, count * sizeof *problem->freedom);
+    problem->counted = count;
     for (size_t a = 0; a < problem->leakage->nodes; a++)
         problem->logarithm[a] = logarithm_of(problem->leakage->node[a]);
     problem->plain_of[0] = (double)NAN; /* of no law yet */
@@ -56,6 +59,7 @@ void law_problem_destroy(struct law_problem **problem) {
         return;
     spectrum_leakage_destroy(&p->leakage);
     free(p->found);
+    free(p->freedom);
     free(p->expected);
     free(p->trial);
     free(p->slope);
@@ -64,6 +68,16 @@ void law_problem_destroy(struct law_problem **problem) {
     free(p->logarithm);
     free(p);
     *problem = NULL;
+}
+
+void law_problem_leave_out(struct law_problem *problem, double low, double high) {
+    problem->counted = 0;
+    for (size_t r = 0; r < problem->leakage->count; r++) {
+        double ring = (double)(problem->leakage->first + r);
+        if (ring >= low && ring <= high)
+            problem->freedom[r] = 0;
+        problem->counted += problem->freedom[r] > 0 ? 1 : 0;
+    }
 }
 
 /* Returns the density of a law by the logarithm of a wave number, without regard to its ends and to
@@ -111,7 +125,7 @@ static void expect(struct law_problem *problem, const double *p, double *expecte
 }
 
 static double deviance(const struct law_problem *problem, const double *expected) {
-    const double *freedom = problem->spectrum->freedom + problem->leakage->first;
+    const double *freedom = problem->freedom;
     double total = 0;
     for (size_t r = 0; r < problem->leakage->count; r++) {
         double ratio = problem->found[r] / expected[r];
@@ -176,7 +190,7 @@ static void solve(law_matrix factor, double *right) {
 
 /* Returns how much more likely rings become as a parameter rises. */
 static double gradient_of(const struct law_problem *problem, size_t a) {
-    const double *freedom = problem->spectrum->freedom + problem->leakage->first;
+    const double *freedom = problem->freedom;
     const double *slope = problem->slope + a * problem->leakage->count;
     double total = 0;
     for (size_t r = 0; r < problem->leakage->count; r++)
@@ -188,7 +202,7 @@ static double gradient_of(const struct law_problem *problem, size_t a) {
  * held. A parameter that the rings do not determine, such as a roll-off beyond them, has TINY. */
 static void inform(const struct law_problem *problem, const bool *held, law_matrix information) {
     static const double TINY = 1e-9;
-    const double *freedom = problem->spectrum->freedom + problem->leakage->first;
+    const double *freedom = problem->freedom;
     size_t count = problem->leakage->count;
     for (size_t a = 0; a < LAW_PARAMETERS; a++)
         for (size_t b = 0; b <= a; b++) {
@@ -271,8 +285,8 @@ static void gradient_covariance(const struct law_problem *problem, const struct 
                         d == 0 ? one[r] * other[r] : one[r] * other[q] + one[q] * other[r];
                     double chance = (1 - problem->floor / problem->expected[r]) *
                                     (1 - problem->floor / problem->expected[q]);
-                    out[a][b] += both * chance * s->covariance[first + r][d] *
-                                 s->freedom[first + r] * s->freedom[first + q] / 4;
+                    out[a][b] += both * chance * s->covariance[first + r][d] * problem->freedom[r] *
+                                 problem->freedom[q] / 4;
                 }
         }
 }

@@ -36,10 +36,17 @@ void map_directions_measure(struct map_directions *out, const struct measured_ma
     out->texture = angular_spectrum_peak(&out->angular);
 }
 
+static const double SIGNIFICANCE = 0.01;
+
+bool map_directions_differ(const struct map_directions *directions) {
+    static const double RATIO_PLAIN = 2; /* of slopes, where there is no p-value */
+    return isnan(directions->p_value) ? directions->fine.ratio > RATIO_PLAIN
+                                      : directions->p_value < SIGNIFICANCE;
+}
+
 int map_directions_lay(struct lay *out, const struct map_directions *directions,
                        const struct map_spectrum *spectrum,
                        const struct spectrum_fit_request *asked, struct error *err) {
-    static const double SIGNIFICANCE = 0.01;
     const bool known = !isnan(directions->p_value);
     const bool coarse = directions->coarse.p_value < directions->fine.p_value;
     const struct isotropy *surer = coarse ? &directions->coarse : &directions->fine;

@@ -17,6 +17,9 @@ struct map_directions {
 void map_directions_measure(struct map_directions *out, const struct measured_map *map,
                             const struct map_chance *chance, const struct map_spectrum *spectrum,
                             const struct cell_differences *nearest);
+/* Returns whether they differ, at a level of 0.01; where the map is too small for errors, whether
+ * slopes do by a factor of more than 2. */
+bool map_directions_differ(const struct map_directions *directions);
 /* Finds the lay of a surface whose directions differ (at a level of 0.01; of maps too small for
  * errors by the spectrum alone), by its spectrum over circles; LAY_NONE where they do not, or where
  * it has none (lay_fit.h). *asked: the wavelengths that count. ERROR_INPUT where these leave no
