@@ -1,4 +1,5 @@
 #include "server/show/map/map_report.h"
+#include "server/show/map/functional_report.h"
 #include <math.h>
 #include <string.h>
 
@@ -386,6 +387,8 @@ static int add_tables(struct named_values *out, const struct map_characterisatio
         status = add_spectra(out, &found->spectra, profile, err);
     if (status == 0)
         status = add_columns(out, "acf", acf->count, sizeof(double), COLUMNS(lags), err);
+    if (status == 0)
+        status = functional_report_table(out, &found->functional, err);
     return status == 0 ? add_columns(out, "quantiles", heights->count, sizeof(double),
                                      COLUMNS(quantiles), err)
                        : status;
@@ -401,6 +404,7 @@ int map_report_fill(struct named_values *out, const struct map_characterisation 
     add_parameters(out, &found->parameters, errors);
     if (!profile)
         add_areal(out, found, errors);
+    functional_report_values(out, &found->functional, profile);
     add_certainty(out, &found->certainty);
     add_height_fit(out, &found->height_fits);
     if (!profile)
