@@ -1,7 +1,7 @@
 /* Protects: functional parameters have the closed values of Gaussian and of exponential heights and
  * of a line, do not depend on the order of heights, and follow their definitions over all positions
  * of the secant. Ten-point heights are those of counted hills; widths of a profile's elements those
- * of waves, by both editions. */
+ * of waves, by both standards. */
 #include "core/statistics/heights/areal.h"
 #include "core/statistics/heights/functional.h"
 #include "tests/support/check.h"
@@ -222,8 +222,7 @@ static void ten_points(void **state) {
 }
 
 /* A wave of 20 points with ripples of a fortieth that cross the line near its crossings: ripples
- * are no elements. A wave of two heights in turn, of which the lower ones count by neither edition
- * of all the profile, or by the newer one alone. */
+ * are no elements. Dales that are too low for the older standard count by the newer one. */
 static void widths_of_elements(void **state) {
     (void)state;
     enum { N = 4000 };
