@@ -12,6 +12,7 @@ int map_functional_measure(struct map_functional *out, const struct measured_map
         return status;
     const double mean = curve.mean;
     functional_measure(&curve, &out->found);
+    plateau_fit(&curve, &out->plateau);
     for (size_t r = 0; r < MAP_RATIOS; r++) {
         out->ratio[r] = RATIOS[r];
         out->height[r] = material_height(&curve, RATIOS[r]);

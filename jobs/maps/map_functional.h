@@ -4,6 +4,7 @@
 #define RUGO_JOBS_MAPS_MAP_FUNCTIONAL_H
 
 #include "core/statistics/heights/functional.h"
+#include "core/statistics/heights/plateau.h"
 
 enum { MAP_RATIOS = 21 };
 
@@ -11,6 +12,7 @@ struct map_functional {
     struct functional found;
     double ratio[MAP_RATIOS], height[MAP_RATIOS]; /* the curve: rising shares, heights about the
                                                      mean that they reach */
+    struct plateau_law plateau;                   /* NaN where there is none */
     struct ten_points ten_points;                 /* of surfaces alone */
     struct profile_spacing spacing;               /* of profiles alone */
 };

@@ -56,6 +56,17 @@ void functional_report_values(struct named_values *out, const struct map_functio
         add_surface(out, found);
 }
 
+void functional_report_plateau(struct named_values *out, const struct plateau_law *law,
+                               bool profile) {
+    named_values_add_length(out, GROUP, profile ? "Rpq" : "Spq", law->plateau_rms, 1);
+    named_values_add_length(out, GROUP, profile ? "Rvq" : "Svq", law->valley_rms, 1);
+    named_values_add(out, GROUP, profile ? "Rmq" : "Smq", law->ratio);
+    named_values_add_length(out, GROUP, "plateau_mean", law->plateau_mean, 1);
+    named_values_add_length(out, GROUP, "valley_mean", law->valley_mean, 1);
+    named_values_add(out, GROUP, "plateau_residual", law->residual);
+    named_values_add(out, GROUP, "normal_residual", law->line_residual);
+}
+
 int functional_report_table(struct named_values *out, const struct map_functional *found,
                             struct error *err) {
     double *ratio = named_values_column_length(out, TABLE, "ratio", MAP_RATIOS, 0);

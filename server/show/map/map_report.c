@@ -4,6 +4,8 @@
 #include <string.h>
 
 static const double DEGREE = M_PI / 180;
+/* Of heights that a Gaussian law fits at this level, none is looked for with two of them. */
+static const double GAUSSIAN_LEVEL = 0.01;
 
 /* --- parameters --- */
 
@@ -405,6 +407,9 @@ int map_report_fill(struct named_values *out, const struct map_characterisation 
     if (!profile)
         add_areal(out, found, errors);
     functional_report_values(out, &found->functional, profile);
+    if (isfinite(found->functional.plateau.ratio) &&
+        !(found->height_fits.list[HEIGHTS_GAUSSIAN].p_value >= GAUSSIAN_LEVEL))
+        functional_report_plateau(out, &found->functional.plateau, profile);
     add_certainty(out, &found->certainty);
     add_height_fit(out, &found->height_fits);
     if (!profile)

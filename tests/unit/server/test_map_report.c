@@ -121,13 +121,40 @@ static void functional_values_by_name(void **state) {
         for (size_t r = 1; r < ratio->count; r++)
             assert_true(ratio->values[r] > ratio->values[r - 1] &&
                         height->values[r] < height->values[r - 1]);
+        assert_true(isnan(named_number(&found, "functional", profile == 1 ? "Rpq" : "Spq")));
         named_values_clear(&found);
+    }
+}
+
+/* The laws of a stratified face are there where no Gaussian law fits, and not where one does. */
+static void stratified_faces_have_two_laws(void **state) {
+    (void)state;
+    uint64_t seed = seed_or(16);
+    static double z[POINTS], valleys[POINTS];
+    static struct map_characterisation measured;
+    static struct named_values found;
+    for (int stratified = 0; stratified < 2; stratified++) {
+        found = (struct named_values){0};
+        noise_fill(&seed, POINTS, z);
+        noise_fill(&seed, POINTS, valleys);
+        for (size_t n = 0; n < POINTS && stratified == 1; n++)
+            z[n] = fmin(z[n], 6 + 8 * valleys[n]);
+        report(z, &measured, &found);
+        assert_true(isfinite(named_number(&found, "functional", "Sk")));
+        if (stratified == 1) {
+            check_relative(named_number(&found, "functional", "Spq"), 1, 0.2);
+            check_relative(named_number(&found, "functional", "Svq"), 8, 0.2);
+        } else
+            assert_true(isnan(named_number(&found, "functional", "Spq")));
+        named_values_clear(&found);
+        map_characterisation_clear(&measured);
     }
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(errors_behind_values),
                                        cmocka_unit_test(too_few_lengths),
-                                       cmocka_unit_test(functional_values_by_name)};
+                                       cmocka_unit_test(functional_values_by_name),
+                                       cmocka_unit_test(stratified_faces_have_two_laws)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
