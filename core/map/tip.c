@@ -116,8 +116,8 @@ static double apex_at(const struct eroded *eroded, size_t i, size_t j, int axis)
     return axis == 1 ? (double)row : (double)eroded->column[row * nx + i];
 }
 
-/* Steps from a point to either side, over which the tip's motion is measured; the tip has not reached
- * a point where it moves less than STILL of what the point does. */
+/* Steps from a point to either side, over which the tip's motion is measured; the tip has not
+ * reached a point where it moves less than STILL of what the point does. */
 enum { REACH = 2 };
 static const double STILL = 0.4;
 
