@@ -146,20 +146,63 @@ static double least_move(const struct eroded *eroded, size_t i, size_t j) {
     return (xx + yy) / 2 - hypot((xx - yy) / 2, (xy + yx) / 2);
 }
 
+/* Farther away than this from its point the least is not that of one smooth part of the image. */
+static const double STEP_MOST = 0.75;
+
+/* Returns how much lower than at its point the envelope over point i, j is between the points of
+ * the image: the least of the parabola through the nine around the tip, near its point; 0 beside
+ * holes and sides, and where they have no least. */
+static double between_points(const struct eroded *eroded, const double *image, size_t i, size_t j,
+                             double radius) {
+    const struct grid *grid = eroded->grid;
+    const bool profile = grid_is_profile(grid);
+    const size_t nx = grid->nx, row = eroded->row[j * nx + i];
+    const size_t column = eroded->column[row * nx + i];
+    if (column == 0 || column + 1 == nx || (!profile && (row == 0 || row + 1 == grid->ny)))
+        return 0;
+    const double ax = grid_dx(grid) * grid_dx(grid) / radius;
+    const double ay = profile ? 1 : grid_dy(grid) * grid_dy(grid) / radius;
+    const double *at = image + row * nx + column, *up = profile ? at : at - nx,
+                 *down = profile ? at : at + nx;
+    const double x = (at[1] - at[-1]) / 2 + ax * ((double)column - (double)i);
+    const double y = (down[0] - up[0]) / 2 + (profile ? 0 : ay * ((double)row - (double)j));
+    const double xx = at[1] - 2 * at[0] + at[-1] + ax, yy = up[0] - 2 * at[0] + down[0] + ay;
+    const double xy = (down[1] - down[-1] - up[1] + up[-1]) / 4;
+    const double determinant = xx * yy - xy * xy;
+    if (!(xx > 0 && determinant > 0))
+        return 0;
+    const double step_x = (yy * x - xy * y) / determinant, step_y = (xx * y - xy * x) / determinant;
+    return fabs(step_x) <= STEP_MOST && fabs(step_y) <= STEP_MOST ? (x * step_x + y * step_y) / 2
+                                                                  : 0;
+}
+
+/* Lowers the points that the tip reached to the least between points, and marks the others; returns
+ * how many of these there are. */
+static size_t eroded_judge(struct eroded *eroded, const double *image, double radius,
+                           unsigned char *untrusted) {
+    const struct grid *grid = eroded->grid;
+    size_t count = 0;
+    for (size_t j = 0, point = 0; j < grid->ny; j++)
+        for (size_t i = 0; i < grid->nx; i++, point++) {
+            const bool hole = isnan(image[point]);
+            const bool reached = hole || least_move(eroded, i, j) >= STILL;
+            count += reached ? 0 : 1;
+            if (untrusted != NULL)
+                untrusted[point] = reached ? 0 : 1;
+            if (reached && !hole)
+                eroded->z[point] -= between_points(eroded, image, i, j, radius);
+        }
+    return count;
+}
+
 int tip_erode(const struct grid *grid, double *z, double radius, unsigned char *untrusted,
               struct tip_result *out, struct error *err) {
     struct eroded eroded;
     struct average squares = {0};
     *out = (struct tip_result){0};
     int status = eroded_create(&eroded, grid, z, radius, 1, err);
-    for (size_t j = 0, point = 0; j < grid->ny && status == 0; j++)
-        for (size_t i = 0; i < grid->nx; i++, point++) {
-            const bool hole = isnan(z[point]);
-            const bool reached = !hole && least_move(&eroded, i, j) >= STILL;
-            out->untrusted += !hole && !reached ? 1 : 0;
-            if (untrusted != NULL)
-                untrusted[point] = !hole && !reached ? 1 : 0;
-        }
+    if (status == 0)
+        out->untrusted = eroded_judge(&eroded, z, radius, untrusted);
     for (size_t point = 0; point < grid_points(grid) && status == 0; point++)
         if (!isnan(z[point])) {
             const double change = z[point] - eroded.z[point];

@@ -21,7 +21,8 @@ static double density(double score) {
 static void plot_fill(struct plot *plot, const struct material_curve *curve) {
     struct sum squares = {0}, weights = {0};
     const double most = gsl_cdf_ugaussian_Qinv(fmin(HEIGHTS_BEYOND / (double)curve->n, 0.5));
-    const size_t beside = (size_t)fmin(most / SCORE_STEP, (double)(LEVELS_MOST / 2));
+    const size_t room = LEVELS_MOST / 2;
+    const size_t beside = (size_t)fmin(most / SCORE_STEP, (double)room);
     for (size_t k = 0; k < curve->n; k++)
         sum_add(&squares, curve->z[k] * curve->z[k]);
     plot->unit = sqrt(sum_value(&squares) / (double)curve->n);
@@ -155,7 +156,7 @@ static double descend(const struct plot *plot, double terms[TERMS]) {
 void plateau_fit(const struct material_curve *curve, struct plateau_law *out) {
     const double none = (double)NAN;
     struct plot plot;
-    double terms[TERMS];
+    double terms[TERMS] = {0};
     *out = (struct plateau_law){none, none, none, none, none, none, none};
     plot_fill(&plot, curve);
     if (plot.count < 40 || !(plot.unit > 0) || !start_find(&plot, terms))

@@ -162,7 +162,8 @@ static void hard_spikes_are_found(void **state) {
         static double z[SMALL * SMALL];
         struct despike_result done;
         for (size_t point = 0; point < SMALL * SMALL; point++) {
-            z[point] = sin(0.3 * (double)(point % SMALL)) + cos(0.2 * (double)(point / SMALL));
+            const size_t i = point % SMALL, j = point / SMALL;
+            z[point] = sin(0.3 * (double)i) + cos(0.2 * (double)j);
             z[point] = coarse == 1 ? 2 * round(z[point] / 2) : z[point];
         }
         for (size_t s = 0; s < 4; s++)

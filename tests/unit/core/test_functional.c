@@ -199,8 +199,9 @@ static void ten_points(void **state) {
     for (size_t point = 0; point < SIDE * SIDE; point++) {
         z[point] = 100;
         for (size_t b = 0; b < sizeof BUMPS / sizeof *BUMPS; b++) {
-            const double x = (double)(point % SIDE) - 10 - 14 * (double)(b % 4);
-            const double y = (double)(point / SIDE) - 10 - 18 * (double)(b / 4);
+            const size_t i = point % SIDE, j = point / SIDE, column = b % 4, row = b / 4;
+            const double x = (double)i - 10 - 14 * (double)column;
+            const double y = (double)j - 10 - 18 * (double)row;
             z[point] += BUMPS[b] * exp(-(x * x + y * y) / 4);
         }
     }
