@@ -17,7 +17,7 @@ struct tip_result {
  * least of the parabola through the nine points around. Marks the points that the tip did not reach
  * (untrusted[point] = 1, else 0; NULL: not asked for). Lengths are in one unit. Nothing is known
  * beyond the sides. Holes stay, and bound nothing. Time: proportional to the points (Felzenszwalb &
- * Huttenlocher 2012). Memory: a map and a half. ERROR_MEMORY, or ERROR_INPUT for 2^32 - 1 points or
+ * Huttenlocher 2012). Memory: two maps. ERROR_MEMORY, or ERROR_INPUT for 2^32 - 1 points or
  * more a side; the heights are untouched then. */
 int tip_erode(const struct grid *grid, double *z, double radius, unsigned char *untrusted,
               struct tip_result *out, struct error *err);

@@ -364,9 +364,10 @@ static void what_instruments_leave_is_removed_in_order(void **state) {
     struct height_map map;
     struct preparation_record record;
     make(&map);
-    for (size_t point = 0; point < (size_t)NX * NY; point++)
-        map.z[point] = 0.2 * sin(0.5 * (double)(point % NX)) * cos(0.4 * (double)(point / NX)) +
-                       20 * (double)(point / NX % 3);
+    for (size_t point = 0; point < (size_t)NX * NY; point++) {
+        const size_t i = point % NX, j = point / NX, third = j % 3;
+        map.z[point] = 0.2 * sin(0.5 * (double)i) * cos(0.4 * (double)j) + 20 * (double)third;
+    }
     map.z[5 * NX + 20] += 30;
     map.z[12 * NX + 8] -= 30;
     assert_int_equal(prepare(&map, &words, &record, NULL), 0);

@@ -17,8 +17,9 @@ static double least_over(const struct grid *grid, const double *z, size_t at, do
     const size_t nx = grid->nx;
     double least = INFINITY;
     for (size_t point = 0; point < grid_points(grid); point++) {
-        const double x = ((double)(point % nx) - (double)(at % nx)) * grid_dx(grid);
-        const double y = ((double)(point / nx) - (double)(at / nx)) * grid_dy(grid);
+        const size_t i = point % nx, j = point / nx, at_i = at % nx, at_j = at / nx;
+        const double x = ((double)i - (double)at_i) * grid_dx(grid);
+        const double y = ((double)j - (double)at_j) * grid_dy(grid);
         const double height = z[point] + (x * x + y * y) / (2 * radius);
         least = height < least ? height : least;
     }
@@ -57,29 +58,33 @@ static void it_is_the_lowest_envelope(void **state) {
 /* Over a plane of slope s the image is R s^2/2 higher, over a bump of curvature k it has the
  * curvature k/(1 + R k): exact parabolas, so that both come back to rounding, although the tip
  * touches between the points. */
+static void check_parabola(const struct grid *grid, double radius, double slope, double bend) {
+    static double z[60 * 50];
+    const size_t nx = grid->nx;
+    struct tip_result done;
+    for (size_t point = 0; point < 60 * 50; point++) {
+        const size_t i = point % nx, j = point / nx;
+        const double x = (double)i - 30, y = (double)j - (grid_is_profile(grid) ? 0 : 25);
+        z[point] = slope * x + radius * slope * slope / 2 -
+                   bend / (1 + radius * bend) * (x * x + y * y) / 2;
+    }
+    assert_int_equal(tip_erode(grid, z, radius, NULL, &done, NULL), 0);
+    for (size_t i = 20; i < 40; i++) {
+        const double x = (double)i - 30;
+        check_close(z[grid_is_profile(grid) ? i : 25 * nx + i], slope * x - bend * x * x / 2,
+                    1e-10);
+    }
+}
+
 static void planes_and_bumps_come_back(void **state) {
     (void)state;
-    const struct grid grid = {60, 50, 60, 50}, line = {60 * 50, 1, 60 * 50, 1};
-    for (double radius = 0.7; radius < 60; radius *= 3)
-        for (int bump = 0; bump < 2; bump++)
-            for (int profile = 0; profile < 2; profile++) {
-                const double slope = 0.3, bend = bump == 1 ? 0.02 : 0;
-                double z[60 * 50];
-                struct tip_result done;
-                for (size_t point = 0; point < 60 * 50; point++) {
-                    const double x = (double)(profile == 1 ? point : point % 60) - 30;
-                    const double y = profile == 1 ? 0 : (double)(point / 60) - 25;
-                    z[point] = bump == 1 ? -bend / (1 + radius * bend) * (x * x + y * y) / 2
-                                         : slope * x + radius * slope * slope / 2;
-                }
-                assert_int_equal(
-                    tip_erode(profile == 1 ? &line : &grid, z, radius, NULL, &done, NULL), 0);
-                for (size_t i = 20; i < 40; i++) {
-                    const double x = (double)i - 30;
-                    check_close(z[profile == 1 ? i : 60 * 25 + i],
-                                bump == 1 ? -bend * x * x / 2 : slope * x, 1e-10);
-                }
-            }
+    static const struct grid MAP = {60, 50, 60, 50}, LINE = {60 * 50, 1, 60 * 50, 1};
+    for (double radius = 0.7; radius < 60; radius *= 3) {
+        check_parabola(&MAP, radius, 0.3, 0);
+        check_parabola(&MAP, radius, 0, 0.02);
+        check_parabola(&LINE, radius, 0.3, 0);
+        check_parabola(&LINE, radius, 0, 0.02);
+    }
 }
 
 /* Between the rims of a deep groove, straight or oblique, the bound is the tip's own paraboloid:
@@ -95,8 +100,8 @@ static void a_groove_is_not_reached(void **state) {
         struct tip_result done;
         size_t in = 0, missed = 0, wrong = 0;
         for (size_t point = 0; point < SIDE * SIDE; point++) {
-            const double across = cos(angle) * ((double)(point % SIDE) - 39.5) +
-                                  sin(angle) * ((double)(point / SIDE) - 39.5);
+            const size_t i = point % SIDE, j = point / SIDE;
+            const double across = cos(angle) * ((double)i - 39.5) + sin(angle) * ((double)j - 39.5);
             z[point] = fabs(across) < 6 ? -5 : 0;
         }
         assert_int_equal(tip_dilate(&grid, z, radius, NULL), 0);
