@@ -168,8 +168,11 @@ int despike(const struct grid *grid, double *z, double most, struct despike_resu
     for (size_t j = 0; j < grid->ny; j++)
         for (size_t i = 0; i < grid->nx; i++) {
             double found = distance_at(grid, z, i, j, &by);
-            if (found > most)
-                found = fmin(found, found * by.both / (OWN * own_deviation(grid, z, i, j)));
+            if (found > most) {
+                const double own = OWN * own_deviation(grid, z, i, j);
+                const struct deviations least = {fmax(by.both, own), fmax(by.one, own)};
+                found = distance_at(grid, z, i, j, &least);
+            }
             distance[j * grid->nx + i] = found;
         }
     for (size_t point = 0; point < points; point++)
