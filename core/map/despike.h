@@ -1,5 +1,5 @@
 /* Spikes: single points, or two beside each other, that do not go with their neighbours
- * (FORMULAS.md, F18.30). */
+ * (FORMULAS.md, F18.31). */
 #ifndef RUGO_CORE_MAP_DESPIKE_H
 #define RUGO_CORE_MAP_DESPIKE_H
 

@@ -1,4 +1,4 @@
-/* Turns a map, and exchanges its axes (FORMULAS.md, F18.32). */
+/* Turns a map, and exchanges its axes (FORMULAS.md, F18.33). */
 #ifndef RUGO_CORE_MAP_MAP_TURN_H
 #define RUGO_CORE_MAP_MAP_TURN_H
 

@@ -1,5 +1,5 @@
 /* Preparation of a height map before it is measured or pressed: steps in a fixed order, each only
- * where it is requested, and a record of them. FORMULAS.md, F18.20 to F18.23, F18.29 to F18.32.
+ * where it is requested, and a record of them. FORMULAS.md, F18.20 to F18.23, F18.30 to F18.33.
  *
  *   units     spacing, and units of lengths that the file does not have; lengths become metres
  *   crop      keeps a rectangle of the points

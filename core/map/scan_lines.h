@@ -1,5 +1,5 @@
 /* Offsets and bows of scan lines, which drift, creep and hysteresis of a scanning instrument leave:
- * of each line its mean, median or polynomial is taken out (FORMULAS.md, F18.29). */
+ * of each line its mean, median or polynomial is taken out (FORMULAS.md, F18.30). */
 #ifndef RUGO_CORE_MAP_SCAN_LINES_H
 #define RUGO_CORE_MAP_SCAN_LINES_H
 

@@ -1,4 +1,4 @@
-/* The surface under a tip (FORMULAS.md, F18.31). The image of a surface by a tip is its dilation;
+/* The surface under a tip (FORMULAS.md, F18.32). The image of a surface by a tip is its dilation;
  * the erosion of the image by the tip is the highest surface that gives it, equal to the surface
  * where the tip touched it, and above it elsewhere (Villarrubia 1997). Of points of an image it is
  * so but for what lies between them. */

@@ -1,6 +1,6 @@
 /* Functional parameters of ISO 25178-2 (2021), of profiles ISO 21920-2 (2021): what the curve of
  * heights over the share of material says of running in, carrying and holding oil (FORMULAS.md,
- * F18.33 to F18.35). Names are those of the areal parameters without S (k: Sk, and Rk). */
+ * F18.34 to F18.36). Names are those of the areal parameters without S (k: Sk, and Rk). */
 #ifndef RUGO_CORE_STATISTICS_HEIGHTS_FUNCTIONAL_H
 #define RUGO_CORE_STATISTICS_HEIGHTS_FUNCTIONAL_H
 

@@ -1,5 +1,5 @@
 /* Heights of stratified faces, such as honed ones: at each point the lower of two Gaussian
- * surfaces, of a plateau and of the valleys below it (FORMULAS.md, F18.36). */
+ * surfaces, of a plateau and of the valleys below it (FORMULAS.md, F18.37). */
 #ifndef RUGO_CORE_STATISTICS_HEIGHTS_PLATEAU_H
 #define RUGO_CORE_STATISTICS_HEIGHTS_PLATEAU_H
 
