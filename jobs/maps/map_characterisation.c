@@ -165,7 +165,8 @@ static int measure_common(struct map_characterisation *out, struct common *commo
     measure_chance(out, common);
     count_heights(&out->histogram, map);
     map_scales_measure(&out->scales, map, common->chance, &common->nearest);
-    return map_spectra_measure(&out->spectra, map, common->spectrum, under_window, trusted, err);
+    return map_spectra_measure(&out->spectra, map, common->spectrum, &out->directions, under_window,
+                               trusted, err);
 }
 
 static int measure(struct map_characterisation *out, const struct measured_map *map,

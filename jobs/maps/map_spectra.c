@@ -71,12 +71,31 @@ static int measure_plain(struct map_density *out, const struct measured_map *map
     return psd_measure(map->grid, map->z, out->wave_number, out->density, err);
 }
 
+/* Fits the law over the ellipses of a lay, where there is one. */
+static int surface_law_fit(const struct map_spectrum *spectrum,
+                           const struct map_directions *directions,
+                           const struct spectrum_fit_request *request, struct spectrum_fit *out,
+                           struct error *err) {
+    struct map_spectrum *ellipses = NULL;
+    struct lay lay;
+    int status = map_directions_lay(&lay, directions, spectrum, request, err);
+    if (status == 0 && !lay_is_plain(&lay))
+        status = map_spectrum_create_along(&ellipses, spectrum, &lay, err);
+    if (status == 0)
+        status = spectrum_fit_measure(ellipses != NULL ? ellipses : spectrum, request, out, err);
+    map_spectrum_destroy(&ellipses);
+    return status;
+}
+
 /* Fits the law: of a long profile by its parts, which takes as long as it has points. */
 static int law_fit(const struct measured_map *map, const struct map_spectrum *spectrum,
+                   const struct map_directions *directions,
                    const struct spectrum_fit_request *request, struct spectrum_fit *out,
                    struct error *err) {
     struct map_spectrum *pieces = NULL;
     bool is_long = grid_is_profile(map->grid) && map->grid->nx >= 2 * (size_t)PROFILE_PIECE;
+    if (!grid_is_profile(map->grid))
+        return surface_law_fit(spectrum, directions, request, out, err);
     if (!is_long)
         return spectrum_fit_measure(spectrum, request, out, err);
     int status = profile_spectrum_create(&pieces, map, err);
@@ -87,11 +106,12 @@ static int law_fit(const struct measured_map *map, const struct map_spectrum *sp
 }
 
 int map_spectra_measure(struct map_spectra *out, const struct measured_map *map,
-                        const struct map_spectrum *spectrum, bool under_window,
+                        const struct map_spectrum *spectrum,
+                        const struct map_directions *directions, bool under_window,
                         const struct spectrum_fit_request *request, struct error *err) {
     if (under_window)
         return measure_plain(&out->rings, map, err);
-    int status = law_fit(map, spectrum, request, &out->fit, err);
+    int status = law_fit(map, spectrum, directions, request, &out->fit, err);
     if (status == 0)
         status = measure_rings(out, spectrum, err);
     for (int axis = 0; axis < 2 && status == 0; axis++)

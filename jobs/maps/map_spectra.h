@@ -3,6 +3,7 @@
 #define RUGO_JOBS_MAPS_MAP_SPECTRA_H
 
 #include "core/statistics/spectra/spectrum_fit.h"
+#include "core/statistics/uncertainty/map_directions.h"
 
 /* One density; all arrays have `count` values and are owned by wave_number. */
 struct map_density {
@@ -17,11 +18,12 @@ struct map_spectra {
     bool has_fit;               /* the trusted range was sought, and a law in it */
     struct spectrum_fit fit;
 };
-/* Measures a map; *out is {0} at first, and the caller's to clear in any case. A map under a window
- * of its own has neither bands nor a law, since its waves scatter otherwise. ERROR_INPUT where the
- * request leaves no wave; ERROR_MEMORY. */
+/* Measures a map; directions: of surfaces alone. *out is {0} at first, and the caller's to clear in
+ * any case. A map under a window of its own has neither bands nor a law, since its waves scatter
+ * otherwise. ERROR_INPUT where the request leaves no wave; ERROR_MEMORY. */
 int map_spectra_measure(struct map_spectra *out, const struct measured_map *map,
-                        const struct map_spectrum *spectrum, bool under_window,
+                        const struct map_spectrum *spectrum,
+                        const struct map_directions *directions, bool under_window,
                         const struct spectrum_fit_request *request, struct error *err);
 void map_spectra_clear(struct map_spectra *spectra);
 

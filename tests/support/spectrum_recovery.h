@@ -5,6 +5,7 @@
 
 #include "core/map/detrend.h"
 #include "core/statistics/spectra/spectrum_fit.h"
+#include "core/statistics/uncertainty/map_directions.h"
 #include "core/surface/surface.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,8 +18,9 @@ struct recovery_case {
     const char *name;
     size_t whole, nx, ny; /* points; ny 1: profiles, of which the whole is one too */
     double hurst, rolloff, shortest, longest;
-    double holes; /* share of the points, in discs of radius 3 */
-    bool fixed;   /* amplitudes that are not random, as a control */
+    double holes;                  /* share of the points, in discs of radius 3 */
+    bool fixed;                    /* amplitudes that are not random, as a control */
+    double lay_ratio, lay_degrees; /* 0: none; else wavelengths above are those across the lay */
 };
 
 enum recovered {
@@ -29,13 +31,16 @@ enum recovered {
     RECOVERED_AMPLITUDE,
     RECOVERED_HEIGHT,
     RECOVERED_SLOPE,
+    RECOVERED_RATIO,
+    RECOVERED_ANGLE,
     RECOVERED
 };
-static const char *const RECOVERED_NAMES[RECOVERED] = {
-    "hurst", "rolloff", "short", "long", "amplitude", "rms_height", "rms_slope"};
+static const char *const RECOVERED_NAMES[RECOVERED] = {"hurst",     "rolloff",   "short",
+                                                       "long",      "amplitude", "rms_height",
+                                                       "rms_slope", "lay_ratio", "lay_angle"};
 
 struct recovery {
-    size_t patches;
+    size_t patches, plain; /* of surfaces with a lay: of these none was found in so many */
     struct {
         size_t seen, inside;       /* with a value; whose interval holds the truth */
         double bias, error, width; /* means over the seen: of value less truth, of its square's
@@ -51,6 +56,8 @@ static inline double true_moment(const struct recovery_case *c, double density, 
     enum { STEPS = 4000 };
     int dimension = c->ny == 1 ? 1 : 2;
     double low = 2 * M_PI / fmin(longest, c->longest), high = 2 * M_PI / shortest, total = 0;
+    double ratio = c->lay_ratio > 0 ? c->lay_ratio : 1;
+    double by_lay = (order == 0 ? 1 : (1 + 1 / (ratio * ratio)) / 2) / ratio;
     double step = log(high / low) / STEPS;
     for (int a = 0; a < STEPS; a++) {
         double k = low * exp((a + 0.5) * step);
@@ -58,15 +65,19 @@ static inline double true_moment(const struct recovery_case *c, double density, 
         total += (dimension == 1 ? 2 : 2 * M_PI) * density * pow(k, dimension + order) * step *
                  pow(fall, -(dimension + 2 * c->hurst));
     }
-    return total;
+    return total * by_lay;
 }
 
 /* The density at waves longer than the roll-off, by that of one wave of the falling part. */
 static inline double true_plateau(const struct recovery_case *c, const struct modes *modes) {
     double side = (double)c->whole, dimension = c->ny == 1 ? 1 : 2;
-    size_t m = (size_t)(0.8 * side / c->shortest);
+    const struct lay lay = {.ratio = c->lay_ratio > 0 ? c->lay_ratio : 1,
+                            .angle = c->lay_degrees * M_PI / 180};
+    const struct lay_frame frame = lay_frame_of(&lay);
+    const double along_x = lay_length(&frame, 1, 0);
+    size_t m = (size_t)(0.8 * side / c->shortest / along_x);
     return modes_power(modes, m, 0) * pow(side / (2 * M_PI), dimension) *
-           pow((double)m * c->rolloff / side, dimension + 2 * c->hurst);
+           pow(along_x * (double)m * c->rolloff / side, dimension + 2 * c->hurst);
 }
 
 static inline void holes_cut(const struct recovery_case *c, double *z, uint64_t realisation) {
@@ -99,13 +110,16 @@ static inline void recovery_count(struct recovery *out, const struct recovery_ca
         c->longest,
         plateau * pow(fit->reference_wavelength / c->rolloff, dimension + 2 * c->hurst),
         sqrt(true_moment(c, plateau, 0, longest, shortest)),
-        sqrt(true_moment(c, plateau, 2, longest, shortest))};
+        sqrt(true_moment(c, plateau, 2, longest, shortest)),
+        c->lay_ratio > 0 ? c->lay_ratio : 1,
+        c->lay_degrees * M_PI / 180};
     const struct interval *found[RECOVERED] = {
-        &fit->hurst,     &fit->rolloff_wavelength, &fit->short_wavelength, &fit->long_wavelength,
-        &fit->amplitude, &fit->rms_height,         &fit->rms_slope};
+        &fit->hurst,           &fit->rolloff_wavelength, &fit->short_wavelength,
+        &fit->long_wavelength, &fit->amplitude,          &fit->rms_height,
+        &fit->rms_slope,       &fit->lay_ratio,          &fit->lay_angle};
     assert_true(fit->fitted);
     for (size_t a = 0; a < RECOVERED; a++) {
-        double unit = a == RECOVERED_HURST ? 1 : truth[a];
+        double unit = a == RECOVERED_HURST || a == RECOVERED_ANGLE ? 1 : truth[a];
         double error = (found[a]->value - truth[a]) / unit;
         /* an end that is open holds what lies beyond it; wavelengths of a periodic cell are known
          * to rounding */
@@ -126,6 +140,29 @@ static inline double cpu_seconds(void) {
     struct timespec now;
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* Fits, with a lay where one is to be sought and is found. */
+static inline void recovery_fit(struct spectrum_fit *fit, const struct measured_map *map,
+                                const struct map_spectrum *spectrum, bool seek) {
+    const struct spectrum_fit_request request = {0};
+    struct map_spectrum *ellipses = NULL;
+    struct map_chance *chance = NULL;
+    struct cell_differences differences;
+    struct map_directions directions;
+    struct lay lay = LAY_NONE;
+    if (seek) {
+        assert_int_equal(map_chance_create(&chance, map, NULL), 0);
+        cell_differences_measure(map, &chance->modes, 1, &differences);
+        map_directions_measure(&directions, map, chance, spectrum, &differences);
+        map_chance_destroy(&chance);
+        assert_int_equal(map_directions_lay(&lay, &directions, spectrum, &request, NULL), 0);
+    }
+    if (!lay_is_plain(&lay))
+        assert_int_equal(map_spectrum_create_along(&ellipses, spectrum, &lay, NULL), 0);
+    assert_int_equal(
+        spectrum_fit_measure(ellipses != NULL ? ellipses : spectrum, &request, fit, NULL), 0);
+    map_spectrum_destroy(&ellipses);
 }
 
 static inline void recovery_measure(struct recovery *out, const struct recovery_case *c,
@@ -151,8 +188,8 @@ static inline void recovery_measure(struct recovery *out, const struct recovery_
     const struct measured_map map = {&piece, z, open ? BOUNDARY_OPEN : BOUNDARY_PERIODIC};
     double start = cpu_seconds();
     assert_int_equal(map_spectrum_create(&spectrum, &map, NULL), 0);
-    assert_int_equal(spectrum_fit_measure(spectrum, &(struct spectrum_fit_request){0}, &fit, NULL),
-                     0);
+    recovery_fit(&fit, &map, spectrum, c->lay_ratio > 0);
+    out->plain += fit.lay_ratio.value == 1 ? 1 : 0;
     out->seconds += cpu_seconds() - start;
     recovery_count(out, c, &fit, true_plateau(c, generator_modes(generator)));
     map_spectrum_destroy(&spectrum);
@@ -166,7 +203,9 @@ static inline void recovery_run(struct recovery *out, const struct recovery_case
                                       .hurst = c->hurst,
                                       .wavelength_long = c->longest,
                                       .wavelength_rolloff = c->rolloff,
-                                      .wavelength_short = c->shortest};
+                                      .wavelength_short = c->shortest,
+                                      .anisotropy = c->lay_ratio,
+                                      .lay_angle = c->lay_degrees * M_PI / 180};
     const struct grid grid = {c->whole, c->ny == 1 ? 1 : c->whole, (double)c->whole,
                               (double)c->whole};
     struct surface_options options = SURFACE_DEFAULTS;
@@ -188,9 +227,10 @@ static inline void recovery_run(struct recovery *out, const struct recovery_case
 }
 
 static inline void recovery_print(const struct recovery *r, const struct recovery_case *c) {
-    printf("%s, %zu x %zu of %zu, H %g, roll-off %g, %g to %g: deviance %.2f, %.1f ms a patch\n",
+    printf("%s, %zu x %zu of %zu, H %g, roll-off %g, %g to %g, lay %g at %g (none %zu times): "
+           "deviance %.2f, %.1f ms a patch\n",
            c->name, c->nx, c->ny, c->whole, c->hurst, c->rolloff, c->longest, c->shortest,
-           r->deviance, 1e3 * r->seconds);
+           c->lay_ratio, c->lay_degrees, r->plain, r->deviance, 1e3 * r->seconds);
     for (size_t a = 0; a < RECOVERED; a++)
         printf("  %-10s inside %3zu of %zu, seen %3zu, bias %+.4f, error %.4f, interval %.4f\n",
                RECOVERED_NAMES[a], r->of[a].inside, r->patches, r->of[a].seen, r->of[a].bias,

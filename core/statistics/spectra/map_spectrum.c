@@ -14,31 +14,38 @@ static inline double window_correlation(long d) {
     return d == 0 ? 1 : d == 1 ? 4. / 9 : d == 2 ? 1. / 36 : 0;
 }
 
-/* A quarter plane of modes, mx and my >= 0, each for its mirror images. */
-struct quarter {
+/* Modes of which each stands for its mirror images: of circles the quarter of the plane with mx and
+ * my >= 0, of ellipses the half with mx >= 0. */
+struct sheet {
     size_t nx, ny;  /* modes along each axis */
+    long lowest_y;  /* my of the first */
     size_t *ring;   /* nx * ny; `rings` beyond them */
     double *weight; /* density expected over that of the ring */
     double *total;  /* of weights by ring */
 };
 
-static double mode_distance(const struct map_spectrum *s, size_t mx, size_t my) {
+static double mode_distance(const struct map_spectrum *s, size_t mx, long my) {
     const struct grid *grid = &s->modes.grid;
-    return hypot((double)mx * (s->side / grid->lx),
-                 grid_is_profile(grid) ? 0 : (double)my * (s->side / grid->ly));
+    double x = (double)mx * (s->side / grid->lx);
+    double y = grid_is_profile(grid) ? 0 : (double)my * (s->side / grid->ly);
+    return lay_length(&s->frame, x, y);
 }
 
-/* How many modes of the full plane a mode of the quarter stands for. */
-static double images(size_t mx, size_t my) {
-    return (mx > 0 ? 2 : 1) * (my > 0 ? 2 : 1);
+/* How many modes of the full plane a mode of the sheet stands for. */
+static double images(const struct sheet *sheet, size_t mx, long my) {
+    return (mx > 0 ? 2 : 1) * (my > 0 && sheet->lowest_y == 0 ? 2 : 1);
 }
 
-/* Counts circles up to the Nyquist wave number of both axes, but half a ring. */
+/* Counts circles, or ellipses, up to the Nyquist wave number of both axes, but half a ring. */
 static size_t whole_rings(const struct map_spectrum *s) {
     const struct grid *grid = &s->modes.grid;
-    double reach = (double)grid->nx / 2 * (s->side / grid->lx);
+    /* of the ring of radius 1 along an axis: the inverse of the frame has the determinant 1/ratio
+     */
+    double along_x = hypot(s->frame.across_y, s->frame.along_y) / s->lay.ratio;
+    double along_y = hypot(s->frame.across_x, s->frame.along_x) / s->lay.ratio;
+    double reach = (double)grid->nx / 2 * (s->side / grid->lx) / along_x;
     if (!grid_is_profile(grid))
-        reach = fmin(reach, (double)grid->ny / 2 * (s->side / grid->ly));
+        reach = fmin(reach, (double)grid->ny / 2 * (s->side / grid->ly) / along_y);
     size_t rings = (size_t)fmax(reach + 0.5, 1);
     return rings < s->bins ? rings : s->bins;
 }
@@ -71,59 +78,71 @@ static void parts_divide(struct map_spectrum *s) {
             if (s->share[r][part] > 0)
                 s->distance[r][part] /= s->share[r][part];
         }
-        for (size_t part = 0; part < RING_PARTS; part++)
+        for (size_t part = 0; part < RING_PARTS && count > 0; part++)
             s->share[r][part] /= count;
     }
 }
 
-/* Sorts the modes into rings and their parts. */
-static void modes_sort(struct map_spectrum *s, const struct quarter *quarter) {
-    for (size_t mx = 0; mx < quarter->nx; mx++)
-        for (size_t my = 0; my < quarter->ny; my++) {
+/* Sorts the modes into rings and their parts. Small ellipses may have none. */
+static void modes_sort(struct map_spectrum *s, const struct sheet *sheet) {
+    for (size_t mx = 0; mx < sheet->nx; mx++)
+        for (size_t row = 0; row < sheet->ny; row++) {
+            const long my = sheet->lowest_y + (long)row;
+            const double count = images(sheet, mx, my);
             double distance = mode_distance(s, mx, my), slope = 0;
-            size_t r = (size_t)(distance + 0.5), at = mx * quarter->ny + my;
-            quarter->ring[at] = r < s->rings ? r : s->rings;
+            size_t r = (size_t)(distance + 0.5), at = mx * sheet->ny + row;
+            sheet->ring[at] = r < s->rings ? r : s->rings;
             if (r >= s->rings)
                 continue;
             if (r > 0 && r < SLOPED_RINGS)
                 slope = ring_slope(s, r);
-            quarter->weight[at] = slope > 0 ? pow(distance / (double)r, -slope) : 1;
-            quarter->total[r] += images(mx, my) * quarter->weight[at];
+            sheet->weight[at] = slope > 0 ? pow(distance / (double)r, -slope) : 1;
+            sheet->total[r] += count * sheet->weight[at];
             size_t part = (size_t)((distance + 0.5 - (double)r) * RING_PARTS);
             part = part < RING_PARTS ? part : RING_PARTS - 1;
-            s->share[r][part] += images(mx, my);
-            s->distance[r][part] += images(mx, my) * distance;
+            s->share[r][part] += count;
+            s->distance[r][part] += count * distance;
         }
+}
+
+/* Returns where the sheet has a mode, or an image of it; its size where it has none. */
+static size_t sheet_at(const struct sheet *sheet, long mx, long my) {
+    my = sheet->lowest_y == 0 ? labs(my) : mx < 0 ? -my : my;
+    long row = my - sheet->lowest_y;
+    return labs(mx) < (long)sheet->nx && row >= 0 && row < (long)sheet->ny
+               ? (size_t)labs(mx) * sheet->ny + (size_t)row
+               : sheet->nx * sheet->ny;
 }
 
 /* Adds the correlations of one mode with those nearby to the covariance of their rings. */
-static void mode_correlate(struct map_spectrum *s, const struct quarter *quarter, size_t mx,
-                           size_t my, long reach_x, long reach_y) {
-    size_t at = mx * quarter->ny + my, r = quarter->ring[at];
-    double weight = images(mx, my) * quarter->weight[at];
-    for (long dx = -reach_x; dx <= reach_x; dx++) {
-        size_t x = (size_t)labs((long)mx + dx);
-        for (long dy = -reach_y; dy <= reach_y && x < quarter->nx; dy++) {
-            size_t y = (size_t)labs((long)my + dy), beside = x * quarter->ny + y;
-            if (y >= quarter->ny || quarter->ring[beside] < r ||
-                quarter->ring[beside] >= s->rings || quarter->ring[beside] - r >= RING_REACH)
+static void mode_correlate(struct map_spectrum *s, const struct sheet *sheet, size_t mx, long my,
+                           long reach_x, long reach_y) {
+    size_t at = sheet_at(sheet, (long)mx, my), r = sheet->ring[at];
+    double weight = images(sheet, mx, my) * sheet->weight[at];
+    for (long dx = -reach_x; dx <= reach_x; dx++)
+        for (long dy = -reach_y; dy <= reach_y; dy++) {
+            size_t beside = sheet_at(sheet, (long)mx + dx, my + dy);
+            if (beside == sheet->nx * sheet->ny || sheet->ring[beside] < r ||
+                sheet->ring[beside] >= s->rings || sheet->ring[beside] - r >= RING_REACH)
                 continue;
-            s->covariance[r][quarter->ring[beside] - r] +=
-                weight * quarter->weight[beside] * window_correlation(dx) * window_correlation(dy);
+            s->covariance[r][sheet->ring[beside] - r] +=
+                weight * sheet->weight[beside] * window_correlation(dx) * window_correlation(dy);
         }
-    }
 }
 
-static void modes_correlate(struct map_spectrum *s, const struct quarter *quarter, double heights) {
+static void modes_correlate(struct map_spectrum *s, const struct sheet *sheet) {
     bool profile = grid_is_profile(&s->modes.grid);
     long reach = s->windowed ? 2 : 0;
-    for (size_t mx = 0; mx < quarter->nx; mx++)
-        for (size_t my = 0; my < quarter->ny; my++)
-            if (quarter->ring[mx * quarter->ny + my] < s->rings)
-                mode_correlate(s, quarter, mx, my, reach, profile ? 0 : reach);
+    for (size_t mx = 0; mx < sheet->nx; mx++)
+        for (size_t row = 0; row < sheet->ny; row++)
+            if (sheet->ring[mx * sheet->ny + row] < s->rings)
+                mode_correlate(s, sheet, mx, sheet->lowest_y + (long)row, reach,
+                               profile ? 0 : reach);
     for (size_t r = 0; r < s->rings; r++)
         for (size_t d = 0; d < RING_REACH && r + d < s->rings; d++)
-            s->covariance[r][d] *= 2 / (quarter->total[r] * quarter->total[r + d] * heights);
+            s->covariance[r][d] *= s->covariance[r][d] > 0
+                                       ? 2 / (sheet->total[r] * sheet->total[r + d] * s->heights)
+                                       : 1;
 }
 
 /* squares: the sum over `count` modes, of the rings first to last - 1, of the squared power over
@@ -133,39 +152,40 @@ static double excess(const struct map_spectrum *s, size_t first, size_t last, do
                      double squares) {
     double independent = 0;
     for (size_t r = first; r < last; r++)
-        independent += 1 / s->covariance[r][0];
+        independent += s->covariance[r][0] > 0 ? 1 / s->covariance[r][0] : 0;
     double found = count > 0 ? squares / (2 * count) : 1;
     return found > 1 + 2 * sqrt(5 / independent) ? found : 1;
 }
 
-static void ring_squares(const struct map_spectrum *s, const struct quarter *quarter,
-                         double *squares) {
+static void ring_squares(const struct map_spectrum *s, const struct sheet *sheet, double *squares) {
     const struct modes *modes = &s->modes;
-    for (size_t mx = 0; mx < quarter->nx; mx++)
-        for (size_t my = 0; my < quarter->ny; my++) {
-            size_t r = quarter->ring[mx * quarter->ny + my];
-            double other = modes_power(modes, mx, 2 * my == modes->grid.ny ? (long)my : -(long)my);
-            double one = modes_power(modes, mx, (long)my);
+    for (size_t mx = 0; mx < sheet->nx; mx++)
+        for (size_t row = 0; row < sheet->ny; row++) {
+            const long my = sheet->lowest_y + (long)row;
+            size_t r = sheet->ring[mx * sheet->ny + row];
+            double one = modes_power(modes, mx, my), other = one;
+            if (sheet->lowest_y == 0)
+                other = modes_power(modes, mx, 2 * my == (long)modes->grid.ny ? my : -my);
             if (r < s->rings)
-                squares[r] += images(mx, my) * (one * one + other * other) / 2;
+                squares[r] += images(sheet, mx, my) * (one * one + other * other) / 2;
         }
 }
 
 /* Takes directions of unlike densities into account, octave by octave. */
-static void rings_widen(struct map_spectrum *s, const struct quarter *quarter, double *squares) {
+static void rings_widen(struct map_spectrum *s, const struct sheet *sheet, double *squares) {
     const struct grid *grid = &s->modes.grid;
     double cell =
         grid_is_profile(grid) ? grid->lx / (2 * M_PI) : grid->lx * grid->ly / (4 * M_PI * M_PI);
     enum { LOWEST = 8 };
     static const double STEEP = 0.6, DEEP = 0.03; /* below, a ring is beyond an end */
-    ring_squares(s, quarter, squares);
+    ring_squares(s, sheet, squares);
     for (size_t first = LOWEST; first < s->rings; first *= 2) {
         size_t last = 2 * first < s->rings ? 2 * first : s->rings;
         double count = 0, sum = 0;
         for (size_t r = first; r < last; r++)
             if (s->density[r] > STEEP * s->density[r - 1] &&
                 s->density[r] > DEEP * s->density[first]) {
-                count += quarter->total[r];
+                count += sheet->total[r];
                 sum += squares[r] * pow(cell / (s->density[r] * s->power), 2);
             }
         double factor = excess(s, first, last, count, sum);
@@ -176,28 +196,30 @@ static void rings_widen(struct map_spectrum *s, const struct quarter *quarter, d
 }
 
 /* Fills rings, freedom, covariance, share and distance of a spectrum that has its densities
- * (FORMULAS.md, F18.12); heights: share of the points that are no holes. ERROR_MEMORY alone. */
-static int ring_modes_measure(struct map_spectrum *s, double heights, struct error *err) {
+ * (FORMULAS.md, F18.12). ERROR_MEMORY alone. */
+static int ring_modes_measure(struct map_spectrum *s, struct error *err) {
     const struct grid *grid = &s->modes.grid;
-    struct quarter quarter = {.nx = grid->nx / 2 + 1, .ny = grid->ny / 2 + 1};
-    size_t count = quarter.nx * quarter.ny;
-    s->rings = whole_rings(s);
-    quarter.ring = array_create(count, sizeof *quarter.ring);
-    quarter.weight = array_create(count, sizeof *quarter.weight);
-    quarter.total = array_create(2 * s->bins, sizeof *quarter.total);
-    bool made = quarter.ring != NULL && quarter.weight != NULL && quarter.total != NULL;
+    const bool circles = lay_is_plain(&s->lay);
+    struct sheet sheet = {.nx = grid->nx / 2 + 1,
+                          .ny = circles ? grid->ny / 2 + 1 : grid->ny,
+                          .lowest_y = circles ? 0 : -(long)((grid->ny - 1) / 2)};
+    size_t count = sheet.nx * sheet.ny;
+    sheet.ring = array_create(count, sizeof *sheet.ring);
+    sheet.weight = array_create(count, sizeof *sheet.weight);
+    sheet.total = array_create(2 * s->bins, sizeof *sheet.total);
+    bool made = sheet.ring != NULL && sheet.weight != NULL && sheet.total != NULL;
     if (made) {
-        modes_sort(s, &quarter);
+        modes_sort(s, &sheet);
         parts_divide(s);
-        modes_correlate(s, &quarter, heights);
-        rings_widen(s, &quarter, quarter.total + s->bins);
+        modes_correlate(s, &sheet);
+        rings_widen(s, &sheet, sheet.total + s->bins);
         for (size_t r = 0; r < s->rings; r++)
-            s->freedom[r] = 2 / s->covariance[r][0];
+            s->freedom[r] = s->covariance[r][0] > 0 ? 2 / s->covariance[r][0] : 0;
     }
-    free(quarter.ring);
-    free(quarter.weight);
-    free(quarter.total);
-    return made ? 0 : error_memory(err, count * sizeof *quarter.weight, "rings of modes");
+    free(sheet.ring);
+    free(sheet.weight);
+    free(sheet.total);
+    return made ? 0 : error_memory(err, count * sizeof *sheet.weight, "rings of modes");
 }
 
 static int arrays_create(struct map_spectrum *s, struct error *err) {
@@ -251,7 +273,10 @@ int map_spectrum_create(struct map_spectrum **out, const struct measured_map *ma
     if (s == NULL)
         return error_memory(err, sizeof *s, "a spectrum");
     s->windowed = map->boundary == BOUNDARY_OPEN;
+    s->lay = LAY_NONE;
+    s->frame = lay_frame_of(&s->lay);
     s->power = 1;
+    s->heights = share;
     s->side = grid_is_profile(grid) ? grid->lx : fmin(grid->lx, grid->ly);
     s->bins = radial_bins(grid);
     status = arrays_create(s, err);
@@ -261,7 +286,55 @@ int map_spectrum_create(struct map_spectrum **out, const struct measured_map *ma
         psd_of_modes(&s->modes, s->wave_number, s->density);
         for (size_t r = 0; r < s->bins; r++)
             s->density[r] /= s->power;
-        status = ring_modes_measure(s, share, err);
+        s->rings = whole_rings(s);
+        status = ring_modes_measure(s, err);
+    }
+    if (status == 0)
+        *out = s;
+    else
+        map_spectrum_destroy(&s);
+    return status;
+}
+
+/* Fills the densities of ellipses. */
+static void ellipses_fill(struct map_spectrum *s) {
+    const struct grid *grid = &s->modes.grid;
+    const long last_y = (long)grid->ny / 2;
+    double cell = grid->lx * grid->ly / (4 * M_PI * M_PI) / s->power;
+    for (size_t mx = 0; mx <= grid->nx / 2; mx++)
+        for (long my = -(long)((grid->ny - 1) / 2); my <= last_y; my++) {
+            size_t r = (size_t)(mode_distance(s, mx, my) + 0.5);
+            double weight = modes_weight(grid, mx);
+            if (r >= s->bins)
+                continue;
+            s->wave_number[r] += weight; /* first the number of modes */
+            s->density[r] += weight * modes_power(&s->modes, mx, my) * cell;
+        }
+    for (size_t r = 0; r < s->bins; r++) {
+        s->density[r] /= s->wave_number[r] > 0 ? s->wave_number[r] : 1;
+        s->wave_number[r] = 2 * M_PI * (double)r / s->side;
+    }
+}
+
+int map_spectrum_create_along(struct map_spectrum **out, const struct map_spectrum *circles,
+                              const struct lay *lay, struct error *err) {
+    struct map_spectrum *s = array_create(1, sizeof *s);
+    if (s == NULL)
+        return error_memory(err, sizeof *s, "a spectrum");
+    *s = (struct map_spectrum){.modes = circles->modes,
+                               .borrows_modes = true,
+                               .windowed = circles->windowed,
+                               .lay = *lay,
+                               .frame = lay_frame_of(lay),
+                               .power = circles->power,
+                               .side = circles->side,
+                               .heights = circles->heights,
+                               .bins = circles->bins};
+    s->bins = s->rings = whole_rings(s);
+    int status = arrays_create(s, err);
+    if (status == 0) {
+        ellipses_fill(s);
+        status = ring_modes_measure(s, err);
     }
     if (status == 0)
         *out = s;
@@ -274,7 +347,8 @@ void map_spectrum_destroy(struct map_spectrum **spectrum) {
     struct map_spectrum *s = *spectrum;
     if (s == NULL)
         return;
-    free(s->modes.power);
+    if (!s->borrows_modes)
+        free(s->modes.power);
     free(s->wave_number);
     free(s->density);
     free(s->freedom);

@@ -8,20 +8,25 @@
 #define RUGO_CORE_STATISTICS_SPECTRA_MAP_SPECTRUM_H
 
 #include "core/statistics/measured_map.h"
+#include "core/statistics/spectra/lay.h"
 #include "core/surface/modes.h"
 #include <stdbool.h>
 
 /* The rings of a map's spectrum, and what is known of each. */
 
-enum { RING_PARTS = 4, RING_REACH = 4 };
+enum { RING_PARTS = 4, RING_REACH = 16 };
 
 /* Filled by map_spectrum_create; fields are read by all, changed by none. */
 struct map_spectrum {
     struct modes modes; /* of an open map under Hann's window */
+    bool borrows_modes; /* from the spectrum over circles */
     bool windowed;
-    double power; /* mean square of the window, over which densities are; periodic: 1 */
-    double side;  /* shorter side of the map: a ring is 2 pi/side wide */
-    size_t bins;  /* rings of the density, those in the corners too */
+    struct lay lay;         /* rings are circles, or along a lay ellipses */
+    struct lay_frame frame; /* of the lay */
+    double power;           /* mean square of the window, over which densities are; periodic: 1 */
+    double side;            /* shorter side of the map: a ring is 2 pi/side wide, across the lay */
+    double heights;         /* share of the points that are no holes */
+    size_t bins;            /* rings of the density, circles in the corners too */
     double *wave_number, *density;
     size_t rings;    /* 0 .. rings - 1, as far as circles are whole; 0 is the mean, of no use */
     double *freedom; /* degrees of freedom: its mean is distributed as chi squared of so many */
@@ -34,6 +39,10 @@ struct map_spectrum {
  * alone, or a periodic one with holes. */
 int map_spectrum_create(struct map_spectrum **out, const struct measured_map *map,
                         struct error *err);
+/* Measures over ellipses along a lay what another spectrum has over circles: a ring has the waves
+ * of one length across it. The other one must outlive it. Surfaces alone. ERROR_MEMORY. */
+int map_spectrum_create_along(struct map_spectrum **out, const struct map_spectrum *circles,
+                              const struct lay *lay, struct error *err);
 void map_spectrum_destroy(struct map_spectrum **spectrum);
 
 enum { PROFILE_PIECE = 8192 }; /* points */

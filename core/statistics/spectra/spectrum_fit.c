@@ -257,7 +257,10 @@ static double log_moment(const struct law_problem *problem, const double *p, int
     double fall = problem->dimension + 2 * p[LAW_HURST], begin = exp(p[LAW_ROLLOFF]);
     double low = lowest > 0 ? lowest : exp(p[LAW_LONG]);
     double high = highest > 0 ? highest : exp(p[LAW_SHORT]);
-    double scale = pow(2 * M_PI / problem->spectrum->side, problem->dimension + order);
+    const double ratio =
+        problem->spectrum->lay.ratio; /* by which areas and, along, slopes are less */
+    double lay = profile ? 1 : (order == 0 ? 1 : (1 + 1 / (ratio * ratio)) / 2) / ratio;
+    double scale = lay * pow(2 * M_PI / problem->spectrum->side, problem->dimension + order);
     double weight = (profile ? 0 : 1) + order, knee = fmin(fmax(begin, low), high);
     double flat = power_integral(weight, low, knee) * pow(begin / problem->reference, -fall);
     double falling = power_integral(weight - fall, knee, high) * pow(problem->reference, fall);
@@ -291,7 +294,45 @@ static struct interval moment(const struct fitted *fitted, const struct spectrum
     for (size_t a = 0; a < LAW_PARAMETERS; a++)
         for (size_t b = 0; b < LAW_PARAMETERS; b++)
             variance += slope[a] * fitted->covariance[a][b] * slope[b];
-    return about(value / 2, sqrt(variance * fitted->widening) / 2);
+    variance *= fitted->widening;
+    /* of what the ratio of the lay changes: ellipses of the same area keep the height */
+    const struct lay *lay = &fitted->problem->spectrum->lay;
+    const double square = lay->ratio * lay->ratio;
+    const double by_lay = order == 2 ? (square - 1) / (square + 1) * lay->ratio_error : 0;
+    struct interval interval = about(value / 2, sqrt(variance + by_lay * by_lay) / 2);
+    if (isnan(fit->rolloff_wavelength.value) && fit->rolloff_wavelength.low < fit->longest) {
+        /* a roll-off may lie beyond the longest waves that are seen */
+        struct law bent = *law;
+        bent.p[LAW_ROLLOFF] = log(side / fit->rolloff_wavelength.low);
+        interval.low *= exp((log_moment(fitted->problem, bent.p, order, low, high) - value) / 2);
+    }
+    return interval;
+}
+
+/* Widens an interval of a positive value by what an error of its logarithm adds. */
+static void widen(struct interval *interval, double error) {
+    if (error == 0)
+        return;
+    interval->low =
+        interval->value * exp(-hypot(log(interval->value / interval->low), SCORE * error));
+    interval->high =
+        interval->value * exp(hypot(log(interval->high / interval->value), SCORE * error));
+}
+
+/* Fills the lay, and widens by its error what was fitted over its ellipses: of the same area these
+ * are as many times longer across as the root of the ratio is less. */
+static void fill_lay(const struct lay *lay, struct spectrum_fit *out) {
+    if (lay_is_plain(lay))
+        return;
+    const double half = lay->ratio_error / 2;
+    out->lay_ratio = (struct interval){lay->ratio, lay->ratio * exp(-SCORE * lay->ratio_error),
+                                       lay->ratio * exp(SCORE * lay->ratio_error)};
+    out->lay_angle = (struct interval){lay->angle, lay->angle - SCORE * lay->angle_error,
+                                       lay->angle + SCORE * lay->angle_error};
+    widen(&out->rolloff_wavelength, half);
+    widen(&out->short_wavelength, half);
+    widen(&out->long_wavelength, half);
+    widen(&out->amplitude, (2 + 2 * out->hurst.value) * half);
 }
 
 /* Trusts waves up to a sharp end, or as long as half of their power has passed. */
@@ -325,6 +366,7 @@ static void fill(struct fitted *fitted, const struct spectrum_range *range,
     include(&out->amplitude);
     out->rms_height = moment(fitted, out, 0);
     out->rms_slope = moment(fitted, out, 2);
+    fill_lay(&problem->spectrum->lay, out);
 }
 
 int spectrum_fit_measure(const struct map_spectrum *spectrum,
@@ -354,6 +396,8 @@ int spectrum_fit_measure(const struct map_spectrum *spectrum,
                                  .rms_slope = UNKNOWN,
                                  .longest = NONE,
                                  .shortest = NONE,
+                                 .lay_ratio = {1, NONE, NONE},
+                                 .lay_angle = UNKNOWN,
                                  .profile = grid_is_profile(&spectrum->modes.grid),
                                  .deviance = NONE};
     if (status == 0 && fitted.known)
@@ -362,7 +406,7 @@ int spectrum_fit_measure(const struct map_spectrum *spectrum,
     return status;
 }
 
-double spectrum_fit_density(const struct spectrum_fit *fit, double wave_number) {
+static double density_across(const struct spectrum_fit *fit, double wave_number) {
     static const double GUARD = 1e-9;
     double length = 2 * M_PI / fmax(wave_number, 1e-300);
     if (!fit->fitted || length > fit->longest * (1 + GUARD) || length < fit->shortest * (1 - GUARD))
@@ -371,6 +415,19 @@ double spectrum_fit_density(const struct spectrum_fit *fit, double wave_number) 
         isnan(fit->rolloff_wavelength.value) ? fit->longest : fit->rolloff_wavelength.value;
     return fit->amplitude.value * pow(fmin(length, rolloff) / fit->reference_wavelength,
                                       (fit->profile ? 1 : 2) + 2 * fit->hurst.value);
+}
+
+double spectrum_fit_density(const struct spectrum_fit *fit, double wave_number) {
+    enum { DIRECTIONS = 180 }; /* of a quarter turn from the lay */
+    const double ratio = fit->lay_ratio.value;
+    double total = 0;
+    if (ratio == 1)
+        return density_across(fit, wave_number);
+    for (int d = 0; d < DIRECTIONS; d++) {
+        double angle = M_PI / 2 * (d + 0.5) / DIRECTIONS;
+        total += density_across(fit, wave_number * hypot(ratio * cos(angle), sin(angle)));
+    }
+    return total / DIRECTIONS;
 }
 
 int spectrum_fit_law(const struct spectrum_fit *fit, struct spectrum *out, struct error *err) {
@@ -385,6 +442,8 @@ int spectrum_fit_law(const struct spectrum_fit *fit, struct spectrum *out, struc
                              .wavelength_long = fit->longest,
                              .wavelength_rolloff = fmin(fmax(rolloff, fit->shortest), fit->longest),
                              .wavelength_short = fit->shortest,
+                             .anisotropy = fit->lay_ratio.value,
+                             .lay_angle = fit->lay_ratio.value > 1 ? fit->lay_angle.value : 0,
                              .scale = SCALE_RMS_HEIGHT,
                              .scale_value = fit->rms_height.value};
     return 0;

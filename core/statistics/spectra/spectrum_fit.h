@@ -29,6 +29,9 @@ struct spectrum_fit {
      * `shortest`, which is short_wavelength or else trusted_to. */
     struct interval rms_height, rms_slope;
     double longest, shortest;
+    /* Of a lay, whose spectrum is over ellipses: wavelengths and densities above are those of waves
+     * across it. The ratio is 1 where there is none, and the angle NaN, both without ends. */
+    struct interval lay_ratio, lay_angle; /* angle in radians, counter-clockwise from x */
     bool profile;
 
     double deviance; /* per degree of freedom: about 1 where the law holds; larger ones have widened
@@ -41,7 +44,8 @@ int spectrum_fit_measure(const struct map_spectrum *spectrum,
                          const struct spectrum_fit_request *request, struct spectrum_fit *out,
                          struct error *err);
 
-/* Returns the density of the law at a wave number; 0 beyond its ends. */
+/* Returns the density of the law at a wave number, with a lay its mean over all directions; 0
+ * beyond its ends. */
 double spectrum_fit_density(const struct spectrum_fit *fit, double wave_number);
 /* Fills the spectrum of a study that makes surfaces by the law: what was not seen is as long, or as
  * short, as that of the RMS height above. ERROR_INPUT where nothing was fitted. */

@@ -156,11 +156,23 @@ static void end_find(const struct map_spectrum *s, size_t last, struct spectrum_
     out->last = last / 2;
 }
 
+/* Returns the first ring that is looked at: of ellipses one with waves in most directions. */
+static size_t first_ring(const struct map_spectrum *s) {
+    static const double AROUND = 1.0; /* waves along the lay */
+    size_t first = s->windowed ? 2 : 1;
+    if (lay_is_plain(&s->lay))
+        return first;
+    first = (size_t)fmax((double)first, fmin(ceil(AROUND * s->lay.ratio), (double)s->rings - 1));
+    for (size_t r = first; r < s->rings; r++)
+        first = s->freedom[r] > 0 ? first : r + 1;
+    return first < s->rings ? first : s->rings - 1;
+}
+
 int spectrum_range_find(const struct map_spectrum *s, const struct spectrum_fit_request *request,
                         struct spectrum_range *out, struct error *err) {
     static const double GUARD = 1e-9;
     size_t last = s->rings - 1;
-    *out = (struct spectrum_range){.first = s->windowed ? 2 : 1, .from_end = SPECTRUM_END_SIDE};
+    *out = (struct spectrum_range){.first = first_ring(s), .from_end = SPECTRUM_END_SIDE};
     if (last > LEAST_RING + EDGE_AFTER)
         end_find(s, last, out);
     else {

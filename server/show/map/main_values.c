@@ -27,6 +27,8 @@ static const struct table_row {
     {"roll-off wavelength", "spectrum_fit", "rolloff_wavelength", 1, 0, NULL},
     {"shortest wavelength", "spectrum_fit", "short_wavelength", 1, 0, NULL},
     {"longest wavelength", "spectrum_fit", "long_wavelength", 1, 0, NULL},
+    {"waves along over across", "spectrum_fit", "lay_ratio", 0, 0, NULL},
+    {"lay, degrees from x", "spectrum_fit", "lay_angle", 0, 0, NULL},
     {"trusted wavelengths", "spectrum_fit", "trusted_to", 1, 0, "trusted_from"},
     {"heights like", "height_fit", "distribution", 0, 0, NULL},
     {"their shape C", "height_fit", "shape", 0, 0, NULL},

@@ -292,6 +292,14 @@ static void add_fit(struct named_values *out, const struct spectrum_fit *fit) {
     named_values_add_length(out, GROUP, "amplitude_at", fit->reference_wavelength, 1);
     named_values_add(out, GROUP, "deviance", fit->deviance);
     named_values_add(out, GROUP, "freedom", fit->freedom);
+    if (fit->lay_ratio.value == 1)
+        return;
+    named_values_add(out, GROUP, "lay_ratio", fit->lay_ratio.value);
+    named_values_add(out, GROUP, "lay_ratio_low", fit->lay_ratio.low);
+    named_values_add(out, GROUP, "lay_ratio_high", fit->lay_ratio.high);
+    named_values_add(out, GROUP, "lay_angle", fit->lay_angle.value / DEGREE);
+    named_values_add(out, GROUP, "lay_angle_low", fit->lay_angle.low / DEGREE);
+    named_values_add(out, GROUP, "lay_angle_high", fit->lay_angle.high / DEGREE);
 }
 
 /* --- columns --- */

@@ -110,8 +110,14 @@ static void judge_directions(struct verdicts *verdicts, const struct named_value
     const double p_value = named_number(found, GROUP, "p_value");
     if (!isfinite(p_value))
         return;
+    const double ratio = named_number(found, "spectrum_fit", "lay_ratio");
     if (p_value >= SURE)
         say(verdicts, "Directions: none differs (p-value %.2g).", p_value);
+    else if (isfinite(ratio))
+        say(verdicts,
+            "Directions: they differ (p-value %.2g): waves are %.3g times as long at %.3g degrees "
+            "from x as across. The law of the spectrum is that of waves across.",
+            p_value, ratio, named_number(found, "spectrum_fit", "lay_angle"));
     else
         say(verdicts,
             "Directions: they differ (p-value %.2g): slopes by a factor of %.3g. The law of the "

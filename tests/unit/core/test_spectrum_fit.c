@@ -106,8 +106,8 @@ static void laws_are_what_they_tell(void **state) {
 static void pieces_hold_the_truth(void **state) {
     (void)state;
     static const struct recovery_case CASES[] = {
-        {"piece", 320, 112, 112, 0.5, 20, 4, 320, 0, false},
-        {"piece of unlike sides", 320, 80, 160, 0.8, 20, 4, 320, 0, false},
+        {"piece", 320, 112, 112, 0.5, 20, 4, 320, 0, false, 0, 0},
+        {"piece of unlike sides", 320, 80, 160, 0.8, 20, 4, 320, 0, false, 0, 0},
     };
     for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
         struct recovery recovery;

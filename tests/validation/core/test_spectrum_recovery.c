@@ -10,17 +10,20 @@
 #include "tests/support/spectrum_recovery.h"
 
 static const struct recovery_case CASES[] = {
-    {"open", 384, 128, 128, 0.2, 20, 4, 384, 0, false},
-    {"open", 384, 128, 128, 0.5, 20, 4, 384, 0, false},
-    {"open", 384, 128, 128, 0.8, 20, 4, 384, 0, false},
-    {"open, no roll-off", 448, 128, 128, 0.8, 448, 5, 448, 0, false},
-    {"open, no sharp end", 384, 128, 128, 0.5, 20, 2, 384, 0, false},
-    {"open, long end", 512, 192, 192, 0.5, 24, 4, 48, 0, false},
-    {"open, unlike sides", 512, 96, 224, 0.5, 20, 4, 512, 0, false},
-    {"open, 5 % holes", 384, 128, 128, 0.8, 20, 4, 384, 0.05, false},
-    {"periodic", 128, 128, 128, 0.2, 16, 4, 64, 0, false},
-    {"periodic", 128, 128, 128, 0.5, 16, 4, 64, 0, false},
-    {"periodic", 128, 128, 128, 0.8, 16, 4, 64, 0, false},
+    {"open", 384, 128, 128, 0.2, 20, 4, 384, 0, false, 0, 0},
+    {"open", 384, 128, 128, 0.5, 20, 4, 384, 0, false, 0, 0},
+    {"open", 384, 128, 128, 0.8, 20, 4, 384, 0, false, 0, 0},
+    {"open, no roll-off", 448, 128, 128, 0.8, 448, 5, 448, 0, false, 0, 0},
+    {"open, no sharp end", 384, 128, 128, 0.5, 20, 2, 384, 0, false, 0, 0},
+    {"open, long end", 512, 192, 192, 0.5, 24, 4, 48, 0, false, 0, 0},
+    {"open, unlike sides", 512, 96, 224, 0.5, 20, 4, 512, 0, false, 0, 0},
+    {"open, 5 % holes", 384, 128, 128, 0.8, 20, 4, 384, 0.05, false, 0, 0},
+    {"open, lay", 384, 128, 128, 0.7, 20, 4, 384, 0, false, 1.5, 45},
+    {"open, lay", 384, 128, 128, 0.7, 20, 4, 384, 0, false, 2, 20},
+    {"open, lay", 384, 128, 128, 0.7, 20, 4, 384, 0, false, 3, 0},
+    {"periodic", 128, 128, 128, 0.2, 16, 4, 64, 0, false, 0, 0},
+    {"periodic", 128, 128, 128, 0.5, 16, 4, 64, 0, false, 0, 0},
+    {"periodic", 128, 128, 128, 0.8, 16, 4, 64, 0, false, 0, 0},
 };
 
 /* The fewest of n that hold the truth: fewer do so once in 90 times, of 20 once in 400. */
@@ -55,7 +58,7 @@ static void recovery(void **state) {
 
 static void fixed_amplitudes(void **state) {
     (void)state;
-    const struct recovery_case fixed = {"fixed", 128, 128, 128, 0.8, 16, 4, 64, 0, true};
+    const struct recovery_case fixed = {"fixed", 128, 128, 128, 0.8, 16, 4, 64, 0, true, 0, 0};
     struct recovery found;
     recovery_run(&found, &fixed, 4);
     assert_true(found.of[RECOVERED_HURST].error < 5e-3);

@@ -1,7 +1,8 @@
 /* Whether a surface is alike in all directions: at two distances, and wave by wave. */
-#ifndef RUGO_JOBS_MAPS_MAP_DIRECTIONS_H
-#define RUGO_JOBS_MAPS_MAP_DIRECTIONS_H
+#ifndef RUGO_CORE_STATISTICS_UNCERTAINTY_MAP_DIRECTIONS_H
+#define RUGO_CORE_STATISTICS_UNCERTAINTY_MAP_DIRECTIONS_H
 
+#include "core/statistics/spectra/lay_fit.h"
 #include "core/statistics/uncertainty/isotropy.h"
 #include "core/statistics/uncertainty/map_chance.h"
 
@@ -16,5 +17,12 @@ struct map_directions {
 void map_directions_measure(struct map_directions *out, const struct measured_map *map,
                             const struct map_chance *chance, const struct map_spectrum *spectrum,
                             const struct cell_differences *nearest);
+/* Finds the lay of a surface whose directions differ (at a level of 0.01; of maps too small for
+ * errors by the spectrum alone), by its spectrum over circles; LAY_NONE where they do not, or where
+ * it has none (lay_fit.h). *asked: the wavelengths that count. ERROR_INPUT where these leave no
+ * wave; ERROR_MEMORY. */
+int map_directions_lay(struct lay *out, const struct map_directions *directions,
+                       const struct map_spectrum *spectrum,
+                       const struct spectrum_fit_request *asked, struct error *err);
 
 #endif

@@ -1,4 +1,4 @@
-#include "jobs/maps/map_directions.h"
+#include "core/statistics/uncertainty/map_directions.h"
 #include <math.h>
 
 /* Measures at a lag in points along x, whose differences are these. */
@@ -34,4 +34,21 @@ void map_directions_measure(struct map_directions *out, const struct measured_ma
     const double p_values[] = {out->fine.p_value, out->coarse.p_value};
     out->p_value = least_p_value(p_values, out->coarse.length > out->fine.length ? 2 : 1);
     out->texture = angular_spectrum_peak(&out->angular);
+}
+
+int map_directions_lay(struct lay *out, const struct map_directions *directions,
+                       const struct map_spectrum *spectrum,
+                       const struct spectrum_fit_request *asked, struct error *err) {
+    static const double SIGNIFICANCE = 0.01;
+    const bool known = !isnan(directions->p_value);
+    const bool coarse = directions->coarse.p_value < directions->fine.p_value;
+    const struct isotropy *surer = coarse ? &directions->coarse : &directions->fine;
+    *out = LAY_NONE;
+    if (known && !(directions->p_value < SIGNIFICANCE))
+        return 0;
+    const struct lay start = {.ratio = surer->ratio, .angle = surer->direction + M_PI / 2};
+    int status = lay_fit_measure(out, &start, spectrum, asked, err);
+    if (status == 0 && !known && !(lay_p_value(out) < SIGNIFICANCE))
+        *out = LAY_NONE;
+    return status;
 }
