@@ -1,10 +1,14 @@
 #include "core/map/preparation.h"
 #include "core/error.h"
+#include "core/map/despike.h"
 #include "core/map/gaussian_filter.h"
 #include "core/map/height_map.h"
 #include "core/map/length_unit.h"
 #include "core/map/map_resample.h"
+#include "core/map/map_turn.h"
 #include "core/map/membrane.h"
+#include "core/map/scan_lines.h"
+#include "core/map/tip.h"
 #include "core/plain_text.h"
 #include "core/sum.h"
 #include <math.h>
@@ -352,6 +356,128 @@ static int check_range(const struct height_map *map, struct error *err) {
     return 0;
 }
 
+/* --- lines, spikes, tip --- */
+
+/* Returns a height as messages print it. */
+static const char *height_text(const struct height_map *map, double height, char text[40]) {
+    double one = 1;
+    const char *unit = is_metre(map->z_unit) ? length_unit_readable(height, &one) : map->z_unit;
+    snprintf(text, 40, "%.4g%s%s", height / one, *unit != '\0' ? " " : "", unit);
+    return text;
+}
+
+static int level_lines(struct preparation_record *record, struct height_map *map,
+                       const struct preparation *asked, struct error *err) {
+    static const char *const NAMES[] = {"none", "mean", "median", "linear", "quadratic"};
+    const bool along_x = asked->lines_along == SCAN_ALONG_X;
+    struct scan_lines_result done;
+    char rms[40];
+    if (asked->lines == SCAN_LINES_NONE)
+        return 0;
+    if (!along_x && grid_is_profile(&map->grid))
+        return error_set(err, ERROR_INPUT, "--lines-along y: a profile has one line, along x");
+    int status = scan_lines_level(&map->grid, map->z, asked->lines, asked->lines_along, &done, err);
+    if (status != 0)
+        return error_context(err, "--lines");
+    preparation_note(record, "lines",
+                     "%s of each of %zu lines along %s, RMS %s, %.3g %% of the mean square",
+                     NAMES[asked->lines], done.lines, along_x ? "x" : "y",
+                     height_text(map, done.rms, rms), isnan(done.share) ? 0 : 100 * done.share);
+    return 0;
+}
+
+static int remove_spikes(struct preparation_record *record, struct height_map *map,
+                         const struct preparation *asked, struct error *err) {
+    struct despike_result done;
+    char deviation[40];
+    if (asked->despike == 0)
+        return 0;
+    int status = despike(&map->grid, map->z, asked->despike, &done, err);
+    if (status != 0)
+        return error_context(err, "--despike");
+    preparation_note(record, "despike",
+                     "%zu points, %.3g %%, became holes: beyond %g deviations of %s from their "
+                     "neighbours",
+                     done.spikes, 100 * (double)done.spikes / (double)grid_points(&map->grid),
+                     asked->despike, height_text(map, done.deviation, deviation));
+    return 0;
+}
+
+static int remove_tip(struct preparation_record *record, struct height_map *map,
+                      const struct preparation *asked, struct error *err) {
+    const size_t points = grid_points(&map->grid);
+    unsigned char *untrusted = NULL;
+    struct tip_result done;
+    char radius[40], rms[40];
+    double length = 0;
+    if (asked->tip.value == 0)
+        return 0;
+    int status = height_map_check_units(map, err);
+    if (status == 0)
+        status = preparation_length(&length, map, &asked->tip, "--deconvolve", err);
+    if (status != 0)
+        return status;
+    if (asked->tip_holes && (untrusted = array_create(points, 1)) == NULL)
+        return error_memory(err, points, "marks of a tip");
+    status = tip_erode(&map->grid, map->z, length, untrusted, &done, err);
+    for (size_t point = 0; point < points && status == 0 && untrusted != NULL; point++)
+        if (untrusted[point] != 0)
+            map->z[point] = (double)NAN;
+    free(untrusted);
+    if (status != 0)
+        return error_context(err, "--deconvolve");
+    preparation_note(record, "deconvolve",
+                     "tip of radius %s, RMS change %s; %zu points, %.3g %%, not reached, %s",
+                     preparation_length_text(map, length, radius), height_text(map, done.rms, rms),
+                     done.untrusted, 100 * (double)done.untrusted / (double)points,
+                     asked->tip_holes ? "became holes" : "bounded from above");
+    return 0;
+}
+
+/* --- turns --- */
+
+static int transpose(struct preparation_record *record, struct height_map *map, bool asked,
+                     struct error *err) {
+    if (!asked)
+        return 0;
+    int status = map_transpose(map, err);
+    if (status != 0)
+        return error_context(err, "--transpose");
+    preparation_note(record, "transpose", "x and y exchanged, %zu by %zu points", map->grid.nx,
+                     map->grid.ny);
+    return 0;
+}
+
+static int turn(struct preparation_record *record, struct height_map *map,
+                const struct preparation *asked, struct error *err) {
+    const struct grid before = map->grid;
+    const double right_angles = asked->turn / 90;
+    struct map_turn_result done;
+    if (asked->turn == 0)
+        return 0;
+    if (right_angles == floor(right_angles)) {
+        int status = map_turn_right(map, (unsigned)(right_angles + 4) % 4, err);
+        if (status != 0)
+            return error_context(err, "--rotate %g", asked->turn);
+        preparation_note(record, "rotate", "%g degrees counter-clockwise, exactly", asked->turn);
+        return 0;
+    }
+    if (asked->boundary == ASK_BOUNDARY_PERIODIC)
+        return error_set(err, ERROR_INPUT,
+                         "--rotate %g: a turned map no longer repeats; allowed with --boundary "
+                         "periodic: multiples of 90",
+                         asked->turn);
+    int status = map_turn(map, asked->turn * PI / 180, &done, err);
+    if (status != 0)
+        return error_context(err, "--rotate %g", asked->turn);
+    preparation_note(record, "rotate",
+                     "%g degrees counter-clockwise, %zu by %zu points to %zu by %zu inside, by a "
+                     "spline of degree 7; one of 5 changes slopes by %.2g %%",
+                     asked->turn, before.nx, before.ny, map->grid.nx, map->grid.ny,
+                     100 * done.slope_change);
+    return 0;
+}
+
 /* --- boundary and trend --- */
 
 static int check_holes(const struct height_map *map, const struct preparation *asked, double holes,
@@ -470,6 +596,16 @@ int preparation_run(struct preparation_record *record, struct height_map *map,
         status = crop(record, map, asked, err);
     if (status == 0)
         status = check_range(map, err);
+    if (status == 0)
+        status = level_lines(record, map, asked, err);
+    if (status == 0)
+        status = remove_spikes(record, map, asked, err);
+    if (status == 0)
+        status = remove_tip(record, map, asked, err);
+    if (status == 0)
+        status = transpose(record, map, asked->transpose, err);
+    if (status == 0)
+        status = turn(record, map, asked, err);
     if (status == 0)
         status = level(record, map, asked, err);
     if (status == 0 && asked->fill)

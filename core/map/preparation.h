@@ -1,8 +1,13 @@
 /* Preparation of a height map before it is measured or pressed: steps in a fixed order, each only
- * where it is requested, and a record of them. FORMULAS.md, F18.20 to F18.23.
+ * where it is requested, and a record of them. FORMULAS.md, F18.20 to F18.23, F18.30 to F18.33.
  *
  *   units     spacing, and units of lengths that the file does not have; lengths become metres
  *   crop      keeps a rectangle of the points
+ *   lines     subtracts from each scan line its own mean, median or polynomial
+ *   despike   makes holes of points that stand out of their neighbourhood
+ *   deconvolve  erodes the image by the tip that took it
+ *   transpose exchanges x and y
+ *   rotate    turns the map, in the largest rectangle inside
  *   detrend   subtracts a polynomial of least squares through the heights that are there
  *   fill      fills holes with the smoothest membrane through their rims
  *   filter    S-filter, which keeps long waves, then L-filter, which removes long waves
@@ -11,12 +16,16 @@
  *
  * Whether the map is open or periodic is decided after the crop and a trend that was requested by
  * name, and holds for all later steps; after a window a map is periodic. Holes stay holes in every
- * step but `fill`; steps that need all heights refuse them. */
+ * step but `fill`; steps that need all heights refuse them. What an instrument leaves along its
+ * scan lines, single wrong points and its tip comes first, while rows are as they were scanned:
+ * spikes are found beside lines without offsets, and a tip meets no spikes. The map is turned next,
+ * so that trend, boundary and all later steps are those of the rectangle that is measured. */
 #ifndef RUGO_CORE_MAP_PREPARATION_H
 #define RUGO_CORE_MAP_PREPARATION_H
 
 #include "core/map/detrend.h"
 #include "core/map/height_map.h"
+#include "core/map/scan_lines.h"
 #include "core/statistics/measured_map.h"
 #include "core/statistics/uncertainty/seam.h"
 #include "core/surface/grid.h"
@@ -56,6 +65,13 @@ struct preparation {
     double unit, z_unit;        /* metres in one unit of the file's lengths; 0: not requested */
     struct asked_length
         crop[4]; /* first x and y, width and height; not requested where the width is 0 */
+    enum scan_lines lines;
+    enum scan_axis lines_along;
+    double despike;          /* robust deviations; 0: not requested */
+    struct asked_length tip; /* its radius; 0: not requested */
+    bool tip_holes;          /* points that the tip did not reach become holes */
+    bool transpose;
+    double turn; /* degrees, counter-clockwise */
     enum asked_boundary boundary;
     enum asked_detrend detrend;
     bool fill;
@@ -67,7 +83,7 @@ struct preparation {
     enum map_window window;
 };
 
-enum { PREPARATION_STEPS_MOST = 20, PREPARATION_TEXT = 160 };
+enum { PREPARATION_STEPS_MOST = 28, PREPARATION_TEXT = 160 };
 
 /* The steps that were done, and what was measured in them. */
 struct preparation_record {

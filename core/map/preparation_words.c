@@ -152,15 +152,63 @@ static int parse_resample(struct preparation *out, const char *text, struct erro
                      text);
 }
 
+/* Reads a number with nothing behind it. */
+static bool parse_number(double *out, const char *text) {
+    char *end;
+    if (strchr("+-.0123456789", *text) == NULL)
+        return false;
+    *out = strtod(text, &end);
+    return end != text && *end == '\0' && isfinite(*out);
+}
+
+static int parse_despike(struct preparation *out, const char *text, struct error *err) {
+    if (text == NULL || (parse_number(&out->despike, text) && out->despike >= 1))
+        return 0;
+    return error_set(err, ERROR_INPUT,
+                     "--despike %.60s: allowed is a number of robust deviations, 1 or more", text);
+}
+
+static int parse_tip(struct preparation *out, const char *text, struct error *err) {
+    static const char NAME[] = "tip=", HOLES[] = ",holes";
+    if (text == NULL)
+        return 0;
+    const char *radius = strncmp(text, NAME, strlen(NAME)) == 0 ? text + strlen(NAME) : text;
+    const size_t width = strcspn(radius, ",");
+    out->tip_holes = strcmp(radius + width, HOLES) == 0;
+    if (asked_length_parse(&out->tip, radius, width) && out->tip.value > 0 &&
+        (out->tip_holes || radius[width] == '\0'))
+        return 0;
+    return error_set(err, ERROR_INPUT,
+                     "--deconvolve %.60s: allowed are tip=RADIUS and tip=RADIUS,holes, the radius "
+                     "a length above 0 such as 10nm",
+                     text);
+}
+
+static int parse_turn(struct preparation *out, const char *text, struct error *err) {
+    if (text == NULL || (parse_number(&out->turn, text) && fabs(out->turn) <= 360))
+        return 0;
+    return error_set(err, ERROR_INPUT,
+                     "--rotate %.60s: allowed are degrees, -360 to 360, counter-clockwise", text);
+}
+
 int preparation_parse(struct preparation *out, const struct preparation_words *words,
                       struct error *err) {
     struct preparation asked = {.boundary = (enum asked_boundary)words->boundary,
                                 .detrend = (enum asked_detrend)words->detrend,
                                 .window = (enum map_window)words->window,
-                                .fill = words->fill};
+                                .fill = words->fill,
+                                .lines = (enum scan_lines)words->lines,
+                                .lines_along = (enum scan_axis)words->lines_along,
+                                .transpose = words->transpose};
     int status = parse_units(&asked, words, err);
     if (status == 0)
         status = parse_crop(&asked, words->crop, err);
+    if (status == 0)
+        status = parse_despike(&asked, words->despike, err);
+    if (status == 0)
+        status = parse_tip(&asked, words->tip, err);
+    if (status == 0)
+        status = parse_turn(&asked, words->rotate, err);
     if (status == 0)
         status = parse_filter(&asked, words->filter, err);
     if (status == 0)

@@ -9,6 +9,10 @@
 #define MAP_DETREND_NAME(type, name, value) "|" name
 #define MAP_DETRENDS "auto|none" RUGO_TRENDS(MAP_DETREND_NAME)
 #define MAP_WINDOWS "none|hann|tukey"
+#define MAP_LINES "none|mean|median|linear|quadratic"
+#define MAP_LINES_ALONG "x|y"
+
+#define MAP_DESPIKE "8" /* deviations, unless others are given */
 
 /* NULL: not requested. */
 struct preparation_words {
@@ -18,8 +22,11 @@ struct preparation_words {
     const char *crop;     /* "X0,Y0,WIDTH,HEIGHT", points or lengths with units */
     const char *resample; /* "512", "512,256", "0.5um", "dx=0.5" */
     const char *filter;   /* "S=2.5um,L=0.8mm,robust", each part at most once */
-    int boundary, detrend, window; /* the enums of preparation.h */
-    bool fill;
+    const char *despike;  /* "8": robust deviations */
+    const char *tip;      /* "tip=10nm", "tip=10nm,holes" */
+    const char *rotate;   /* "30": degrees */
+    int boundary, detrend, window, lines, lines_along; /* the enums of preparation.h */
+    bool fill, transpose;
 };
 
 /* ERROR_INPUT names the option, its value and what is allowed. */

@@ -97,6 +97,8 @@ static int measure_areal(struct map_characterisation *out, const struct measured
         open_roughness_measure(map, &roughness);
     int status = areal_measure(map, &roughness, chance->correlation, &hills, &out->areal, err);
     if (status == 0)
+        status = map_functional_measure(&out->functional, map, &hills, out->areal.sz, err);
+    if (status == 0)
         status = measure_hill_errors(out, map, chance, &hills, err);
     summit_list_clear(&hills);
     return status;
@@ -173,8 +175,10 @@ static int measure(struct map_characterisation *out, const struct measured_map *
     struct common common = {.map = map, .chance = chance};
     int status = map_parameters_measure(&out->parameters, map, map->grid->nx / 2, map->grid->ny / 2,
                                         chance, err);
-    if (status == 0 && !grid_is_profile(map->grid))
-        status = measure_areal(out, map, chance, err);
+    if (status == 0)
+        status = grid_is_profile(map->grid)
+                     ? map_functional_measure(&out->functional, map, NULL, 0, err)
+                     : measure_areal(out, map, chance, err);
     if (status == 0)
         status = measure_common(out, &common, under_window, trusted, err);
     map_spectrum_destroy(&common.spectrum);

@@ -7,6 +7,7 @@
 #include "core/statistics/heights/height_fit.h"
 #include "core/statistics/uncertainty/map_directions.h"
 #include "core/statistics/uncertainty/stationarity.h"
+#include "jobs/maps/map_functional.h"
 #include "jobs/maps/map_parameters.h"
 #include "jobs/maps/map_scales.h"
 #include "jobs/maps/map_spectra.h"
@@ -38,6 +39,7 @@ struct map_certainty {
 struct map_characterisation {
     struct map_parameters parameters;
     struct areal areal; /* of surfaces alone, as `directions` */
+    struct map_functional functional;
     bool hills_have_errors;
     struct summit_errors hill_errors; /* of areal.spd and areal.spc */
     struct map_certainty certainty;

@@ -164,6 +164,7 @@ static int take_value(const char *command, const struct option_row *row, void *v
         *(const char **)value = text;
         return 0;
     case OPTION_TEXT:
+    case OPTION_OPTIONAL:
         *(const char **)value = text;
         return 0;
     case OPTION_LIST:
@@ -207,7 +208,7 @@ static int take_defaults(int argc, const char *command, const struct option_row 
             *(int64_t *)value = -1;
         if (rows->type == OPTION_PAIR)
             ((int64_t *)value)[1] = -1;
-        if (rows->standard != NULL)
+        if (rows->standard != NULL && rows->type != OPTION_OPTIONAL)
             status = take_value(command, rows, values, rows->standard);
         if (status != 0)
             return status;
@@ -238,7 +239,9 @@ static int unknown_option(const char *command, const struct option_row *rows, co
 static void fill_names(const struct option_row *rows, struct option *names, char *letters) {
     *letters++ = ':'; /* distinguish a missing argument from an unknown option */
     for (int r = 0; rows[r].name != NULL && r < ROWS_MOST; r++) {
-        int argument = rows[r].type == OPTION_FLAG ? no_argument : required_argument;
+        int argument = rows[r].type == OPTION_FLAG       ? no_argument
+                       : rows[r].type == OPTION_OPTIONAL ? optional_argument
+                                                         : required_argument;
         *names++ = (struct option){rows[r].name, argument, NULL, LONG_CODE + r};
         if (rows[r].letter == 0)
             continue;
@@ -284,9 +287,19 @@ static int take_arguments(int argc, char **argv, int least, int most, const char
     return 0;
 }
 
+static bool is_number(const char *text) {
+    char *end;
+    strtod(text, &end);
+    return end != text && *end == '\0';
+}
+
 /* Takes the value of an option, of a pair with the word behind it where it is written as two. */
 static int take_option(int argc, char **argv, const struct option_row *row, void *values) {
     char pair[80];
+    if (row->type == OPTION_OPTIONAL && optarg == NULL) {
+        const bool follows = optind < argc && is_number(argv[optind]);
+        return take_value(argv[0], row, values, follows ? argv[optind++] : row->standard);
+    }
     if (row->type != OPTION_PAIR || strchr(optarg, ',') != NULL || optind >= argc)
         return take_value(argv[0], row, values, optarg);
     snprintf(pair, sizeof pair, "%.38s,%.38s", optarg, argv[optind++]);

@@ -7,14 +7,16 @@
 #include <stddef.h>
 
 enum option_type { /* what a value becomes; where it has no default and is not given: */
-                   OPTION_FLAG,   /* bool; false */
-                   OPTION_TEXT,   /* const char *, borrowed from argv or the table; NULL */
-                   OPTION_MODELS, /* const char *, names that models_find reads; NULL */
-                   OPTION_COUNT,  /* unsigned in [low, high]; 0 */
-                   OPTION_INDEX,  /* int64_t, 0 or more; -1 */
-                   OPTION_PAIR,   /* int64_t[2], each 0 or more, given as "1 0" or "1,0"; -1 */
-                   OPTION_NUMBER, /* double in [low, high], or above low where high is 0; 0 */
-                   OPTION_CHOICE, /* int, the number of the word in argument ("text|json"); 0 */
+                   OPTION_FLAG,     /* bool; false */
+                   OPTION_TEXT,     /* const char *, borrowed from argv or the table; NULL */
+                   OPTION_OPTIONAL, /* likewise; the default where it is given without a number
+                                       behind it, NULL where it is not given */
+                   OPTION_MODELS,   /* const char *, names that models_find reads; NULL */
+                   OPTION_COUNT,    /* unsigned in [low, high]; 0 */
+                   OPTION_INDEX,    /* int64_t, 0 or more; -1 */
+                   OPTION_PAIR,     /* int64_t[2], each 0 or more, given as "1 0" or "1,0"; -1 */
+                   OPTION_NUMBER,   /* double in [low, high], or above low where high is 0; 0 */
+                   OPTION_CHOICE,   /* int, the number of the word in argument ("text|json"); 0 */
                    OPTION_LIST, /* const char **, owned, NULL-terminated; may be given again; empty
                                  */
 };

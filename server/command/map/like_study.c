@@ -147,7 +147,11 @@ static int take(struct like_options *out, const struct option_row *row, const cJ
     void *at = (char *)out + row->at;
     if (row->type == OPTION_CHOICE)
         return take_choice(at, row, member, err);
-    if (row->type == OPTION_TEXT)
+    if (row->type == OPTION_OPTIONAL && cJSON_IsBool(member)) {
+        *(const char **)at = cJSON_IsTrue(member) != 0 ? row->standard : NULL;
+        return 0;
+    }
+    if (row->type == OPTION_TEXT || row->type == OPTION_OPTIONAL)
         return take_text(out, at, member, err);
     if (!cJSON_IsBool(member))
         return refuse(member, "true or false", err);

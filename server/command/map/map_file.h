@@ -48,6 +48,18 @@ struct map_options {
                 "of heights, such as nm, where the file tells none"),                              \
         MAP_ROW(type, member, "crop", OPTION_TEXT, words.crop, "X0,Y0,WIDTH,HEIGHT", NULL,         \
                 "the part to take, in points or in lengths such as 10um"),                         \
+        MAP_ROW(type, member, "lines", OPTION_CHOICE, words.lines, MAP_LINES, "none",              \
+                "take out of each scan line its mean, median or polynomial"),                      \
+        MAP_ROW(type, member, "lines-along", OPTION_CHOICE, words.lines_along, MAP_LINES_ALONG,    \
+                "x", "the axis of the scan lines"),                                                \
+        MAP_ROW(type, member, "despike", OPTION_OPTIONAL, words.despike, "[N]", MAP_DESPIKE,       \
+                "make holes of points N robust deviations from their neighbours"),                 \
+        MAP_ROW(type, member, "deconvolve", OPTION_TEXT, words.tip, "tip=RADIUS[,holes]", NULL,    \
+                "erode by a paraboloid tip; holes: where it did not reach"),                       \
+        MAP_ROW(type, member, "transpose", OPTION_FLAG, words.transpose, NULL, NULL,               \
+                "exchange x and y"),                                                               \
+        MAP_ROW(type, member, "rotate", OPTION_TEXT, words.rotate, "DEGREES", NULL,                \
+                "turn counter-clockwise: by right angles exactly, else in the rectangle inside"),  \
         MAP_ROW(type, member, "detrend", OPTION_CHOICE, words.detrend, MAP_DETRENDS, standard,     \
                 "trend taken out first; auto: a plane, of an open map"),                           \
         MAP_ROW(type, member, "fill", OPTION_FLAG, words.fill, NULL, NULL,                         \

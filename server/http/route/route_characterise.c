@@ -14,7 +14,7 @@ enum {
     MEMORY_FACTOR = 16,       /* of the largest file that is taken */
     MEMORY_LEAST = 512 << 20, /* for small ones */
     ANSWER_MOST = 64 << 20,   /* bytes: tables of large maps are a few */
-    ARGUMENTS_MOST = 24,
+    ARGUMENTS_MOST = 32,
     OPTION_SIZE = 320,
 };
 
@@ -22,13 +22,16 @@ enum {
 static const struct {
     const char *name, *option;
     bool flag; /* true or false */
-} OPTIONS[] = {{"name", "name", false},         {"layer", "layer", false},
-               {"columns", "columns", false},   {"dx", "dx", false},
-               {"unit", "unit", false},         {"z_unit", "z-unit", false},
-               {"crop", "crop", false},         {"detrend", "detrend", false},
-               {"fill", "fill", true},          {"filter", "filter", false},
-               {"resample", "resample", false}, {"window", "window", false},
-               {"boundary", "boundary", false}, {"trust_from", "trust-from", false},
+} OPTIONS[] = {{"name", "name", false},          {"layer", "layer", false},
+               {"columns", "columns", false},    {"dx", "dx", false},
+               {"unit", "unit", false},          {"z_unit", "z-unit", false},
+               {"crop", "crop", false},          {"detrend", "detrend", false},
+               {"lines", "lines", false},        {"lines_along", "lines-along", false},
+               {"despike", "despike", false},    {"deconvolve", "deconvolve", false},
+               {"transpose", "transpose", true}, {"rotate", "rotate", false},
+               {"fill", "fill", true},           {"filter", "filter", false},
+               {"resample", "resample", false},  {"window", "window", false},
+               {"boundary", "boundary", false},  {"trust_from", "trust-from", false},
                {"trust_to", "trust-to", false}};
 enum { OPTION_COUNT = sizeof OPTIONS / sizeof *OPTIONS };
 

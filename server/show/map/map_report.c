@@ -1,8 +1,11 @@
 #include "server/show/map/map_report.h"
+#include "server/show/map/functional_report.h"
 #include <math.h>
 #include <string.h>
 
 static const double DEGREE = M_PI / 180;
+/* Of heights that a Gaussian law fits at this level, none is looked for with two of them. */
+static const double GAUSSIAN_LEVEL = 0.01;
 
 /* --- parameters --- */
 
@@ -394,6 +397,8 @@ static int add_tables(struct named_values *out, const struct map_characterisatio
         status = add_spectra(out, &found->spectra, profile, err);
     if (status == 0)
         status = add_columns(out, "acf", acf->count, sizeof(double), COLUMNS(lags), err);
+    if (status == 0)
+        status = functional_report_table(out, &found->functional, err);
     return status == 0 ? add_columns(out, "quantiles", heights->count, sizeof(double),
                                      COLUMNS(quantiles), err)
                        : status;
@@ -409,6 +414,10 @@ int map_report_fill(struct named_values *out, const struct map_characterisation 
     add_parameters(out, &found->parameters, errors);
     if (!profile)
         add_areal(out, found, errors);
+    functional_report_values(out, &found->functional, profile);
+    if (isfinite(found->functional.plateau.ratio) &&
+        !(found->height_fits.list[HEIGHTS_GAUSSIAN].p_value >= GAUSSIAN_LEVEL))
+        functional_report_plateau(out, &found->functional.plateau, profile);
     add_certainty(out, &found->certainty);
     add_height_fit(out, &found->height_fits);
     if (!profile)

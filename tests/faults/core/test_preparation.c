@@ -38,6 +38,13 @@ static void all_steps(void **state) {
     struct preparation_words periodic = {
         .fill = true, .filter = "S=6", .resample = "60", .boundary = ASK_BOUNDARY_PERIODIC};
     each_allocation(&(struct failing_call){.name = "open", prepare, &open, .may_succeed = 1});
+    struct preparation_words turned = {.lines = SCAN_LINES_MEDIAN,
+                                       .despike = MAP_DESPIKE,
+                                       .tip = "tip=3,holes",
+                                       .transpose = true,
+                                       .rotate = "25",
+                                       .fill = true};
+    each_allocation(&(struct failing_call){.name = "turned", prepare, &turned});
     each_allocation(&(struct failing_call){.name = "coarser", prepare, &coarser});
     each_allocation(&(struct failing_call){.name = "periodic", prepare, &periodic});
 }

@@ -7,7 +7,7 @@
 #include <string.h>
 
 enum {
-    WORDS = 6,
+    WORDS = 9,
     NX = 30,
     NY = 26,
 };
@@ -50,10 +50,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
                                       .fill = choices / 45 % 2 == 1};
     struct preparation asked;
     struct error err = {0};
-    const char **const lines[WORDS] = {&words.dx,   &words.unit,   &words.z_unit,
-                                       &words.crop, &words.filter, &words.resample};
+    const char **const lines[WORDS] = {&words.dx,      &words.unit,   &words.z_unit,
+                                       &words.crop,    &words.filter, &words.resample,
+                                       &words.despike, &words.tip,    &words.rotate};
     for (size_t w = 0; w < WORDS; w++)
         *lines[w] = cut(&at);
+    const unsigned char letter = (unsigned char)*at; /* more choices; 0: none of them */
+    words.lines = letter % 5;
+    words.lines_along = letter / 5 % 2;
+    words.transpose = letter / 10 % 2 == 1;
     int status = preparation_parse(&asked, &words, &err);
     MUST(status == 0 || (status == ERROR_INPUT && *err.text != 0));
     /* New points by their number are as many as asked for, which takes time and nothing else. */

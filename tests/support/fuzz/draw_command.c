@@ -32,6 +32,10 @@ static const struct text_words {
     {"X0,Y0,WIDTH,HEIGHT", LIST_OF("0,0,5,4", "1,0,4,4", "0,0,@,@", "0~,0~,#~,#~"),
      LIST_OF("0,0,1,1", "@,@,@,@", "#um,#um,@,@", "0,0,1e300,1", "1e300,0,2,2", "0,0,@",
              "0.5,0,2,2")},
+    {"tip=RADIUS[,holes]", LIST_OF("tip=#~", "tip=#~,holes", "#~"),
+     LIST_OF("tip=0~", "tip=1e300~", "tip=5e-324~", "#um", "#", "tip=")},
+    {"DEGREES", LIST_OF("90", "-90", "180", "30", "#"),
+     LIST_OF("0", "360", "361", "1e-300", "5e-324", "1e300", "45.000001")},
     {"S=LENGTH,L=LENGTH,robust", LIST_OF("S=#~", "L=#~", "S=2~,L=#~", "L=#~,robust", "S=#~,robust"),
      LIST_OF("S=1e300~", "L=1e300~", "S=1e-300~", "L=5e-324~", "robust", "S=#,S=#", "S=9~,L=2~")},
     {"NX[,NY]|SPACING", LIST_OF("7", "@", "@,@", "16,9", "dx=#~"),
@@ -177,6 +181,10 @@ static void put_plausible(struct word *word, struct choices *choices, const stru
     case OPTION_MODELS:
         option_argument(row, models, sizeof models);
         put_alternative(word, choices, models);
+        break;
+    case OPTION_OPTIONAL:
+        if (choose(choices, 2) == 1)
+            put(word, "%.3g", choose_number(choices, 1, 10));
         break;
     case OPTION_TEXT:
     case OPTION_LIST:

@@ -14,7 +14,9 @@
 #define STUDY(like)                                                                                \
     "{\"name\":\"alike\",\"kind\":\"statistics\",\"realisations\":30,\"surface\":{\"like\":" like  \
     "}}"
-#define LIKE "{\"file\":\"patch.npy\",\"crop\":\"0,0,48,40\",\"dx\":0.25,\"heights\":\"gaussian\"}"
+#define LIKE                                                                                       \
+    "{\"file\":\"patch.npy\",\"crop\":\"0,0,48,40\",\"dx\":0.25,\"heights\":\"gaussian\","         \
+    "\"despike\":true,\"rotate\":90}"
 
 /* A folder with a map and studies of it. */
 static int make_files(void **state) {

@@ -257,6 +257,32 @@ static void a_map_is_converted(void **state) {
     assert_true(contains("shell.err", "--z-unit"));
 }
 
+/* Lines with offsets and two spikes, exchanged and turned; options by what people type, and
+ * --despike with and without its number before a file. */
+static void what_instruments_leave_is_removed(void **state) {
+    (void)state;
+    assert_int_equal(
+        run_shell("awk 'BEGIN { for (j = 0; j < 40; j++) for (i = 0; i < 50; i++) printf "
+                  "\"%.17g%c\", cos(i * 0.3) * cos(j * 0.2) + 9 * (j % 3) + (i * 50 + j == 1020 "
+                  "|| i * 50 + j == 530 ? 40 : 0), i < 49 ? 44 : 10 }' > scanned.csv"),
+        0);
+    assert_int_equal(run_shell("$RUGO convert --lines median --despike scanned.csv turned.npy "
+                               "--fill --transpose --rotate 30 --dx 0.5um --z-unit nm"),
+                     0);
+    static const char *const STEPS[] = {"lines: median of each of 40 lines along x, RMS ",
+                                        "despike: 2 points, 0.1 %, became holes: beyond 8 ",
+                                        "transpose: x and y exchanged, 40 by 50 points",
+                                        "rotate: 30 degrees counter-clockwise, 40 by 50 points to ",
+                                        "fill: "};
+    for (size_t step = 0; step < sizeof STEPS / sizeof *STEPS; step++)
+        assert_true(contains("shell.out", STEPS[step]));
+    assert_int_equal(run_shell("$RUGO characterise --despike 5 scanned.csv --lines mean "
+                               "--deconvolve tip=20nm --dx 0.5um --z-unit nm"),
+                     0);
+    assert_int_equal(run_shell("$RUGO convert --despike scanned.csv --rotate 400 turned.npy"), 2);
+    assert_true(contains("shell.err", "--rotate 400: allowed are degrees"));
+}
+
 /* A sphere's map with units: Hertz's radius of 32 um needs 10.0825 N on a radius of 1 mm. */
 /* One screen unless more is asked for; groups as text and as JSON; other groups are refused. */
 static void groups_are_printed(void **state) {
@@ -463,6 +489,7 @@ int main(void) {
         cmocka_unit_test(a_measured_map_does_not_repeat),
         cmocka_unit_test(lengths_have_units),
         cmocka_unit_test(a_map_is_converted),
+        cmocka_unit_test(what_instruments_leave_is_removed),
         cmocka_unit_test(columns_are_a_trace),
         cmocka_unit_test(groups_are_printed),
         cmocka_unit_test(a_measured_map_is_pressed_in_units),

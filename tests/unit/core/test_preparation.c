@@ -71,6 +71,24 @@ static void words_are_read_or_refused(void **state) {
         {{.filter = "S=1,"}, "--filter S=1,"},
         {{.filter = "X=1"}, "--filter X=1"},
         {{.filter = ""}, "--filter "},
+        {{.despike = "8"}, NULL},
+        {{.despike = "4.5"}, NULL},
+        {{.despike = "0"}, "--despike 0"},
+        {{.despike = "x"}, "--despike x"},
+        {{.despike = ""}, "--despike "},
+        {{.despike = "nan"}, "--despike nan"},
+        {{.tip = "tip=10nm"}, NULL},
+        {{.tip = "tip=10nm,holes"}, NULL},
+        {{.tip = "2"}, NULL},
+        {{.tip = "tip=0"}, "--deconvolve tip=0"},
+        {{.tip = "tip=10nm,"}, "--deconvolve tip=10nm,"},
+        {{.tip = "tip=10nm,holes,holes"}, "--deconvolve tip=10nm,holes,holes"},
+        {{.tip = "holes"}, "--deconvolve holes"},
+        {{.rotate = "-22.5"}, NULL},
+        {{.rotate = "360"}, NULL},
+        {{.rotate = "361"}, "--rotate 361"},
+        {{.rotate = "30deg"}, "--rotate 30deg"},
+        {{.rotate = "inf"}, "--rotate inf"},
         {{.resample = "512,256"}, NULL},
         {{.resample = "0.5um"}, NULL},
         {{.resample = "dx=0.5"}, NULL},
@@ -328,6 +346,97 @@ static void other_points_are_told(void **state) {
     }
 }
 
+/* Spikes on lines with offsets, under a tip, on a map that is turned: each step finds what the one
+ * before leaves, and says so. */
+static void what_instruments_leave_is_removed_in_order(void **state) {
+    (void)state;
+    const struct preparation_words words = {.lines = SCAN_LINES_MEDIAN,
+                                            .despike = MAP_DESPIKE,
+                                            .tip = "tip=0.01,holes",
+                                            .transpose = true,
+                                            .rotate = "90",
+                                            .detrend = ASK_DETREND_NONE};
+    static const char *const NAMES[] = {"lines", "despike", "deconvolve", "transpose", "rotate"};
+    static const char *const SAYS[] = {
+        "median of each of 24 lines along x, RMS ", "2 points, 0.208 %, became holes: beyond 8 ",
+        "tip of radius 0.01, RMS change ", "x and y exchanged, 24 by 40 points",
+        "90 degrees counter-clockwise, exactly"};
+    struct height_map map;
+    struct preparation_record record;
+    make(&map);
+    for (size_t point = 0; point < (size_t)NX * NY; point++) {
+        const size_t i = point % NX, j = point / NX, third = j % 3;
+        map.z[point] = 0.2 * sin(0.5 * (double)i) * cos(0.4 * (double)j) + 20 * (double)third;
+    }
+    map.z[5 * NX + 20] += 30;
+    map.z[12 * NX + 8] -= 30;
+    assert_int_equal(prepare(&map, &words, &record, NULL), 0);
+    assert_int_equal(record.count, 5);
+    for (size_t step = 0; step < 5; step++) {
+        assert_string_equal(record.steps[step].name, NAMES[step]);
+        if (strncmp(record.steps[step].text, SAYS[step], strlen(SAYS[step])) != 0)
+            fail_msg("%s: '%s'", NAMES[step], record.steps[step].text);
+    }
+    /* exchanged and turned by 90 degrees: y as it was, x counted backwards */
+    assert_true(map.grid.nx == NX && map.grid.ny == NY);
+    assert_true(isnan(map.z[5 * NX + NX - 1 - 20]) && isnan(map.z[12 * NX + NX - 1 - 8]));
+    assert_int_equal(height_map_holes(&map), 2); /* so sharp a tip reached all points */
+    assert_string_equal(record.boundary_by, "holes");
+    height_map_clear(&map);
+}
+
+static void turns_are_stated_or_refused(void **state) {
+    (void)state;
+    static const struct {
+        struct preparation_words words;
+        const char *says;
+    } REFUSED[] = {
+        {{.rotate = "30", .boundary = ASK_BOUNDARY_PERIODIC}, "allowed with --boundary periodic"},
+        {{.tip = "tip=1um"}, "--deconvolve has a unit"},
+        {{.tip = "tip=1", .unit = "um"}, "so that slopes have no meaning"},
+    };
+    struct height_map map;
+    struct preparation_record record;
+    struct error err = {0};
+    for (size_t c = 0; c < sizeof REFUSED / sizeof *REFUSED; c++) {
+        make(&map);
+        assert_int_equal(prepare(&map, &REFUSED[c].words, &record, &err), ERROR_INPUT);
+        if (strstr(err.text, REFUSED[c].says) == NULL)
+            fail_msg("'%s' does not say '%s'", err.text, REFUSED[c].says);
+        height_map_clear(&map);
+    }
+    make(&map);
+    assert_int_equal(prepare(&map, &(struct preparation_words){.rotate = "-30"}, &record, NULL), 0);
+    assert_non_null(
+        strstr(step_text(&record, "rotate"), "-30 degrees counter-clockwise, 40 by 24 points to "));
+    assert_int_equal(record.boundary, BOUNDARY_OPEN);
+    assert_non_null(strstr(step_text(&record, "detrend"), "plane"));
+    height_map_clear(&map);
+    make(&map);
+    assert_int_equal(
+        prepare(&map,
+                &(struct preparation_words){.rotate = "-450", .boundary = ASK_BOUNDARY_PERIODIC},
+                &record, &err),
+        ERROR_INPUT);
+    assert_int_equal(
+        prepare(&map,
+                &(struct preparation_words){.rotate = "-90", .boundary = ASK_BOUNDARY_PERIODIC},
+                &record, NULL),
+        0);
+    assert_true(map.z[(NX - 1) * NY] == height_at(0, 0)); /* the first point is in the last row */
+    height_map_clear(&map);
+    make(&map);
+    map.grid = (struct grid){NX, 1, NX, NX};
+    assert_int_equal(
+        prepare(&map, &(struct preparation_words){.lines = 1, .lines_along = 1}, &record, &err),
+        ERROR_INPUT);
+    assert_non_null(strstr(err.text, "--lines-along y"));
+    assert_int_equal(prepare(&map, &(struct preparation_words){.transpose = true}, &record, &err),
+                     ERROR_INPUT);
+    assert_non_null(strstr(err.text, "--transpose: a profile"));
+    height_map_clear(&map);
+}
+
 /* What squares and their products leave the numbers for is refused before anything is computed; the
  * largest float, which files have in holes, is not. */
 static void what_cannot_be_computed_with_is_refused(void **state) {
@@ -393,6 +502,8 @@ int main(void) {
         cmocka_unit_test(holes_are_refused_with_a_word),
         cmocka_unit_test(a_window_is_told),
         cmocka_unit_test(other_points_are_told),
+        cmocka_unit_test(what_instruments_leave_is_removed_in_order),
+        cmocka_unit_test(turns_are_stated_or_refused),
         cmocka_unit_test(what_cannot_be_computed_with_is_refused),
         cmocka_unit_test(too_many_new_points_are_refused),
     };

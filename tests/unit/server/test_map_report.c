@@ -1,6 +1,7 @@
 /* Protects: what is reported of a map, by name: errors stand behind the values that they are of, in
  * their units; columns hold what was measured; and a map too small for errors says so and has
  * none. */
+#include "server/show/map/functional_report.h"
 #include "server/show/map/map_report.h"
 #include "tests/support/check.h"
 #include "tests/support/noise.h"
@@ -89,8 +90,71 @@ static void too_few_lengths(void **state) {
     map_characterisation_clear(&measured);
 }
 
+/* Functional parameters are there under the names of surfaces, or of profiles, and agree with the
+ * curve beside them. */
+static void functional_values_by_name(void **state) {
+    (void)state;
+    static const char *const NAMES[2][8] = {
+        {"Sk", "Spk", "Svk", "Sk_secant", "Vmp", "Vvv", "S10z", "dales"},
+        {"Rk", "Rpk", "Rvk", "Rk_secant", "RSm", "RSm_1997", "Rmr1", "RSm_elements"}};
+    uint64_t seed = seed_or(15);
+    static double z[POINTS];
+    for (int profile = 0; profile < 2; profile++) {
+        static struct map_functional measured;
+        struct summit_list hills = {0};
+        static struct named_values found;
+        const struct grid grid = {profile == 1 ? POINTS : SIDE, profile == 1 ? 1 : SIDE, 32, 32};
+        const struct measured_map map = {&grid, z, BOUNDARY_OPEN};
+        found = (struct named_values){0};
+        noise_fill(&seed, POINTS, z);
+        assert_int_equal(
+            map_functional_measure(&measured, &map, profile == 1 ? NULL : &hills, 7, NULL), 0);
+        functional_report_values(&found, &measured, profile == 1);
+        assert_int_equal(functional_report_table(&found, &measured, NULL), 0);
+        for (size_t n = 0; n < 8; n++)
+            (void)place_of(&found, "functional", NAMES[profile][n]);
+        check_relative(named_number(&found, "functional", NAMES[profile][0]), 2.574, 0.1);
+        assert_true(isnan(named_number(&found, "functional", NAMES[1 - profile][0])));
+        const struct named_column *ratio = named_column_find(&found, "material_ratio", "ratio");
+        const struct named_column *height = named_column_find(&found, "material_ratio", "height");
+        assert_true(ratio != NULL && height != NULL && height->power == 1);
+        for (size_t r = 1; r < ratio->count; r++)
+            assert_true(ratio->values[r] > ratio->values[r - 1] &&
+                        height->values[r] < height->values[r - 1]);
+        assert_true(isnan(named_number(&found, "functional", profile == 1 ? "Rpq" : "Spq")));
+        named_values_clear(&found);
+    }
+}
+
+/* The laws of a stratified face are there where no Gaussian law fits, and not where one does. */
+static void stratified_faces_have_two_laws(void **state) {
+    (void)state;
+    uint64_t seed = seed_or(16);
+    static double z[POINTS], valleys[POINTS];
+    static struct map_characterisation measured;
+    static struct named_values found;
+    for (int stratified = 0; stratified < 2; stratified++) {
+        found = (struct named_values){0};
+        noise_fill(&seed, POINTS, z);
+        noise_fill(&seed, POINTS, valleys);
+        for (size_t n = 0; n < POINTS && stratified == 1; n++)
+            z[n] = fmin(z[n], 6 + 8 * valleys[n]);
+        report(z, &measured, &found);
+        assert_true(isfinite(named_number(&found, "functional", "Sk")));
+        if (stratified == 1) {
+            check_relative(named_number(&found, "functional", "Spq"), 1, 0.2);
+            check_relative(named_number(&found, "functional", "Svq"), 8, 0.2);
+        } else
+            assert_true(isnan(named_number(&found, "functional", "Spq")));
+        named_values_clear(&found);
+        map_characterisation_clear(&measured);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(errors_behind_values),
-                                       cmocka_unit_test(too_few_lengths)};
+                                       cmocka_unit_test(too_few_lengths),
+                                       cmocka_unit_test(functional_values_by_name),
+                                       cmocka_unit_test(stratified_faces_have_two_laws)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

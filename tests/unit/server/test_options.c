@@ -11,7 +11,7 @@
 
 struct values {
     bool flag;
-    const char *text, *model;
+    const char *text, *model, *optional;
     unsigned count;
     int64_t index, pair[2];
     double number;
@@ -22,6 +22,7 @@ struct values {
 static const struct option_row ROWS[] = {
     {"flag", 'f', OPTION_FLAG, 0, 0, AT(flag), NULL, NULL, "a flag"},
     {"text", 't', OPTION_TEXT, 0, 0, AT(text), "TEXT", "standard", "a text"},
+    {"optional", 0, OPTION_OPTIONAL, 0, 0, AT(optional), "[N]", "8", "a number or none"},
     {"model", 0, OPTION_MODELS, 0, 0, AT(model), "MODEL", "halfspace", "a model"},
     {"count", 0, OPTION_COUNT, 1, 7, AT(count), "N", "3", "a count"},
     {"index", 0, OPTION_INDEX, 0, 0, AT(index), "I", NULL, "an index"},
@@ -69,7 +70,27 @@ static void defaults(void **state) {
     assert_true(v.number == 0);
     assert_int_equal(v.choice, 1);
     assert_null(v.list[0]);
+    assert_null(v.optional);
     options_clear(ROWS, &v);
+}
+
+/* A number behind it is its value, a file is not, nor is another option. */
+static void a_value_may_be_left_out(void **state) {
+    (void)state;
+    static const struct {
+        const char *line, *value;
+    } LINES[] = {{"--optional file", "8"},         {"--optional 5.5 file", "5.5"},
+                 {"file --optional", "8"},         {"--optional=3 file", "3"},
+                 {"--optional -t word file", "8"}, {"--optional=all file", "all"}};
+    for (size_t l = 0; l < sizeof LINES / sizeof *LINES; l++) {
+        struct values v;
+        const char *argument = NULL;
+        char told[200];
+        assert_int_equal(parse(LINES[l].line, &v, &argument, told), 0);
+        assert_string_equal(argument, "file");
+        assert_string_equal(v.optional, LINES[l].value);
+        options_clear(ROWS, &v);
+    }
 }
 
 static void values_of_each_type(void **state) {
@@ -193,6 +214,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(defaults),
         cmocka_unit_test(values_of_each_type),
+        cmocka_unit_test(a_value_may_be_left_out),
         cmocka_unit_test(pairs_are_two_words_or_one),
         cmocka_unit_test(wrong_values_are_told),
         cmocka_unit_test(rising_lists),

@@ -1,0 +1,25 @@
+#include "jobs/maps/map_functional.h"
+
+static const double RATIOS[MAP_RATIOS] = {0,    0.01, 0.02, 0.025, 0.05, 0.1,  0.15,
+                                          0.2,  0.3,  0.4,  0.5,   0.6,  0.7,  0.8,
+                                          0.85, 0.9,  0.95, 0.975, 0.98, 0.99, 1};
+
+int map_functional_measure(struct map_functional *out, const struct measured_map *map,
+                           const struct summit_list *hills, double sz, struct error *err) {
+    struct material_curve curve;
+    int status = material_curve_create(&curve, map, err);
+    if (status != 0)
+        return status;
+    const double mean = curve.mean;
+    functional_measure(&curve, &out->found);
+    plateau_fit(&curve, &out->plateau);
+    for (size_t r = 0; r < MAP_RATIOS; r++) {
+        out->ratio[r] = RATIOS[r];
+        out->height[r] = material_height(&curve, RATIOS[r]);
+    }
+    material_curve_clear(&curve);
+    if (hills != NULL)
+        return ten_points_measure(map, hills, mean, sz, &out->ten_points, err);
+    profile_spacing_measure(map, mean, &out->spacing);
+    return 0;
+}
