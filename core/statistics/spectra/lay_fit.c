@@ -41,23 +41,24 @@ struct wave {
     double density;   /* of any unit */
 };
 
-static bool wave_at(const struct map_spectrum *s, const struct lay_frame *frame, size_t mx, long my,
-                    struct wave *out) {
-    const struct grid *grid = &s->modes.grid;
-    double x = (double)mx * (s->side / grid->lx), y = (double)my * (s->side / grid->ly);
-    out->u = frame->along_x * x + frame->along_y * y;
-    out->v = frame->across_x * x + frame->across_y * y;
-    out->square = out->u * out->u + out->v * out->v;
-    out->logarithm = log(out->square) / 2;
-    out->density = modes_power(&s->modes, mx, my);
-    return out->square > 0;
-}
+typedef void wave_visit(const struct wave *wave, void *context);
 
 /* Goes over the waves of one half of the plane, each of which stands for its image. */
-#define EACH_WAVE(s, mx, my)                                                                       \
-    for (size_t mx = 0; 2 * mx < (s)->modes.grid.nx; mx++)                                         \
-        for (long my = mx > 0 ? -(long)(((s)->modes.grid.ny - 1) / 2) : 1;                         \
-             my <= (long)(((s)->modes.grid.ny - 1) / 2); my++)
+static void each_wave(const struct map_spectrum *s, const struct lay_frame *frame,
+                      wave_visit *visit, void *context) {
+    const struct grid *grid = &s->modes.grid;
+    const long most_y = ((long)grid->ny - 1) / 2;
+    for (size_t mx = 0; 2 * mx < grid->nx; mx++)
+        for (long my = mx > 0 ? -most_y : 1; my <= most_y; my++) {
+            double x = (double)mx * (s->side / grid->lx), y = (double)my * (s->side / grid->ly);
+            struct wave wave = {.u = frame->along_x * x + frame->along_y * y,
+                                .v = frame->across_x * x + frame->across_y * y,
+                                .density = modes_power(&s->modes, mx, my)};
+            wave.square = wave.u * wave.u + wave.v * wave.v;
+            wave.logarithm = log(wave.square) / 2;
+            visit(&wave, context);
+        }
+}
 
 /* Finds the knot before a logarithm of k', and how far it lies towards the next; false outside. */
 static bool knot_before(const struct profile *profile, double logarithm, size_t *knot,
@@ -77,29 +78,51 @@ static bool knot_before(const struct profile *profile, double logarithm, size_t 
     return true;
 }
 
+/* Waves counted in even parts of octaves. */
+struct wave_counts {
+    double low, high; /* logarithms of k' */
+    size_t bins;
+    double count[KNOTS_MOST];
+};
+
+static void wave_count(const struct wave *wave, void *context) {
+    struct wave_counts *counts = context;
+    if (!(wave->logarithm >= counts->low && wave->logarithm < counts->high))
+        return;
+    size_t b = (size_t)((wave->logarithm - counts->low) / M_LN2 * KNOTS_AN_OCTAVE);
+    counts->count[b < counts->bins ? b : counts->bins - 1]++;
+}
+
 /* Chooses the knots from low to high waves per side, by the waves of a lay. */
 static void profile_begin(struct profile *profile, const struct map_spectrum *s,
                           const struct lay_frame *frame, double low, double high) {
-    double count[KNOTS_MOST] = {0};
-    const size_t bins = (size_t)(log2(high / low) * KNOTS_AN_OCTAVE) + 1;
+    struct wave_counts counts = {.low = log(low), .high = log(high)};
     double waves = 0;
-    EACH_WAVE(s, mx, my) {
-        struct wave wave;
-        if (!wave_at(s, frame, mx, my, &wave) ||
-            !(wave.logarithm >= log(low) && wave.logarithm < log(high)))
-            continue;
-        size_t b = (size_t)((wave.logarithm - log(low)) / M_LN2 * KNOTS_AN_OCTAVE);
-        count[b < bins ? b : bins - 1]++;
-    }
+    counts.bins = (size_t)((counts.high - counts.low) / M_LN2 * KNOTS_AN_OCTAVE) + 1;
+    each_wave(s, frame, wave_count, &counts);
     profile->knots = 1;
-    profile->knot[0] = log(low);
-    for (size_t b = 0; b < bins; b++) {
-        waves += count[b];
+    profile->knot[0] = counts.low;
+    for (size_t b = 0; b < counts.bins; b++) {
+        waves += counts.count[b];
         if (waves < FEWEST_WAVES)
             continue;
         profile->knot[profile->knots++] =
-            fmin(log(low) + (double)(b + 1) / KNOTS_AN_OCTAVE * M_LN2, log(high));
+            fmin(counts.low + (double)(b + 1) / KNOTS_AN_OCTAVE * M_LN2, counts.high);
         waves = 0;
+    }
+}
+
+static void profile_add(const struct wave *wave, void *context) {
+    struct profile *profile = context;
+    size_t knot;
+    double part;
+    if (!knot_before(profile, wave->logarithm, &knot, &part))
+        return;
+    for (size_t n = knot; n < knot + 2; n++) {
+        double weight = n == knot ? 1 - part : part;
+        profile->weight[n] += weight;
+        profile->wave[n] += weight * wave->logarithm;
+        profile->density[n] += weight * wave->density;
     }
 }
 
@@ -108,20 +131,7 @@ static void profile_measure(struct profile *profile, const struct map_spectrum *
     const size_t knots = profile->knots;
     for (size_t n = 0; n < knots; n++)
         profile->weight[n] = profile->wave[n] = profile->density[n] = 0;
-    EACH_WAVE(s, mx, my) {
-        struct wave wave;
-        size_t knot;
-        double part;
-        if (!wave_at(s, frame, mx, my, &wave) ||
-            !knot_before(profile, wave.logarithm, &knot, &part))
-            continue;
-        for (size_t n = knot; n < knot + 2; n++) {
-            double weight = n == knot ? 1 - part : part;
-            profile->weight[n] += weight;
-            profile->wave[n] += weight * wave.logarithm;
-            profile->density[n] += weight * wave.density;
-        }
-    }
+    each_wave(s, frame, profile_add, profile);
     for (size_t n = 0; n < knots; n++) {
         profile->wave[n] /= profile->weight[n];
         profile->density[n] = log(fmax(profile->density[n] / profile->weight[n], 1e-300));
@@ -133,37 +143,39 @@ static void profile_measure(struct profile *profile, const struct map_spectrum *
     }
 }
 
-/* Adds up what each wave says, at a lay. k' is taken over the root of the ratio, so that ellipses
- * of all ratios have the same area. */
-static void score_measure(struct score *score, const struct map_spectrum *s, const struct lay *lay,
-                          const struct lay_frame *frame, const struct profile *profile) {
-    const double turn = lay->ratio - 1 / lay->ratio;
-    *score = (struct score){0};
-    EACH_WAVE(s, mx, my) {
-        struct wave wave;
-        size_t knot;
-        double part;
-        if (!wave_at(s, frame, mx, my, &wave) ||
-            !knot_before(profile, wave.logarithm, &knot, &part))
-            continue;
-        const double at_knot = wave.logarithm - profile->wave[knot];
-        const double at_next = wave.logarithm - profile->wave[knot + 1];
-        const double expected = /* by the lines through both knots */
-            (1 - part) * (profile->density[knot] + profile->slope[knot] * at_knot) +
-            part * (profile->density[knot + 1] + profile->slope[knot + 1] * at_next);
-        const double slope = (1 - part) * profile->slope[knot] + part * profile->slope[knot + 1];
-        const double excess = fmin(wave.density / exp(expected), FAR) - 1;
-        const double square = wave.square, fall = fmin(fmax(slope, -STEEPEST), STEEPEST);
-        /* none enters or leaves all at once */
-        const double counts = knot == 0 ? part : knot + 2 == profile->knots ? 1 - part : 1;
-        /* of the logarithm of the density by those of the ratio and by the angle */
-        const double by[2] = {fall * (wave.u * wave.u - wave.v * wave.v) / (2 * square),
-                              fall * turn * wave.u * wave.v / square};
-        for (size_t a = 0; a < 2; a++) {
-            score->gradient[a] += counts * excess * by[a];
-            for (size_t b = 0; b < 2; b++)
-                score->information[a][b] += counts * by[a] * by[b];
-        }
+/* What waves are asked at a lay. */
+struct scoring {
+    const struct profile *profile;
+    double turn; /* r - 1/r */
+    struct score score;
+};
+
+/* Adds what a wave says. k' is taken over the root of the ratio, so that ellipses of all ratios
+ * have the same area. */
+static void score_add(const struct wave *wave, void *context) {
+    struct scoring *scoring = context;
+    const struct profile *profile = scoring->profile;
+    size_t knot;
+    double part;
+    if (!knot_before(profile, wave->logarithm, &knot, &part))
+        return;
+    const double at_knot = wave->logarithm - profile->wave[knot];
+    const double at_next = wave->logarithm - profile->wave[knot + 1];
+    const double expected = /* by the lines through both knots */
+        (1 - part) * (profile->density[knot] + profile->slope[knot] * at_knot) +
+        part * (profile->density[knot + 1] + profile->slope[knot + 1] * at_next);
+    const double slope = (1 - part) * profile->slope[knot] + part * profile->slope[knot + 1];
+    const double excess = fmin(wave->density / exp(expected), FAR) - 1;
+    const double fall = fmin(fmax(slope, -STEEPEST), STEEPEST);
+    /* none enters or leaves all at once */
+    const double counts = knot == 0 ? part : knot + 2 == profile->knots ? 1 - part : 1;
+    /* of the logarithm of the density by those of the ratio and by the angle */
+    const double by[2] = {fall * (wave->u * wave->u - wave->v * wave->v) / (2 * wave->square),
+                          fall * scoring->turn * wave->u * wave->v / wave->square};
+    for (size_t a = 0; a < 2; a++) {
+        scoring->score.gradient[a] += counts * excess * by[a];
+        for (size_t b = 0; b < 2; b++)
+            scoring->score.information[a][b] += counts * by[a] * by[b];
     }
 }
 
@@ -198,11 +210,11 @@ static bool climb(struct lay *lay, const struct map_spectrum *s, struct profile 
     bool near = false;
     for (int steps = 0; steps < STEPS_MOST; steps++) {
         const struct lay_frame frame = lay_frame_of(lay);
-        struct score score;
+        struct scoring scoring = {.profile = profile, .turn = lay->ratio - 1 / lay->ratio};
         double step[2], error[2];
         profile_measure(profile, s, &frame);
-        score_measure(&score, s, lay, &frame, profile);
-        if (!score_step(&score, step, error))
+        each_wave(s, &frame, score_add, &scoring);
+        if (!score_step(&scoring.score, step, error))
             return false;
         double alike = s->windowed ? ALIKE_WINDOWED : 1; /* of two axes, and a root */
         lay->ratio_error = MEASURED * alike * error[0] / sqrt(s->heights);
@@ -211,7 +223,7 @@ static bool climb(struct lay *lay, const struct map_spectrum *s, struct profile 
         near = moved < NEARLY;
         if (moved < SETTLED)
             return true;
-        const double part = pow(0.5, steps / FREE);
+        const double part = ldexp(1, -(steps / FREE));
         lay->ratio *= exp(part * fmin(fmax(step[0], -LONGEST), LONGEST));
         lay->angle += part * fmin(fmax(step[1], -LONGEST), LONGEST);
         lay_turn(lay);

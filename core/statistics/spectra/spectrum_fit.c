@@ -21,7 +21,8 @@ struct fitted {
     law_matrix likelihood; /* covariances, widened where the law is wrong */
     law_matrix covariance;
     double ratio;    /* of the deviance to the degrees of freedom */
-    bool wrong;      /* whether that is significantly too large */
+    double limit;    /* beyond which that is significantly too large */
+    bool wrong;      /* whether it is */
     double widening; /* of variances */
     bool known;      /* false: too few rings, or none that determines the law */
 };
@@ -144,7 +145,8 @@ static void fitted_measure(struct fitted *fitted, const struct spectrum_range *r
             fitted->law = begun;
     }
     fitted->ratio = fitted->law.deviance / freedom(fitted);
-    fitted->wrong = fitted->ratio > 1 + 2 * deviance_scatter(problem);
+    fitted->limit = 1 + 2 * deviance_scatter(problem);
+    fitted->wrong = fitted->ratio > fitted->limit;
     fitted->widening = OVERDISPERSION * (fitted->wrong ? fitted->ratio : 1);
     fitted->known = freedom(fitted) > 0 &&
                     law_covariance(problem, &fitted->law, fitted->likelihood, fitted->covariance);
@@ -362,6 +364,7 @@ static void fill(struct fitted *fitted, const struct spectrum_range *range,
     out->fitted = true;
     out->freedom = freedom(fitted);
     out->deviance = fitted->ratio;
+    out->deviance_limit = fitted->limit;
     out->noise = range->noise > 0 ? exp(fitted->law.p[LAW_NOISE]) : 0;
     fill_trusted(fitted, out);
     fill_rolloff(fitted, out);
@@ -411,7 +414,8 @@ int spectrum_fit_measure(const struct map_spectrum *spectrum,
                                  .lay_ratio = {1, NONE, NONE},
                                  .lay_angle = UNKNOWN,
                                  .profile = grid_is_profile(&spectrum->modes.grid),
-                                 .deviance = NONE};
+                                 .deviance = NONE,
+                                 .deviance_limit = NONE};
     if (status == 0 && fitted.known)
         fill(&fitted, &range, out);
     law_problem_destroy(&fitted.problem);

@@ -36,8 +36,9 @@ struct spectrum_fit {
 
     double deviance; /* per degree of freedom: about 1 where the law holds; larger ones have widened
                         the intervals already */
-    double freedom;  /* rings less parameters */
-    bool fitted;     /* false: too few waves; all but the trusted range is NaN then */
+    double deviance_limit; /* 2 of its standard deviations above 1: the law does not hold beyond */
+    double freedom;        /* rings less parameters */
+    bool fitted;           /* false: too few waves; all but the trusted range is NaN then */
 };
 /* ERROR_INPUT for a range without wave numbers of the map; ERROR_MEMORY. */
 int spectrum_fit_measure(const struct map_spectrum *spectrum,

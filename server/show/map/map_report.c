@@ -291,6 +291,7 @@ static void add_fit(struct named_values *out, const struct spectrum_fit *fit) {
         return;
     named_values_add_length(out, GROUP, "amplitude_at", fit->reference_wavelength, 1);
     named_values_add(out, GROUP, "deviance", fit->deviance);
+    named_values_add(out, GROUP, "deviance_limit", fit->deviance_limit);
     named_values_add(out, GROUP, "freedom", fit->freedom);
     if (fit->lay_ratio.value == 1)
         return;

@@ -41,15 +41,14 @@ static void judge_errors(struct verdicts *verdicts, const struct named_values *f
             lengths, named_number(found, GROUP, "factor_95"));
 }
 
-/* The deviance per degree of freedom of a law that holds is 1 with a variance of 2/freedom
- * (FORMULAS.md, F18.15). */
+/* The deviance per degree of freedom of a law that holds is about 1 (FORMULAS.md, F18.15). */
 static void judge_law(struct verdicts *verdicts, const struct named_values *found) {
     static const char GROUP[] = "spectrum_fit";
     const double deviance = named_number(found, GROUP, "deviance");
-    const double freedom = named_number(found, GROUP, "freedom");
+    const double limit = named_number(found, GROUP, "deviance_limit");
     if (!isfinite(deviance))
         say(verdicts, "Spectrum: no self-affine law is fitted.");
-    else if (deviance <= 1 + 2 * sqrt(2 / freedom))
+    else if (deviance <= limit)
         say(verdicts, "Spectrum: the self-affine law holds (deviance %.2g).", deviance);
     else
         say(verdicts,
