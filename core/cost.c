@@ -199,6 +199,10 @@ static const double PROFILE_FACTOR_BYTES = 900, SURFACE_FACTOR_BYTES = 6500;
  * of freedom. */
 static const double PROFILE_TRANSFORMS = 95, SURFACE_TRANSFORMS = 280;
 
+/* Nanoseconds, and bytes with those of the factorisation, a degree of freedom of a step with
+ * friction. */
+static const double FRICTION_NS = 11000, FRICTION_BYTES = 1500;
+
 struct full_size cost_full_size(const struct grid *grid, const struct block *block,
                                 const struct full_options *options, double rms_slope) {
     bool profile = grid_is_profile(grid);
@@ -236,6 +240,15 @@ double cost_full_bytes(const struct grid *grid, const struct block *block,
         bytes += (grid_is_profile(grid) ? PROFILE_FACTOR_BYTES : SURFACE_FACTOR_BYTES) *
                  size->degrees_of_freedom;
     return isnan(bytes) ? 0 : bytes;
+}
+
+double cost_friction_steps(const struct full_size *size, size_t steps) {
+    return 1e-9 * FRICTION_NS * size->degrees_of_freedom * (double)steps;
+}
+
+double cost_friction_bytes(const struct grid *grid, const struct block *block,
+                           const struct full_options *options, const struct full_size *size) {
+    return cost_full_bytes(grid, block, options, size) + FRICTION_BYTES * size->degrees_of_freedom;
 }
 
 double cost_full_transforms(const struct grid *grid) {

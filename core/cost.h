@@ -59,6 +59,11 @@ struct full_size cost_full_size(const struct grid *grid, const struct block *blo
 double cost_full_contact(const struct grid *grid, const struct full_size *size, size_t loads);
 double cost_full_bytes(const struct grid *grid, const struct block *block,
                        const struct full_options *options, const struct full_size *size);
+/* CPU seconds of steps with friction of profiles (core/full/friction), and bytes of their solver.
+ */
+double cost_friction_steps(const struct full_size *size, size_t steps);
+double cost_friction_bytes(const struct grid *grid, const struct block *block,
+                           const struct full_options *options, const struct full_size *size);
 /* Returns the number of Fourier transforms of a point, the unit of contact_state.work, that take as
  * long as an iteration of Newton's method on a degree of freedom. */
 double cost_full_transforms(const struct grid *grid);
