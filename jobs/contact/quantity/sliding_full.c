@@ -10,10 +10,14 @@
 
 /* Friction while pressing acts in so many steps, as on half-spaces. */
 enum { PRESS_STEPS = 10 };
-/* Steps from one turning point to the next: at least, and this times those of the study at most. */
+/* The longest step is this part of the path with the shear; a path ends in vain after so many
+ * times its points, and these. */
 enum { STEPS_LEAST = 10, STEPS_TIMES = 20 };
-/* The least step, over the longest. */
-static const double STEP_LEAST = 1e-3;
+/* Steps beside those; half of the points lie before full slip. */
+enum { STEPS_BESIDE = 4 };
+/* The least step, over the longest; how near a point may be that a step aims at, over what lies
+ * between points. */
+static const double STEP_LEAST = 1e-3, AIM_LEAST = 0.5;
 
 struct sliding_full {
     struct friction *friction; /* owned */
@@ -48,10 +52,6 @@ int sliding_full_create(struct sliding_full **out, const struct quantity_scene *
     return status;
 }
 
-static size_t steps_of(const struct contact_case *one_case) {
-    return one_case->slide_steps > STEPS_LEAST ? one_case->slide_steps : STEPS_LEAST;
-}
-
 /* The mean gap is that of the held load without friction, with what friction changes of it. */
 static struct sliding_sample sample_of(const struct sliding_full *sliding,
                                        const struct measure_context *context,
@@ -80,6 +80,14 @@ static double shear_most(const struct sliding_full *sliding, double pressure, do
     return friction * pressure * sliding->block.height * 2 / (1 - sliding->block.poisson);
 }
 
+/* Returns the point that a step is to reach: the next one, or where that is near the one behind. */
+static size_t aim_of(const struct sliding_record *record, double sliding) {
+    const double *at = record->one_case->slide;
+    const size_t next = record->next;
+    bool near = fabs(at[next] - sliding) < AIM_LEAST * fabs(at[next] - at[next - 1]);
+    return near && next < sliding_record_turn(record) ? next + 1 : next;
+}
+
 /* Drags the flat to the next turning point. Where all of the face slides, nothing changes any more
  * but the work. */
 static int drag(struct sliding_full *sliding, const struct measure_context *context,
@@ -90,15 +98,17 @@ static int drag(struct sliding_full *sliding, const struct measure_context *cont
     const double span = at[turn] - at[first], forward = span > 0 ? 1 : -1;
     const double shear =
         (first > 0 ? 2 : 1) * shear_most(sliding, sliding->state.pressure, one_case->friction);
-    const double most = (fabs(span) * height + shear) / (double)steps_of(one_case);
+    const double whole = fabs(span) * height + shear, most = whole / STEPS_LEAST;
+    const double first_step = fmin(most, whole / (double)one_case->slide_steps);
     double rate = 0; /* sliding over displacement */
     bool slides = false;
     for (size_t step = 0; record->next <= turn; step++) {
         const double before = sliding->state.sliding;
-        const double next = forward * (at[slides ? turn : record->next] * height - before);
-        double by = slides ? next : rate > 0 ? fmin(most, next / rate) : most;
+        const size_t aim = slides ? turn : aim_of(record, before / height);
+        const double next = forward * (at[aim] * height - before);
+        double by = slides ? next : rate > 0 ? fmin(most, next / rate) : first_step;
         by = fmax(by, STEP_LEAST * most);
-        if (step > STEPS_TIMES * steps_of(one_case))
+        if (step > STEPS_TIMES * (one_case->slide_steps + STEPS_LEAST))
             return error_set(err, ERROR_NUMERIC, "the flat did not slide on in %zu steps", step);
         int status = friction_drag(sliding->friction, sliding->displacement + forward * by,
                                    &sliding->state, err);
@@ -146,12 +156,19 @@ double sliding_full_bytes(const struct quantity_scene *scene) {
     return cost_friction_bytes(&scene->grid, &scene->block, &options, &size);
 }
 
+/* Returns the steps from one turning point to the next. */
+static size_t steps_expected(const struct contact_case *one_case) {
+    const size_t half = one_case->slide_steps / 2;
+    return STEPS_BESIDE + (half > STEPS_LEAST ? half : STEPS_LEAST);
+}
+
 double sliding_full_seconds(const struct quantity_scene *scene) {
     const struct contact_case *one_case = scene->one_case;
     const struct full_options options = contact_case_full_options(one_case, &scene->grid);
     const struct full_size size =
         cost_full_size(&scene->grid, &scene->block, &options, one_case->rms_slope);
     const size_t legs = (one_case->slide_count - 1) / one_case->slide_steps;
-    const size_t steps = legs * steps_of(one_case) + (one_case->slip_pressing ? PRESS_STEPS : 0);
+    const size_t steps =
+        legs * steps_expected(one_case) + (one_case->slip_pressing ? PRESS_STEPS : 0);
     return cost_full_contact(&scene->grid, &size, 1) + cost_friction_steps(&size, steps);
 }
