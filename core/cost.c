@@ -244,10 +244,10 @@ double cost_full_bytes(const struct grid *grid, const struct block *block,
     return isnan(bytes) ? 0 : bytes;
 }
 
-double cost_friction_steps(const struct full_size *size, size_t steps) {
+double cost_friction_steps(const struct full_size *size, double steps) {
     double slower = pow(size->degrees_of_freedom / FRICTION_FREEDOM, FRICTION_POWER) *
                     (size->pressures ? FRICTION_PRESSURES : 1);
-    return 1e-9 * FRICTION_NS * slower * size->degrees_of_freedom * (double)steps;
+    return 1e-9 * FRICTION_NS * slower * size->degrees_of_freedom * steps;
 }
 
 double cost_friction_bytes(const struct grid *grid, const struct block *block,

@@ -61,7 +61,7 @@ double cost_full_bytes(const struct grid *grid, const struct block *block,
                        const struct full_options *options, const struct full_size *size);
 /* CPU seconds of steps with friction of profiles (core/full/friction), and bytes of their solver.
  */
-double cost_friction_steps(const struct full_size *size, size_t steps);
+double cost_friction_steps(const struct full_size *size, double steps);
 double cost_friction_bytes(const struct grid *grid, const struct block *block,
                            const struct full_options *options, const struct full_size *size);
 /* Returns the number of Fourier transforms of a point, the unit of contact_state.work, that take as

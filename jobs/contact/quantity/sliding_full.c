@@ -13,8 +13,9 @@ enum { PRESS_STEPS = 10 };
 /* The longest step is this part of the path with the shear; a path ends in vain after so many
  * times its points, and these. */
 enum { STEPS_LEAST = 10, STEPS_TIMES = 20 };
-/* Steps beside those; half of the points lie before full slip. */
+/* Of estimates: steps beside those, and the sliding to full slip over the coefficient. */
 enum { STEPS_BESIDE = 4 };
+static const double SLIP_EXPECTED = 1.6;
 /* The least step, over the longest; how near a point may be that a step aims at, over what lies
  * between points. */
 static const double STEP_LEAST = 1e-3, AIM_LEAST = 0.5;
@@ -156,10 +157,16 @@ double sliding_full_bytes(const struct quantity_scene *scene) {
     return cost_friction_bytes(&scene->grid, &scene->block, &options, &size);
 }
 
-/* Returns the steps from one turning point to the next. */
-static size_t steps_expected(const struct contact_case *one_case) {
-    const size_t half = one_case->slide_steps / 2;
-    return STEPS_BESIDE + (half > STEPS_LEAST ? half : STEPS_LEAST);
+/* Returns the steps along the whole path. */
+static double steps_expected(const struct contact_case *one_case) {
+    const size_t steps = one_case->slide_steps;
+    double all = 0;
+    for (size_t turn = 0; turn + 1 < one_case->slide_count; turn += steps) {
+        double slips = (turn > 0 ? 2 : 1) * SLIP_EXPECTED * one_case->friction;
+        double span = fabs(one_case->slide[turn + steps] - one_case->slide[turn]);
+        all += STEPS_BESIDE + fmax(STEPS_LEAST, (double)steps * fmin(1, slips / span));
+    }
+    return all;
 }
 
 double sliding_full_seconds(const struct quantity_scene *scene) {
@@ -167,8 +174,6 @@ double sliding_full_seconds(const struct quantity_scene *scene) {
     const struct full_options options = contact_case_full_options(one_case, &scene->grid);
     const struct full_size size =
         cost_full_size(&scene->grid, &scene->block, &options, one_case->rms_slope);
-    const size_t legs = (one_case->slide_count - 1) / one_case->slide_steps;
-    const size_t steps =
-        legs * steps_expected(one_case) + (one_case->slip_pressing ? PRESS_STEPS : 0);
+    const double steps = steps_expected(one_case) + (one_case->slip_pressing ? PRESS_STEPS : 0);
     return cost_full_contact(&scene->grid, &size, 1) + cost_friction_steps(&size, steps);
 }
