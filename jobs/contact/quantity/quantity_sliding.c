@@ -17,12 +17,6 @@ struct quantity_state {
     struct slip *linear;
 };
 
-/* Its measures, in this order. */
-enum { FORCE, STICK_AREA, STICK_LOAD, AREA, GAP, DISSIPATION, SLIDING_MEASURES };
-_Static_assert((int)SLIDING_MEASURE + DISSIPATION == (int)SLIDING_DISSIPATION &&
-                   (int)SLIDING_MEASURES == (int)SLIDING_VALUES,
-               "values of a state");
-
 /* The tables of curves and of paths: up to so many turning points, so far away. */
 enum { TURNS_MOST = 100, STEPS_MOST = CONTACT_LOADS_MOST - 1 };
 #define SLIDE_MOST 1e3
@@ -139,7 +133,7 @@ static const double FULL_SLIP = 0.99;
 /* Returns how far the flat slides until then, on the first part of its path. */
 static void summarise(const struct quantity_values *values, double *scalars) {
     const struct contact_case *one_case = values->one_case;
-    const double *force = values->of + FORCE * values->load_count;
+    const double *force = values->of + SAMPLE_FORCE * values->load_count;
     const double most = FULL_SLIP * one_case->friction;
     scalars[0] = NAN;
     for (size_t i = 1; i <= one_case->slide_steps; i++)
@@ -171,23 +165,25 @@ static bool is_both(const struct contact_case *one_case, size_t model) {
 #define MEMBERS                                                                                    \
     .series = "", .kept = is_kept, .order = 1, .theories = THEORIES_NONE, .load = LOAD_STAYS,      \
     .cell = CELL_SAME, .values = VALUES_REPORTED, .by = BY_SLIDING
-static const struct measure MEASURES[SLIDING_MEASURES] = {
-    [FORCE] = {MEMBERS, .quantity = "sliding_force", .y_label = "Q/P", .shown = is_both,
-               .solver = SOLVER_SMOOTH, .field = FIELD_PRESSURE, .over = OVER_ONE},
-    [STICK_AREA] = {MEMBERS, .quantity = "sliding_stick_area",
-                    .y_label = "area that sticks/contact area", .shown = is_both,
-                    .solver = SOLVER_COUNTED, .field = FIELD_PRESSURE, .over = OVER_ONE},
-    [STICK_LOAD] = {MEMBERS, .quantity = "sliding_stick_load",
-                    .y_label = "load on what sticks/load", .shown = is_shown,
-                    .solver = SOLVER_COUNTED, .field = FIELD_PRESSURE, .over = OVER_ONE},
-    [AREA] = {MEMBERS, .quantity = "sliding_contact_area",
-              .y_label = "contact area/that without friction", .shown = is_both,
-              .solver = SOLVER_COUNTED, .field = FIELD_PRESSURE, .over = OVER_ONE},
-    [GAP] = {MEMBERS, .quantity = "sliding_gap", .y_label = "mean gap/sqrt(m0)", .shown = is_shown,
-             .solver = SOLVER_GAP, .field = FIELD_GAP, .over = OVER_HEIGHT},
-    [DISSIPATION] = {MEMBERS, .quantity = "sliding_dissipation",
-                     .y_label = "work that friction takes/(E* h'_rms sqrt(m0))", .shown = is_shown,
-                     .solver = SOLVER_FLOW, .field = FIELD_GAP, .over = OVER_WORK}};
+static const struct measure MEASURES[SLIDING_VALUES] = {
+    [SAMPLE_FORCE] = {MEMBERS, .quantity = "sliding_force", .y_label = "Q/P", .shown = is_both,
+                      .solver = SOLVER_SMOOTH, .field = FIELD_PRESSURE, .over = OVER_ONE},
+    [SAMPLE_STICK_AREA] = {MEMBERS, .quantity = "sliding_stick_area",
+                           .y_label = "area that sticks/contact area", .shown = is_both,
+                           .solver = SOLVER_COUNTED, .field = FIELD_PRESSURE, .over = OVER_ONE},
+    [SAMPLE_STICK_LOAD] = {MEMBERS, .quantity = "sliding_stick_load",
+                           .y_label = "load on what sticks/load", .shown = is_shown,
+                           .solver = SOLVER_COUNTED, .field = FIELD_PRESSURE, .over = OVER_ONE},
+    [SAMPLE_AREA] = {MEMBERS, .quantity = "sliding_contact_area",
+                     .y_label = "contact area/that without friction", .shown = is_both,
+                     .solver = SOLVER_COUNTED, .field = FIELD_PRESSURE, .over = OVER_ONE},
+    [SAMPLE_GAP] = {MEMBERS, .quantity = "sliding_gap", .y_label = "mean gap/sqrt(m0)",
+                    .shown = is_shown, .solver = SOLVER_GAP, .field = FIELD_GAP,
+                    .over = OVER_HEIGHT},
+    [SAMPLE_DISSIPATION] = {MEMBERS, .quantity = "sliding_dissipation",
+                            .y_label = "work that friction takes/(E* h'_rms sqrt(m0))",
+                            .shown = is_shown, .solver = SOLVER_FLOW, .field = FIELD_GAP,
+                            .over = OVER_WORK}};
 const struct contact_quantity SLIDING_QUANTITY = {.measures = MEASURES,
                                                   .scalars = SCALARS,
                                                   .read = asked,

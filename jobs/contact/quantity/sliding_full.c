@@ -60,15 +60,13 @@ static struct sliding_sample sample_of(const struct sliding_full *sliding,
     const struct friction_state *state = &sliding->state;
     const size_t held = context->one_case->slip_load;
     const double values[SLIDING_VALUES] = {
-        [SLIDING_FORCE - SLIDING_FORCE] = state->traction / state->pressure,
-        [SLIDING_STICK_AREA - SLIDING_FORCE] = state->stick_area,
-        [SLIDING_STICK_LOAD - SLIDING_FORCE] = state->stick_load,
-        [SLIDING_AREA - SLIDING_FORCE] = (double)state->nodes / (double)state->nodes_without,
-        [SLIDING_GAP - SLIDING_FORCE] =
-            record->values[MEASURE_GAP * record->stride + held] +
-            (state->mean_gap - state->gap_without) / context->rms_height,
-        [SLIDING_DISSIPATION - SLIDING_FORCE] =
-            state->dissipation / (context->rms_slope * context->rms_height)};
+        [SAMPLE_FORCE] = state->traction / state->pressure,
+        [SAMPLE_STICK_AREA] = state->stick_area,
+        [SAMPLE_STICK_LOAD] = state->stick_load,
+        [SAMPLE_AREA] = (double)state->nodes / (double)state->nodes_without,
+        [SAMPLE_GAP] = record->values[MEASURE_GAP * record->stride + held] +
+                       (state->mean_gap - state->gap_without) / context->rms_height,
+        [SAMPLE_DISSIPATION] = state->dissipation / (context->rms_slope * context->rms_height)};
     struct sliding_sample out = {.sliding = state->sliding / context->rms_height};
     for (size_t a = 0; a < SLIDING_VALUES; a++)
         out.of[a] = values[a];

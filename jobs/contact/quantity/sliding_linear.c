@@ -34,8 +34,8 @@ static void slide_on(struct sliding_record *record, double forward, double share
     const struct contact_case *one_case = record->one_case;
     struct sliding_sample sample = record->last;
     sample.sliding += (1 - share) * rate;
-    sample.of[SLIDING_FORCE - SLIDING_FORCE] = forward * one_case->friction;
-    sample.of[SLIDING_STICK_AREA - SLIDING_FORCE] = 0;
+    sample.of[SAMPLE_FORCE] = forward * one_case->friction;
+    sample.of[SAMPLE_STICK_AREA] = 0;
     sliding_record_add(record, &sample);
     sample.sliding =
         forward * fmax(forward * sample.sliding, fabs(one_case->slide[one_case->slide_count - 1]));
@@ -55,9 +55,9 @@ static struct sliding_sample sample_of(const struct slip_state *state,
     const double touching = record->values[MEASURE_NODES * record->stride + held] * context->points;
     struct sliding_sample out = sliding_sample_none();
     out.sliding = state->displacement / context->rms_height;
-    out.of[SLIDING_FORCE - SLIDING_FORCE] = state->traction / state->pressure;
-    out.of[SLIDING_STICK_AREA - SLIDING_FORCE] = state->stick_area;
-    out.of[SLIDING_AREA - SLIDING_FORCE] = (double)state->nodes / touching;
+    out.of[SAMPLE_FORCE] = state->traction / state->pressure;
+    out.of[SAMPLE_STICK_AREA] = state->stick_area;
+    out.of[SAMPLE_AREA] = (double)state->nodes / touching;
     return out;
 }
 

@@ -6,12 +6,23 @@
 #include "jobs/contact/contact_measure.h"
 #include "jobs/contact/quantity/quantity.h"
 
-enum { SLIDING_VALUES = SLIDING_DISSIPATION - SLIDING_FORCE + 1 };
+/* What is known of a state, in the order of the measures. */
+enum {
+    SAMPLE_FORCE,
+    SAMPLE_STICK_AREA,
+    SAMPLE_STICK_LOAD,
+    SAMPLE_AREA,
+    SAMPLE_GAP,
+    SAMPLE_DISSIPATION,
+    SLIDING_VALUES
+};
+_Static_assert((int)SLIDING_MEASURE + SAMPLE_DISSIPATION == (int)SLIDING_DISSIPATION,
+               "values of a state");
 
 /* One state of a solver. */
 struct sliding_sample {
     double sliding;            /* of the flat over the mean of the face, over the RMS height */
-    double of[SLIDING_VALUES]; /* from SLIDING_FORCE on; NaN: not known */
+    double of[SLIDING_VALUES]; /* NaN: not known */
 };
 /* Returns a sample of which nothing is known. */
 struct sliding_sample sliding_sample_none(void);
