@@ -151,34 +151,36 @@ static bool is_kept(const struct contact_case *one_case) {
     return one_case->asked.of[SLIDING_AT];
 }
 
+/* Of the linear model, too. */
 static bool is_shown(const struct contact_case *one_case, size_t model) {
-    return is_kept(one_case) && one_case->models[model]->slides;
+    bool linear = linear_is_exact(one_case->models[model]) &&
+                  !isfinite(one_case->blocks[model].height) && sliding_linear_follows(one_case);
+    return is_kept(one_case) && (one_case->models[model]->slides || linear);
 }
 
-/* Those of the linear model, too. */
-static bool is_both(const struct contact_case *one_case, size_t model) {
-    return is_shown(one_case, model) ||
-           (is_kept(one_case) && linear_is_exact(one_case->models[model]) &&
-            !isfinite(one_case->blocks[model].height) && sliding_linear_follows(one_case));
+/* What its pressing with friction leaves of the gap is not known of the linear model. */
+static bool is_gap_shown(const struct contact_case *one_case, size_t model) {
+    return is_shown(one_case, model) &&
+           (one_case->models[model]->slides || !one_case->slip_pressing);
 }
 
 #define MEMBERS                                                                                    \
     .series = "", .kept = is_kept, .order = 1, .theories = THEORIES_NONE, .load = LOAD_STAYS,      \
     .cell = CELL_SAME, .values = VALUES_REPORTED, .by = BY_SLIDING
 static const struct measure MEASURES[SLIDING_VALUES] = {
-    [SAMPLE_FORCE] = {MEMBERS, .quantity = "sliding_force", .y_label = "Q/P", .shown = is_both,
+    [SAMPLE_FORCE] = {MEMBERS, .quantity = "sliding_force", .y_label = "Q/P", .shown = is_shown,
                       .solver = SOLVER_SMOOTH, .field = FIELD_PRESSURE, .over = OVER_ONE},
     [SAMPLE_STICK_AREA] = {MEMBERS, .quantity = "sliding_stick_area",
-                           .y_label = "area that sticks/contact area", .shown = is_both,
+                           .y_label = "area that sticks/contact area", .shown = is_shown,
                            .solver = SOLVER_COUNTED, .field = FIELD_PRESSURE, .over = OVER_ONE},
     [SAMPLE_STICK_LOAD] = {MEMBERS, .quantity = "sliding_stick_load",
                            .y_label = "load on what sticks/load", .shown = is_shown,
                            .solver = SOLVER_COUNTED, .field = FIELD_PRESSURE, .over = OVER_ONE},
     [SAMPLE_AREA] = {MEMBERS, .quantity = "sliding_contact_area",
-                     .y_label = "contact area/that without friction", .shown = is_both,
+                     .y_label = "contact area/that without friction", .shown = is_shown,
                      .solver = SOLVER_COUNTED, .field = FIELD_PRESSURE, .over = OVER_ONE},
     [SAMPLE_GAP] = {MEMBERS, .quantity = "sliding_gap", .y_label = "mean gap/sqrt(m0)",
-                    .shown = is_shown, .solver = SOLVER_GAP, .field = FIELD_GAP,
+                    .shown = is_gap_shown, .solver = SOLVER_GAP, .field = FIELD_GAP,
                     .over = OVER_HEIGHT},
     [SAMPLE_DISSIPATION] = {MEMBERS, .quantity = "sliding_dissipation",
                             .y_label = "work that friction takes/(E* h'_rms sqrt(m0))",

@@ -12,7 +12,7 @@
 enum { PRESS_STEPS = 10 };
 /* The longest step is this part of the path with the shear; a path ends in vain after so many
  * times its points, and these. */
-enum { STEPS_LEAST = 10, STEPS_TIMES = 20 };
+enum { STEPS_LEAST = 16, STEPS_TIMES = 20 };
 /* Of estimates: steps beside those, and the sliding to full slip over the coefficient. */
 enum { STEPS_BESIDE = 4 };
 static const double SLIP_EXPECTED = 1.6;

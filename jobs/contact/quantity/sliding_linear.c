@@ -32,13 +32,18 @@ static size_t steps_of(const struct contact_case *one_case) {
  * falls evenly. */
 static void slide_on(struct sliding_record *record, double forward, double share, double rate) {
     const struct contact_case *one_case = record->one_case;
+    const double end = one_case->slide[one_case->slide_count - 1];
+    const double work = one_case->friction * one_case->loads[one_case->slip_load];
     struct sliding_sample sample = record->last;
-    sample.sliding += (1 - share) * rate;
+    double step = (1 - share) * rate;
+    sample.sliding += step;
     sample.of[SAMPLE_FORCE] = forward * one_case->friction;
-    sample.of[SAMPLE_STICK_AREA] = 0;
+    sample.of[SAMPLE_STICK_AREA] = sample.of[SAMPLE_STICK_LOAD] = 0;
+    sample.of[SAMPLE_DISSIPATION] += work * fabs(step);
     sliding_record_add(record, &sample);
-    sample.sliding =
-        forward * fmax(forward * sample.sliding, fabs(one_case->slide[one_case->slide_count - 1]));
+    step = fmax(0, forward * (end - sample.sliding));
+    sample.sliding += forward * step;
+    sample.of[SAMPLE_DISSIPATION] += work * step;
     sliding_record_add(record, &sample);
 }
 
@@ -48,7 +53,8 @@ static double share_at(size_t step, size_t steps) {
     return step < steps ? (double)step * even : 1 - even * ldexp(1, (int)(steps - 1) - (int)step);
 }
 
-static struct sliding_sample sample_of(const struct slip_state *state,
+/* gap_without: the mean gap that the block was pressed to. */
+static struct sliding_sample sample_of(const struct slip_state *state, double gap_without,
                                        const struct measure_context *context,
                                        const struct sliding_record *record) {
     const size_t held = context->one_case->slip_load;
@@ -57,7 +63,12 @@ static struct sliding_sample sample_of(const struct slip_state *state,
     out.sliding = state->displacement / context->rms_height;
     out.of[SAMPLE_FORCE] = state->traction / state->pressure;
     out.of[SAMPLE_STICK_AREA] = state->stick_area;
+    out.of[SAMPLE_STICK_LOAD] = state->stick_load;
     out.of[SAMPLE_AREA] = (double)state->nodes / touching;
+    if (!context->one_case->slip_pressing) /* else that without friction is not known */
+        out.of[SAMPLE_GAP] = record->values[MEASURE_GAP * record->stride + held] +
+                             (state->mean_gap - gap_without) / context->rms_height;
+    out.of[SAMPLE_DISSIPATION] = state->dissipation / (context->rms_slope * context->rms_height);
     return out;
 }
 
@@ -73,14 +84,15 @@ int sliding_linear_solve(struct slip *slip, const struct measure_context *contex
     int status = slip_press(slip, z, pressure, &state, err);
     if (status != 0)
         return status;
-    struct sliding_sample sample = sample_of(&state, context, record);
+    const double gap = state.mean_gap;
+    struct sliding_sample sample = sample_of(&state, gap, context, record);
     sliding_record_begin(record, &sample);
     for (size_t step = 1; step <= last && !sliding_record_is_full(record); step++) {
         double share = share_at(step, steps), from = record->last.sliding;
         status = slip_load(slip, forward * share * one_case->friction * pressure, &state, err);
         if (status != 0)
             return status;
-        sample = sample_of(&state, context, record);
+        sample = sample_of(&state, gap, context, record);
         rate = (sample.sliding - from) / (share - share_at(step - 1, steps));
         sliding_record_add(record, &sample);
     }

@@ -10,8 +10,8 @@ struct slip;
 /* Returns whether the linear model follows the path of a case: one without a turn. */
 bool sliding_linear_follows(const struct contact_case *one_case);
 int sliding_linear_create(struct slip **out, const struct quantity_scene *scene, struct error *err);
-/* Fills tangential force, stick area and contact area; the others stay NaN. ERROR_NUMERIC where no
- * solution is found. */
+/* Fills all values but, of a block that is pressed with friction, the gap, which stays NaN.
+ * ERROR_NUMERIC where no solution is found. */
 int sliding_linear_solve(struct slip *slip, const struct measure_context *context, const double *z,
                          struct sliding_record *record, struct error *err);
 double sliding_linear_bytes(const struct quantity_scene *scene);
