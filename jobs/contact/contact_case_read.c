@@ -196,8 +196,7 @@ static int fill_slide(struct contact_case *out, const double *turns, size_t coun
 }
 
 static int read_slide(struct contact_case *out, struct values *values, struct error *err) {
-    /* Unless given. Faces slide fully after the coefficient times what the gap closes by, at most.
-     */
+    /* Unless given. Gaussian faces slide fully within 2 mu, those of sharp summits within 4. */
     enum { STEPS = 20 };
     const double usual = 3 * out->friction, steps = values_number(values, SLIDE_STEPS);
     double *turns = NULL;
