@@ -196,9 +196,9 @@ static int fill_slide(struct contact_case *out, const double *turns, size_t coun
 }
 
 static int read_slide(struct contact_case *out, struct values *values, struct error *err) {
-    /* Unless given. Gaussian faces slide fully within 2 mu, those of sharp summits within 4. */
-    enum { STEPS = 20 };
-    const double usual = 3 * out->friction, steps = values_number(values, SLIDE_STEPS);
+    /* Unless given. Sharp summits slide fully after 4 mu at most, Gaussian faces after 2. */
+    enum { STEPS = 30 };
+    const double usual = 4 * out->friction, steps = values_number(values, SLIDE_STEPS);
     double *turns = NULL;
     size_t count = 0, before = values_fault_count(values);
     if (!contact_case_slides(out))

@@ -37,7 +37,7 @@ static const struct parameter ROWS[] = {
      .unit = "sqrt(m0)",
      .example_json = "[1]",
      .help =
-         "full, with friction: how far the flat slides over the mean of the face, [3 mu] unless "
+         "full, with friction: how far the flat slides over the mean of the face, [4 mu] unless "
          "given; several values are points at which it turns"},
     {.path = "/contact/slip/steps",
      .type = PARAMETER_INTEGER,
@@ -46,7 +46,7 @@ static const struct parameter ROWS[] = {
      .later = true,
      .target_refusal = FRICTION_NO_TARGET,
      .example_json = "40",
-     .help = "full, with friction: points of curves, evenly spaced, from one turn to the next; 20 "
+     .help = "full, with friction: points of curves, evenly spaced, from one turn to the next; 30 "
              "unless given"},
 };
 const struct parameter_table SLIDING_PARAMETERS = {"contact", ROWS, sizeof ROWS / sizeof *ROWS};

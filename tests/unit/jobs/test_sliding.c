@@ -42,8 +42,8 @@ static void the_flat_slides_fully(void **state) {
     const cJSON *work = curve_of(document, "sliding_dissipation", "", "full");
     const cJSON *gap = curve_of(document, "sliding_gap", "", "full");
     int last = points(force) - 1;
-    assert_int_equal(last, 20);
-    assert_near(at(force, "/x", last), 3 * MU, 1e-12, 0);
+    assert_int_equal(last, 30);
+    assert_near(at(force, "/x", last), 4 * MU, 1e-12, 0);
     assert_near(at(force, "/y", 0), 0, 1e-12, 0);
     assert_near(at(area, "/y", 0), 1, 0, 0);
     assert_near(at(load, "/y", 0), 1, 0, 0);
@@ -53,15 +53,15 @@ static void the_flat_slides_fully(void **state) {
         double x = at(force, "/x", i), more = at(work, "/y", i) - at(work, "/y", i - 1);
         assert_true(at(force, "/y", i) >= at(force, "/y", i - 1) - 1e-9);
         assert_true(at(area, "/y", i) <= at(area, "/y", i - 1));
-        assert_true(more >= 0 && more <= MU * 0.1 * 3 * MU / 20 * (1 + 1e-6));
+        assert_true(more >= 0 && more <= MU * 0.1 * 4 * MU / 30 * (1 + 1e-6));
         assert_true(at(force, "/discretisation_bound", i) >= 0 && x > 0);
     }
-    assert_near(at(force, "/y", last), MU, 1e-6, 3 * MU);
-    assert_near(at(area, "/y", last), 0, 0, 3 * MU);
-    assert_near(at(load, "/y", last), 0, 0, 3 * MU);
-    check_relative(at(work, "/y", last) - at(work, "/y", last - 1), MU * 0.1 * 3 * MU / 20, 1e-5);
+    assert_near(at(force, "/y", last), MU, 1e-6, 4 * MU);
+    assert_near(at(area, "/y", last), 0, 0, 4 * MU);
+    assert_near(at(load, "/y", last), 0, 0, 4 * MU);
+    check_relative(at(work, "/y", last) - at(work, "/y", last - 1), MU * 0.1 * 4 * MU / 30, 1e-5);
     double full = json_at(document, "/scalars/sliding_to_full_slip/value")->valuedouble;
-    assert_true(full > 0.05 && full < 3 * MU);
+    assert_true(full > 0.05 && full < 4 * MU);
     assert_true(between(force, full) > 0.9 * MU && between(force, full) < MU);
     cJSON_Delete(document);
 }
@@ -90,7 +90,7 @@ static void small_slopes_slide_by_lighter_loads(void **state) {
 }
 
 /* Small slopes at nu = 0.3 and the coupled half-plane: another discretisation and another solver.
- * Of some thirty nodes in contact two or three may differ. */
+ * Of some thirty nodes in contact up to three or four may differ. */
 static void small_slopes_slide_as_the_half_plane(void **state) {
     (void)state;
     static const char *const PRESSING[] = {"frictionless", "frictional"};
@@ -105,8 +105,8 @@ static void small_slopes_slide_as_the_half_plane(void **state) {
         static const struct {
             const char *name;
             double scale, apart;
-        } CURVES[] = {{"sliding_force", 0.3, 0.02},        {"sliding_stick_area", 1, 0.08},
-                      {"sliding_stick_load", 1, 0.08},     {"sliding_contact_area", 1, 0.08},
+        } CURVES[] = {{"sliding_force", 0.3, 0.02},        {"sliding_stick_area", 1, 0.12},
+                      {"sliding_stick_load", 1, 0.08},     {"sliding_contact_area", 1, 0.1},
                       {"sliding_dissipation", 0.01, 0.02}, {"sliding_gap", 1, 0.01}};
         for (size_t c = 0; c < 5 + (p == 0); c++) {
             const cJSON *full = curve_of(document, CURVES[c].name, "", "full");
@@ -282,8 +282,8 @@ static void a_load_is_held(void **state) {
     assert_near(one_case.loads[1], 0.07, 0, 0.07);
     assert_false(one_case.asked.of[FRICTION_AT]);
     assert_true(one_case.asked.of[SLIDING_AT]);
-    assert_int_equal(contact_case_slots(&one_case), 21);
-    assert_near(contact_case_slid(&one_case, 20), 0.9, 1e-12, 0);
+    assert_int_equal(contact_case_slots(&one_case), 31);
+    assert_near(contact_case_slid(&one_case, 30), 1.2, 1e-12, 0);
     contact_case_clear(&one_case);
     cJSON_Delete(parameters);
 }
