@@ -37,6 +37,8 @@ static const struct unit_row AXES[] = {
     {"mean gap/sqrt(m0) as the load falls", 0, NOTHING, "mean gap as the load falls", "m", 0, 1, HEIGHT, 0},
     {"approach left/sqrt(m0)", 0, NOTHING, "approach left", "m", 0, 1, HEIGHT, 0},
     {"tangential displacement/sqrt(m0)", 0, NOTHING, "tangential displacement", "m", 0, 1, HEIGHT, 0},
+    {"sliding/sqrt(m0)", 0, NOTHING, "sliding", "m", 0, 1, HEIGHT, 0},
+    {"work that friction takes/(E* h'_rms sqrt(m0))", 0, NOTHING, "work that friction takes", "J/m^2", 1, 1, SLOPE_TIMES_HEIGHT, 0},
     {"work of a cycle/(E* h'_rms sqrt(m0))", 0, NOTHING, "work of a cycle", "J/m^2", 1, 1, SLOPE_TIMES_HEIGHT, 0},
     {"Kt sqrt(m0)/(E* h'_rms)", 0, NOTHING, "Kt", "Pa/m", 1, -1, SLOPE_OVER_HEIGHT, 0},
     {"K sqrt(m0)/(E* h'_rms)", 0, NOTHING, "K", "Pa/m", 1, -1, SLOPE_OVER_HEIGHT, 0},

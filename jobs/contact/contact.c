@@ -314,6 +314,8 @@ static const struct shown_name NAMES[] = {
     {"Kt sqrt(m0)/(E* h'_rms)", "tangential stiffness",
      "tangential stiffness Kt sqrt(m0)/(E* h'_rms)"},
     {"Q/(mu P)", "tangential load", "tangential load Q/(mu P)"},
+    {"sliding/sqrt(m0)", "sliding", "sliding/sqrt(m0)"},
+    {"Q/P", "tangential force", "tangential over normal force Q/P"},
     {"leak over that of the mean gap", "leak", NULL},
     {"share of directions that are open", "open share", NULL},
     {"percolates", "open directions", NULL},

@@ -17,6 +17,32 @@ double contact_case_transition(const struct contact_case *one_case, const struct
            (2 * (grid_is_profile(grid) ? width : fmax(width, grid_dy(grid))));
 }
 
+struct full_options contact_case_full_options(const struct contact_case *one_case,
+                                              const struct grid *grid) {
+    struct full_options options = FULL_DEFAULTS;
+    options.kinematics = one_case->kinematics;
+    options.transition = contact_case_transition(one_case, grid);
+    options.tolerance = one_case->tolerance;
+    return options;
+}
+
+bool contact_case_slides(const struct contact_case *one_case) {
+    bool slides = false;
+    for (size_t m = 0; m < one_case->model_count; m++)
+        slides = slides || one_case->models[m]->slides;
+    return slides && one_case->friction > 0;
+}
+
+double contact_case_slid(const struct contact_case *one_case, size_t i) {
+    const double *at = one_case->slide;
+    const size_t steps = one_case->slide_steps;
+    double path = 0;
+    size_t turn = 0;
+    for (; turn + steps < i; turn += steps)
+        path += fabs(at[turn + steps] - at[turn]);
+    return path + fabs(at[i] - at[turn]);
+}
+
 bool contact_case_has_scale(const struct contact_case *one_case) {
     enum spectrum_scale scale = one_case->surface.spectrum.scale;
     return scale == SCALE_RMS_HEIGHT || scale == SCALE_RMS_SLOPE;
@@ -53,6 +79,7 @@ void contact_case_clear(struct contact_case *one_case) {
     free(one_case->like_gaps);
     free(one_case->kept);
     free(one_case->kept_loads);
+    free(one_case->slide);
     *one_case = (struct contact_case){0};
 }
 

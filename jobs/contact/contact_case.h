@@ -5,7 +5,7 @@
 #define RUGO_JOBS_CONTACT_CONTACT_CASE_H
 
 #include "core/contact/contact.h"
-#include "core/full/material.h"
+#include "core/full/full.h"
 #include "core/statistics/heights/histogram.h"
 #include "jobs/contact/companion/companion_plan.h"
 #include "jobs/contact/model/model.h"
@@ -73,7 +73,10 @@ struct contact_case {
     double friction;               /* coefficient; 0: nothing slips */
     size_t slip_load;              /* the load that is held while a tangential one rises */
     double slip_angle;             /* of the tangential load from x, in radians */
-    double tolerance;              /* of solutions (contact_tolerance.h) */
+    size_t slide_count;            /* points of curves by sliding at the held load; 0: none */
+    size_t slide_steps;            /* of them from one turning point to the next */
+    double *slide;    /* owned: where the flat is at each, over the RMS height; the first is 0 */
+    double tolerance; /* of solutions (contact_tolerance.h) */
     size_t pdf_count;
     size_t *pdf_loads;    /* owned: loads whose pressures are counted, rising */
     bool pdf_pairs;       /* on all levels, with their differences (contact_densities.h) */
@@ -92,18 +95,28 @@ static inline const struct contact_level *contact_case_finest(const struct conta
 static inline size_t contact_case_bins(const struct contact_case *one_case) {
     return one_case->pressure.count + 2;
 }
-/* Return the index of a model, level and load, loads running fastest, and the number of these
- * cells. */
+/* Return how many values a measure has room for in a model and level, and those that it has: one a
+ * load, or a point of curves by sliding. */
+static inline size_t contact_case_slots(const struct contact_case *one_case) {
+    return one_case->slide_count > one_case->load_count ? one_case->slide_count
+                                                        : one_case->load_count;
+}
+static inline size_t contact_case_values(const struct contact_case *one_case, enum measure_by by) {
+    return by == BY_SLIDING ? one_case->slide_count : one_case->load_count;
+}
+/* Return the index of a model, level and load (or point), these running fastest, and the number of
+ * these cells. */
 static inline size_t contact_case_cell(const struct contact_case *one_case, size_t model,
                                        size_t level, size_t load) {
-    return (model * one_case->level_count + level) * one_case->load_count + load;
+    return (model * one_case->level_count + level) * contact_case_slots(one_case) + load;
 }
 static inline size_t contact_case_cells(const struct contact_case *one_case) {
     return contact_case_cell(one_case, one_case->model_count, 0, 0);
 }
-/* Return the number of points of a curve, and the load of point i; by slip loads fall. */
+/* Return the number of points of a curve, and the load of point i, by sliding the point itself; by
+ * slip loads fall. */
 static inline size_t contact_case_points(const struct contact_case *one_case, enum measure_by by) {
-    return by == BY_SLIP ? one_case->slip_load : one_case->load_count;
+    return by == BY_SLIP ? one_case->slip_load : contact_case_values(one_case, by);
 }
 static inline size_t contact_case_point(const struct contact_case *one_case, enum measure_by by,
                                         size_t i) {
@@ -128,6 +141,13 @@ double contact_case_block_bound(const struct contact_case *one_case, size_t mode
 size_t contact_case_complete(const struct contact_case *one_case);
 /* Returns the depth on a mesh from which columns become wider, in widths of the wide ones. */
 double contact_case_transition(const struct contact_case *one_case, const struct grid *grid);
+/* Returns how the case has the model full solved on a grid. */
+struct full_options contact_case_full_options(const struct contact_case *one_case,
+                                              const struct grid *grid);
+/* Returns whether there is friction and a model that has it at finite strain. */
+bool contact_case_slides(const struct contact_case *one_case);
+/* Returns how far the flat has gone on its path at point i, over the RMS height. */
+double contact_case_slid(const struct contact_case *one_case, size_t i);
 /* Return whether the surface has a scale, and its RMS height and slope by the prescribed spectrum,
  * in lambda_s; NaN without a scale. */
 bool contact_case_has_scale(const struct contact_case *one_case);

@@ -161,6 +161,57 @@ static int read_study_loads(struct contact_case *out, const struct asked *asked,
     return 0;
 }
 
+static const char SLIDE_TO[] = "/contact/slip/to", SLIDE_STEPS[] = "/contact/slip/steps";
+
+/* Checks the turning points of the flat. */
+static void check_turns(const double *turns, size_t count, size_t steps, struct values *values) {
+    double from = 0;
+    for (size_t a = 0; a < count; from = turns[a++])
+        if (turns[a] == from) {
+            values_fault(values, SLIDE_TO, "number %zu, %g, is where the flat was before", a,
+                         turns[a]);
+            return;
+        }
+    if (count * steps >= CONTACT_LOADS_MOST)
+        values_fault(values, SLIDE_STEPS,
+                     "%zu steps to each of %zu turning points; allowed: %d in all", steps, count,
+                     CONTACT_LOADS_MOST - 1);
+}
+
+/* Fills the path of the flat: evenly spaced points from one turning point to the next. */
+static int fill_slide(struct contact_case *out, const double *turns, size_t count,
+                      struct error *err) {
+    const size_t steps = out->slide_steps;
+    out->slide = array_create(count * steps + 1, sizeof *out->slide);
+    if (out->slide == NULL)
+        return error_memory(err, (count * steps + 1) * sizeof *out->slide, "a path of the flat");
+    for (size_t a = 0; a < count; a++) {
+        double from = a > 0 ? turns[a - 1] : 0;
+        for (size_t k = 0; k < steps; k++)
+            out->slide[a * steps + k + 1] =
+                k + 1 < steps ? from + contact_load(turns[a] - from, k, steps) : turns[a];
+    }
+    out->slide_count = count * steps + 1;
+    return 0;
+}
+
+static int read_slide(struct contact_case *out, struct values *values, struct error *err) {
+    /* Unless given. Sharp summits slide fully after 4 mu at most, Gaussian faces after 2. */
+    enum { STEPS = 30 };
+    const double usual = 4 * out->friction, steps = values_number(values, SLIDE_STEPS);
+    double *turns = NULL;
+    size_t count = 0, before = values_fault_count(values);
+    if (!contact_case_slides(out))
+        return 0;
+    int status = values_numbers(values, SLIDE_TO, &turns, &count, err);
+    out->slide_steps = isnan(steps) ? STEPS : (size_t)steps;
+    check_turns(turns, count, out->slide_steps, values);
+    if (status == 0 && values_fault_count(values) == before)
+        status = fill_slide(out, turns != NULL ? turns : &usual, turns != NULL ? count : 1, err);
+    free(turns);
+    return status;
+}
+
 /* Reads the loads, with those that friction adds. */
 static int read_loads(struct contact_case *out, const struct asked *asked, struct values *values,
                       struct error *err) {
@@ -183,7 +234,8 @@ static int read_loads(struct contact_case *out, const struct asked *asked, struc
     if (loads == NULL)
         return error_memory(err, room * sizeof *loads, "loads");
     out->loads = loads;
-    out->slip_load = contact_loads_add(loads, &out->load_count, held);
+    out->slip_load = contact_case_slides(out) ? contact_loads_hold(loads, &out->load_count, held)
+                                              : contact_loads_add(loads, &out->load_count, held);
     return 0;
 }
 
@@ -358,6 +410,8 @@ static int read_alone(struct contact_case *out, struct asked *asked, struct valu
     check_counter(out, asked, values);
     read_load_unit(asked, values);
     int status = read_loads(out, asked, values, err);
+    if (status == 0)
+        status = read_slide(out, values, err);
     if (status == 0)
         status = read_levels(asked, values, err);
     if (status == 0)

@@ -250,7 +250,7 @@ static int put_errors(struct contact_curve_maker *maker, enum measure_by by, dou
         bound[i] = factor * at->bound;
         standard_error[i] = factor * at->standard_error;
     }
-    double order = mean_order(one_case->load_count, errors);
+    double order = mean_order(contact_case_values(one_case, by), errors);
     *out = (struct curve_error){.applies = true,
                                 .value = value,
                                 .bound = bound,
@@ -298,14 +298,23 @@ static int add_law(struct contact_curve_maker *maker, const struct row *row, siz
     return 0;
 }
 
+/* Returns what a curve runs over at a load, or at a point of sliding. */
+static double abscissa(const struct contact_case *one_case, enum measure_by by, size_t k) {
+    if (by == BY_SLIDING)
+        return contact_case_slid(one_case, k);
+    double load = one_case->loads[k];
+    return by == BY_SLIP ? 1 - load / one_case->loads[one_case->slip_load] : load;
+}
+
 static int append(struct contact_curve_maker *maker, const struct row *row, size_t model,
                   size_t level, struct error *err) {
     const struct contact_case *one_case = maker->one_case;
     const struct theories *theories = &maker->theories;
     const struct measure *of = measure_row(row->measure);
-    const bool slips = of->by == BY_SLIP;
-    struct curve curve = curve_of(one_case, model, level, row->quantity,
-                                  slips ? "Q/(mu P)" : "p/(E* h'_rms)", row->y_label);
+    static const char *const X_LABELS[] = {
+        [BY_LOAD] = "p/(E* h'_rms)", [BY_SLIP] = "Q/(mu P)", [BY_SLIDING] = "sliding/sqrt(m0)"};
+    struct curve curve =
+        curve_of(one_case, model, level, row->quantity, X_LABELS[of->by], row->y_label);
     size_t n = contact_case_points(one_case, of->by);
     double *x = result_numbers(maker->result, 4 * n), factor = row->factor;
     if (x == NULL)
@@ -317,13 +326,12 @@ static int append(struct contact_curve_maker *maker, const struct row *row, size
         size_t k = contact_case_point(one_case, of->by, i);
         size_t cell = contact_case_cell(one_case, model, level, k);
         struct estimate mean = contact_mean(maker->tally, row->measure, model, level, k);
-        x[i] = slips ? 1 - one_case->loads[k] / one_case->loads[one_case->slip_load]
-                     : one_case->loads[k];
+        x[i] = abscissa(one_case, of->by, k);
         y[i] = factor * mean.value;
         standard_error[i] = factor * mean.standard_error;
         valueless[i] = (double)contact_tally_valueless(maker->tally, row->measure, cell);
     }
-    if (slips)
+    if (of->by != BY_LOAD)
         curve.pressure = one_case->loads[one_case->slip_load];
     curve.series = row->series;
     curve_set_points(&curve, n, x, y, standard_error);
@@ -472,8 +480,8 @@ int contact_curves(const struct contact_case *one_case, const struct modes *mode
                    struct case_result *out, struct error *err) {
     struct contact_curve_maker maker = {
         .one_case = one_case, .modes = modes, .tally = tally, .result = out};
-    maker.errors = result_room(out, one_case->load_count, sizeof *maker.errors);
-    maker.differences = result_room(out, one_case->load_count, sizeof *maker.differences);
+    maker.errors = result_room(out, contact_case_slots(one_case), sizeof *maker.errors);
+    maker.differences = result_room(out, contact_case_slots(one_case), sizeof *maker.differences);
     if (maker.errors == NULL || maker.differences == NULL)
         return no_room(err);
     int status = theories_make(&maker.theories, one_case, modes, moments, out, err);

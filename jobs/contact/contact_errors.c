@@ -24,6 +24,11 @@ static size_t finest_of(const struct contact_case *one_case) {
     return one_case->level_count - 1;
 }
 
+/* Returns how many values a measure has: of loads, or of points of sliding. */
+static size_t values_of(const struct contact_tally *tally, enum contact_measure measure) {
+    return contact_case_values(tally->one_case, measure_row(measure)->by);
+}
+
 static struct estimate finest_mean(const struct contact_tally *tally, enum contact_measure measure,
                                    size_t model, size_t load) {
     return contact_mean(tally, measure, model, finest_of(tally->one_case), load);
@@ -70,7 +75,7 @@ static double size_of(const struct contact_error *error, double value) {
  * observed, the bound is at least that of the neighbouring loads, relative to the values. */
 static void spread_bounds(const struct contact_tally *tally, enum contact_measure measure,
                           size_t model, struct contact_error *out) {
-    size_t n = tally->one_case->load_count;
+    size_t n = values_of(tally, measure);
     double before = 0, own = size_of(&out[0], finest_mean(tally, measure, model, 0).value);
     for (size_t k = 0; k < n; k++) {
         double y = finest_mean(tally, measure, model, k).value;
@@ -87,7 +92,7 @@ static void spread_bounds(const struct contact_tally *tally, enum contact_measur
 /* Estimates the error of the finest level, from its change and the one before, at every load. */
 static void limit_errors(const struct contact_tally *tally, enum contact_measure measure,
                          size_t model, change_at *change, struct contact_error *out) {
-    for (size_t k = 0; k < tally->one_case->load_count; k++) {
+    for (size_t k = 0; k < values_of(tally, measure); k++) {
         struct level_changes changes = changes_of(tally, measure, model, k, change);
         struct mesh_error error = mesh_error(&changes.of, measure_row(measure)->order);
         out[k] =
@@ -118,7 +123,7 @@ static void add_floors(const struct contact_tally *tally, enum contact_measure m
     double share = contact_errors_mesh_floor(one_case, measure, model);
     if (difference)
         share += contact_errors_mesh_floor(one_case, measure, contact_case_complete(one_case));
-    for (size_t k = 0; k < one_case->load_count; k++)
+    for (size_t k = 0; k < values_of(tally, measure); k++)
         out[k].bound += share * fabs(finest_mean(tally, measure, model, k).value);
 }
 
@@ -163,7 +168,7 @@ static bool model_errors(const struct contact_tally *tally, enum contact_measure
     if (!has_difference(tally, model))
         return false;
     limit_errors(tally, measure, model, contact_tally_model_level, out);
-    for (size_t k = 0; k < tally->one_case->load_count; k++)
+    for (size_t k = 0; k < values_of(tally, measure); k++)
         take_limit(contact_tally_model(tally, measure, model, k), &out[k]);
     add_floors(tally, measure, model, true, out);
     return true;
@@ -175,7 +180,7 @@ bool contact_errors_model_change(const struct contact_tally *tally, enum contact
     if (!has_difference(tally, model))
         return false;
     limit_errors(tally, measure, model, contact_tally_model_level, out);
-    for (size_t k = 0; k < one_case->load_count; k++) {
+    for (size_t k = 0; k < values_of(tally, measure); k++) {
         struct estimate all = {0};
         for (size_t l = 1; l < one_case->level_count; l++) {
             struct estimate change = contact_tally_model_level(tally, measure, model, l, k);
@@ -216,9 +221,11 @@ static bool solver_errors(const struct contact_tally *tally, enum contact_measur
                           size_t model, struct contact_error *out) {
     const struct contact_case *one_case = tally->one_case;
     const size_t finest = finest_of(one_case);
-    for (size_t k = 0; k < one_case->load_count; k++) {
+    const bool slides = measure_row(measure)->by == BY_SLIDING;
+    for (size_t i = 0; i < values_of(tally, measure); i++) {
+        size_t k = slides ? one_case->slip_load : i;
         size_t cell = contact_case_cell(one_case, model, finest, k);
-        double y = finest_mean(tally, measure, model, k).value;
+        double y = finest_mean(tally, measure, model, i).value;
         double solved =
             (double)(tally->realisations - contact_tally_valueless(tally, MEASURE_NODES, cell));
         double points = solved * (double)grid_points(&one_case->levels[finest].grid);
@@ -229,7 +236,7 @@ static bool solver_errors(const struct contact_tally *tally, enum contact_measur
             .open = (1 - area) * points,
             .patches = solved * finest_mean(tally, MEASURE_PATCHES, model, k).value};
         double bound = contact_errors_solver(measure_row(measure)->solver, &of, y);
-        out[k] = (struct contact_error){.value = 0 * y, .bound = bound, .order = NAN};
+        out[i] = (struct contact_error){.value = 0 * y, .bound = bound, .order = NAN};
     }
     return true;
 }
@@ -239,7 +246,7 @@ static bool missing_errors(const struct contact_tally *tally, enum contact_measu
     const struct contact_case *one_case = tally->one_case;
     size_t finest = finest_of(one_case);
     bool any = false;
-    for (size_t k = 0; k < one_case->load_count; k++) {
+    for (size_t k = 0; k < values_of(tally, measure); k++) {
         size_t cell = contact_case_cell(one_case, model, finest, k);
         double missing = (double)contact_tally_valueless(tally, measure, cell);
         double share = missing / (double)tally->realisations;
@@ -271,7 +278,7 @@ static bool missing_applies(const struct contact_tally *tally, enum contact_meas
                             size_t model, size_t level) {
     const struct contact_case *one_case = tally->one_case;
     bool missing = false;
-    for (size_t k = 0; k < one_case->load_count; k++)
+    for (size_t k = 0; k < values_of(tally, measure); k++)
         missing = missing || contact_tally_valueless(
                                  tally, measure, contact_case_cell(one_case, model, level, k)) > 0;
     return missing && one_case->models[model]->may_fail;

@@ -8,8 +8,9 @@
 #include "jobs/contact/contact_tally.h"
 #include "schema/result/result.h"
 
-/* Estimates the error of a measure below MEASURE_PAIRED at every load, into out[load_count]. False,
- * and nothing in out, where nothing is known of the source. */
+/* Estimates the error of a measure below MEASURE_PAIRED at every load, or
+ * point of sliding, into out[contact_case_values]. False, and nothing in out, where nothing is
+ * known of the source. */
 bool contact_errors(const struct contact_tally *tally, enum contact_measure measure, size_t model,
                     enum error_source source, struct contact_error *out);
 /* What solutions hold, in all realisations, on which the error of their solver depends. */

@@ -72,6 +72,10 @@ static size_t put_load(double *loads, size_t *count, double load, double reach) 
     return at;
 }
 
+size_t contact_loads_hold(double *loads, size_t *count, double held) {
+    return put_load(loads, count, held, ROUNDING * held);
+}
+
 size_t contact_loads_add(double *loads, size_t *count, double held) {
     double load = held / TENTHS;
     for (size_t tenth = 1; tenth < TENTHS; tenth++)
@@ -80,5 +84,5 @@ size_t contact_loads_add(double *loads, size_t *count, double held) {
         load /= 2;
         put_load(loads, count, load, NEAR_HALF * load);
     }
-    return put_load(loads, count, held, ROUNDING * held);
+    return contact_loads_hold(loads, count, held);
 }

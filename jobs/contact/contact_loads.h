@@ -26,5 +26,7 @@ int contact_loads_fill(const cJSON *document, cJSON *parameters, struct error *e
  * `held`. */
 enum { CONTACT_LOADS_ADDED = 13 };
 size_t contact_loads_add(double *loads, size_t *count, double held);
+/* Makes `held` one of the loads, and adds no others. */
+size_t contact_loads_hold(double *loads, size_t *count, double held);
 
 #endif

@@ -127,8 +127,9 @@ size_t measure_paired(const struct contact_case *one_case) {
 #define QUANTITY(n) (enum contact_measure)(MEASURE_QUANTITIES + (n))
 #define FOUR(n) QUANTITY(n), QUANTITY((n) + 1), QUANTITY((n) + 2), QUANTITY((n) + 3)
 const enum contact_measure MEASURE_CURVES[MEASURE_OWN] = {
-    LIST(NAME) FOUR(0), FOUR(4), FOUR(8), FOUR(12), FOUR(16), FOUR(20), FOUR(24), FOUR(28)};
-_Static_assert(QUANTITY_MEASURES_MOST == 32, "measures of quantities without a number above");
+    LIST(NAME) FOUR(0), FOUR(4),  FOUR(8),  FOUR(12), FOUR(16),
+    FOUR(20),           FOUR(24), FOUR(28), FOUR(32), FOUR(36)};
+_Static_assert(QUANTITY_MEASURES_MOST == 40, "measures of quantities without a number above");
 _Static_assert(sizeof((enum contact_measure[]){LIST(NAME)}) +
                        QUANTITY_MEASURES_MOST * sizeof *MEASURE_CURVES ==
                    sizeof MEASURE_CURVES,

@@ -11,7 +11,7 @@ static size_t kept_below(const struct contact_case *one_case, enum contact_measu
 }
 
 static size_t model_width(const struct contact_case *one_case) {
-    return kept_below(one_case, MEASURE_OWN) * one_case->load_count;
+    return kept_below(one_case, MEASURE_OWN) * contact_case_slots(one_case);
 }
 
 /* Returns the first column of the series of a companion. */
@@ -20,7 +20,7 @@ static size_t companion_first(const struct contact_case *one_case, size_t compan
     size_t columns = one_case->companions[companion].kept_count * series;
     for (size_t c = 0; c < companion; c++)
         columns += one_case->companions[c].kept_count * one_case->companions[c].series;
-    return one_case->model_count * model_width(one_case) + columns * one_case->load_count;
+    return one_case->model_count * model_width(one_case) + columns * contact_case_slots(one_case);
 }
 
 size_t contact_rows_width(const struct contact_case *one_case) {
@@ -35,7 +35,7 @@ size_t contact_rows_companion_column(const struct contact_case *one_case,
     size_t at = 0;
     while (at < plan->kept_count && plan->kept[at] != measure)
         at++;
-    return companion_first(one_case, companion, series) + at * one_case->load_count;
+    return companion_first(one_case, companion, series) + at * contact_case_slots(one_case);
 }
 
 double contact_rows_bytes(const struct contact_case *one_case) {
@@ -46,7 +46,8 @@ bool contact_rows_column(const struct contact_case *one_case, size_t model,
                          enum contact_measure measure, size_t *column) {
     if (!measure_row(measure)->kept(one_case))
         return false;
-    *column = model * model_width(one_case) + kept_below(one_case, measure) * one_case->load_count;
+    *column = model * model_width(one_case) +
+              kept_below(one_case, measure) * contact_case_slots(one_case);
     return true;
 }
 
@@ -83,7 +84,7 @@ static void append_companion(double *row, const struct contact_case *one_case,
         for (size_t a = 0; a < plan->kept_count; a++)
             memcpy(row + contact_rows_companion_column(one_case, companion, series, plan->kept[a]),
                    tally->values + companion_cell(one_case, series, plan->kept[a], 0),
-                   one_case->load_count * sizeof *row);
+                   contact_case_slots(one_case) * sizeof *row);
 }
 
 void contact_rows_append(struct contact_rows *rows, const struct contact_case *one_case,
@@ -95,7 +96,7 @@ void contact_rows_append(struct contact_rows *rows, const struct contact_case *o
         for (size_t a = 0; a < MEASURE_OWN; a++)
             if (contact_rows_column(one_case, m, (enum contact_measure)a, &column))
                 memcpy(row + column, values + a * all + contact_case_cell(one_case, m, finest, 0),
-                       one_case->load_count * sizeof *row);
+                       contact_case_slots(one_case) * sizeof *row);
     for (enum companion_name c = 0; c < COMPANION_COUNT; c++)
         append_companion(row, one_case, c, &companions[c]);
     rows->realisation[rows->count++] = realisation;

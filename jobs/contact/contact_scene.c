@@ -49,7 +49,8 @@ static struct quantity_scene quantity_scene_of(const struct contact_case *one_ca
     return (struct quantity_scene){.one_case = one_case,
                                    .grid = one_case->levels[level].grid,
                                    .block = one_case->blocks[model],
-                                   .exact = linear_is_exact(one_case->models[model])};
+                                   .exact = linear_is_exact(one_case->models[model]),
+                                   .slides = one_case->models[model]->slides};
 }
 
 static int scene_fill(struct contact_scene *scene, const struct contact_compliances *compliances,
@@ -308,8 +309,8 @@ static double case_seconds(const struct contact_case *one_case) {
     size_t solved = one_case->model_count * one_case->level_count;
     size_t densities = one_case->model_count * one_case->pdf_count;
     size_t curves = (LEVEL_CURVES + one_case->asked.measures) * solved;
-    return publishing_cost(curves + densities,
-                           curves * one_case->load_count + densities * one_case->pressure.count);
+    return publishing_cost(curves + densities, curves * contact_case_slots(one_case) +
+                                                   densities * one_case->pressure.count);
 }
 
 /* Returns the bytes of a scene and its compliances, without the surface itself and companions. */

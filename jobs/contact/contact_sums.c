@@ -54,7 +54,7 @@ void contact_sums_merge(struct contact_sums *into, const struct contact_sums *fr
 double contact_sums_scale(const struct contact_case *one_case, enum contact_measure measure,
                           size_t load) {
     int exponent;
-    if (measure_row(measure)->load != LOAD_FALLS)
+    if (measure_row(measure)->load != LOAD_FALLS || load >= one_case->load_count)
         return 1;
     (void)frexp(fmin(one_case->loads[load], 1), &exponent);
     return ldexp(1, exponent < -SCALE_BITS_MOST ? SCALE_BITS_MOST : -exponent);

@@ -1,5 +1,6 @@
 #include "jobs/contact/contact_tally.h"
 #include "jobs/contact/contact_measure.h"
+#include "jobs/contact/quantity/quantity.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -18,7 +19,7 @@ static size_t offsets_pressures(const struct contact_case *one_case) {
 /* Return the offset of a level's difference from the next coarser one, and the number of these. */
 static size_t offsets_level(const struct contact_case *one_case, size_t model, size_t level,
                             size_t load) {
-    return (model * (one_case->level_count - 1) + level - 1) * one_case->load_count + load;
+    return (model * (one_case->level_count - 1) + level - 1) * contact_case_slots(one_case) + load;
 }
 
 static size_t offsets_levels(const struct contact_case *one_case) {
@@ -30,11 +31,11 @@ static size_t offsets_levels(const struct contact_case *one_case) {
 static size_t offsets_model(const struct contact_case *one_case, size_t model, size_t level,
                             size_t load) {
     size_t other = model - (model > contact_case_complete(one_case));
-    return (other * one_case->level_count + level) * one_case->load_count + load;
+    return (other * one_case->level_count + level) * contact_case_slots(one_case) + load;
 }
 
 static size_t offsets_models(const struct contact_case *one_case) {
-    return (one_case->model_count - 1) * one_case->level_count * one_case->load_count;
+    return (one_case->model_count - 1) * one_case->level_count * contact_case_slots(one_case);
 }
 
 /* --- a realisation --- */
@@ -132,12 +133,21 @@ void contact_tally_pressures(struct contact_tally *tally, size_t model, size_t l
     contact_densities_set(&tally->densities, density_state(one_case, model, level), at, shares);
 }
 
+/* Returns the load, or the point of a curve by sliding, of a cell. */
+static size_t slot_of(const struct contact_case *one_case, size_t cell) {
+    return cell % contact_case_slots(one_case);
+}
+
+static size_t values_of(const struct contact_case *one_case, enum contact_measure measure) {
+    return contact_case_values(one_case, measure_row(measure)->by);
+}
+
 static void add_level_pairs(struct contact_tally *tally, enum contact_measure measure) {
     const struct contact_case *one_case = tally->one_case;
     const double *values = contact_tally_values(tally, measure);
     for (size_t m = 0; m < one_case->model_count; m++)
         for (size_t l = 1; l < one_case->level_count; l++)
-            for (size_t k = 0; k < one_case->load_count; k++)
+            for (size_t k = 0; k < values_of(one_case, measure); k++)
                 contact_sums_add(&tally->sums[SUMS_LEVELS + measure],
                                  offsets_level(one_case, m, l, k),
                                  (values[contact_case_cell(one_case, m, l, k)] -
@@ -151,7 +161,7 @@ static void add_model_pairs(struct contact_tally *tally, enum contact_measure me
     struct contact_sums *sums = &tally->sums[SUMS_MODELS + measure];
     size_t levels = one_case->level_count, complete = contact_case_complete(one_case);
     for (size_t m = 0; m < one_case->model_count; m++)
-        for (size_t k = 0; m != complete && k < one_case->load_count; k++) {
+        for (size_t k = 0; m != complete && k < values_of(one_case, measure); k++) {
             double scale = contact_sums_scale(one_case, measure, k), before = 0, own = 0;
             for (size_t l = 0; l < levels; l++, before = own) {
                 own = values[contact_case_cell(one_case, m, l, k)] -
@@ -167,7 +177,7 @@ static void add_model_pairs(struct contact_tally *tally, enum contact_measure me
 /* Computes the fits of every series of loads from its areas. */
 static void fill_fits(struct contact_tally *tally) {
     const struct contact_case *one_case = tally->one_case;
-    for (size_t cell = 0; cell < contact_case_cells(one_case); cell += one_case->load_count)
+    for (size_t cell = 0; cell < contact_case_cells(one_case); cell += contact_case_slots(one_case))
         contact_measure_fits(one_case->load_count, one_case->loads,
                              contact_tally_values(tally, MEASURE_EDGES) + cell,
                              contact_tally_values(tally, MEASURE_KAPPA) + cell,
@@ -190,7 +200,7 @@ int contact_tally_add(struct contact_tally *tally, struct error *err) {
         for (size_t cell = 0; cell < cells; cell++)
             contact_sums_add(&tally->sums[a], cell,
                              values[cell] * contact_sums_scale(one_case, (enum contact_measure)a,
-                                                               cell % one_case->load_count));
+                                                               slot_of(one_case, cell)));
     }
     for (size_t a = 0; a < MEASURE_PAIRED; a++) {
         if (!measure_is_of(one_case, a))
@@ -266,13 +276,13 @@ int contact_tally_merge(struct contact_tally *into, const struct contact_tally *
 
 struct estimate contact_tally_mean(const struct contact_tally *tally, enum contact_measure measure,
                                    size_t cell) {
-    double scale = contact_sums_scale(tally->one_case, measure, cell % tally->one_case->load_count);
+    double scale = contact_sums_scale(tally->one_case, measure, slot_of(tally->one_case, cell));
     return contact_sums_mean(&tally->sums[measure], cell, scale);
 }
 
 double contact_tally_total(const struct contact_tally *tally, enum contact_measure measure,
                            size_t cell) {
-    double scale = contact_sums_scale(tally->one_case, measure, cell % tally->one_case->load_count);
+    double scale = contact_sums_scale(tally->one_case, measure, slot_of(tally->one_case, cell));
     return exact_sum_value(&tally->sums[measure].sums.sum[cell]) / scale;
 }
 
@@ -403,26 +413,30 @@ static bool count_fits(const struct contact_tally *tally, enum contact_measure m
                        size_t cell) {
     const struct contact_case *one_case = tally->one_case;
     const uint64_t *count = tally->sums[measure].counts.count;
-    size_t model = cell / (one_case->level_count * one_case->load_count);
+    size_t slot = slot_of(one_case, cell);
+    size_t model = cell / (one_case->level_count * contact_case_slots(one_case));
+    if (slot >= values_of(one_case, measure))
+        return count[cell] == 0;
     if (measure_row(measure)->values != VALUES_ALL)
         return count[cell] <= tally->realisations;
     if (one_case->models[model]->may_fail)
-        return count[cell] <=
-               (cell % one_case->load_count > 0 ? count[cell - 1] : tally->realisations);
+        return count[cell] <= (slot > 0 ? count[cell - 1] : tally->realisations);
     return count[cell] == tally->realisations;
 }
 
-/* Number of (realisation, level) pairs that did not converge up to the last load; each has one
- * note.
- */
+/* Number of (realisation, level) pairs that did not converge up to the last load, and the last
+ * point of sliding; each has one note. */
 static uint64_t unsolved(const struct contact_tally *tally) {
     const struct contact_case *one_case = tally->one_case;
-    size_t last = one_case->load_count - 1;
     uint64_t count = 0;
-    for (size_t m = 0; m < one_case->model_count; m++)
+    for (size_t m = 0; m < one_case->model_count; m++) {
+        bool slides = one_case->slide_count > 0 && one_case->models[m]->slides;
+        size_t last = (slides ? one_case->slide_count : one_case->load_count) - 1;
         for (size_t l = 0; l < one_case->level_count && one_case->models[m]->may_fail; l++)
-            count += contact_tally_valueless(tally, MEASURE_NODES,
-                                             contact_case_cell(one_case, m, l, last));
+            count += contact_tally_valueless(
+                tally, slides ? (enum contact_measure)SLIDING_FORCE : MEASURE_NODES,
+                contact_case_cell(one_case, m, l, last));
+    }
     return count;
 }
 
@@ -490,7 +504,7 @@ static bool model_rows_fit(const struct contact_tally *tally, size_t model,
     bool fit = true;
     if (!contact_rows_column(one_case, model, measure, &column))
         return true;
-    for (size_t k = 0; k < one_case->load_count && fit; k++)
+    for (size_t k = 0; k < values_of(one_case, measure) && fit; k++)
         fit = column_fits(&tally->rows, column + k, contact_sums_scale(one_case, measure, k),
                           &tally->sums[measure],
                           contact_case_cell(one_case, model, one_case->level_count - 1, k));
@@ -505,7 +519,7 @@ static bool companion_rows_fit(const struct contact_tally *tally, enum companion
     for (size_t a = 0; a < plan->kept_count; a++) {
         enum contact_measure measure = plan->kept[a];
         size_t column = contact_rows_companion_column(one_case, companion, series, measure);
-        for (size_t k = 0; k < one_case->load_count && fit; k++)
+        for (size_t k = 0; k < values_of(one_case, measure) && fit; k++)
             fit = column_fits(&tally->rows, column + k, contact_sums_scale(one_case, measure, k),
                               &tally->companions[companion].sums,
                               companion_cell(one_case, series, measure, k));

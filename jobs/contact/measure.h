@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { MODEL_MEASURES_MOST = 5, QUANTITY_MEASURES_MOST = 32 };
+enum { MODEL_MEASURES_MOST = 5, QUANTITY_MEASURES_MOST = 40 };
 enum contact_measure {
     MEASURE_NODES, /* share of the cell, as all areas */
     MEASURE_EDGES,
@@ -78,9 +78,10 @@ enum measure_over {
     OVER_WORK,
     OVER_KINDS
 };
-/* What its curve runs over: the loads; or the share of full slip at the load that friction is asked
- * at, from the load below it down (contact_case_point). */
-enum measure_by { BY_LOAD, BY_SLIP };
+/* What its curve runs over: the loads; the share of full slip at the load that friction is asked
+ * at, from the load below it down (contact_case_point); or how far the flat has gone under that
+ * load, with values of its own (contact_case_values). */
+enum measure_by { BY_LOAD, BY_SLIP, BY_SLIDING };
 /* Which solved realisations have a value: some; all, or a partial result is refused; some, and its
  * curve reports how many have none. */
 enum measure_values { VALUES_SOME, VALUES_ALL, VALUES_REPORTED };

@@ -54,12 +54,12 @@ struct slip {
     double *reference;                /* as that of a point */
     struct slip_point kept;
     double pressure, shear[2], flat[2]; /* of the last step */
-    double start, displacement, work; /* the flat's at the end of pressing, along the load; results
-                                         of the last load */
-    double highest;                   /* |z| */
-    size_t steps_sets, iterations;    /* of this call */
-    size_t iterations_most;           /* up to which its load may go */
-    double violation, reach;          /* and the least that counts as one */
+    double start;             /* the flat's displacement at the end of pressing, along the load */
+    double work, dissipation; /* since then */
+    double highest;           /* |z| */
+    size_t steps_sets, iterations; /* of this call */
+    size_t iterations_most;        /* up to which its load may go */
+    double violation, reach;       /* and the least that counts as one */
     bool pressed;
     int (*stop)(void *context);
     void *stop_context;
@@ -501,6 +501,16 @@ static double along_load(const struct slip *s, const double v[2]) {
     return v[0] * cos(s->options.angle) + v[1] * sin(s->options.angle);
 }
 
+/* Returns what slip of the step took, by area: from the tractions at both of its ends. */
+static double dissipated(const struct slip *s) {
+    const size_t n = s->sets.n;
+    double sum = 0;
+    for (size_t f = ALONG_X; f < slip_sets_end(&s->sets); f++)
+        for (size_t i = f * n; i < (f + 1) * n; i++)
+            sum -= (s->tractions[i] + s->kept.tractions[i]) / 2 * s->residual[i];
+    return sum / (double)n;
+}
+
 /* Goes to a pressure and a traction, in so many parts as it takes. */
 static int go(struct slip *s, double pressure, double traction, struct error *err) {
     const double pressure_from = s->pressure, traction_from = along_load(s, s->shear);
@@ -516,6 +526,7 @@ static int go(struct slip *s, double pressure, double traction, struct error *er
         s->shear[1] = shear * sin(s->options.angle);
         int status = solve_sets(s, err);
         if (status == 0) {
+            s->dissipation += dissipated(s);
             settle(s);
             reached = to;
             s->work += (shear + kept_shear) / 2 * (along_load(s, s->flat) - before);
@@ -532,6 +543,7 @@ static int go(struct slip *s, double pressure, double traction, struct error *er
 
 static void fill(struct slip *s, struct slip_state *out) {
     const size_t n = s->sets.n;
+    double all = 0, stuck = 0, gaps = 0;
     *out = (struct slip_state){.pressure = s->pressure,
                                .traction = along_load(s, s->shear),
                                .p = s->tractions,
@@ -539,14 +551,21 @@ static void fill(struct slip *s, struct slip_state *out) {
                                .qy = s->sets.fields == FIELDS ? s->tractions + 2 * n : NULL,
                                .displacement = along_load(s, s->flat) - s->start,
                                .work = s->work,
+                               .dissipation = s->dissipation,
                                .sets = s->steps_sets,
                                .iterations = s->iterations,
                                .cost = s->sets.transfer.transforms * (double)n,
                                .violation = s->violation};
     for (size_t i = 0; i < n; i++) {
+        bool sticks = out->p[i] > 0 && s->sets.node[i] == NODE_STUCK;
         out->nodes += out->p[i] > 0 ? 1 : 0;
-        out->stuck += out->p[i] > 0 && s->sets.node[i] == NODE_STUCK ? 1 : 0;
+        out->stuck += sticks ? 1 : 0;
+        all += out->p[i];
+        stuck += sticks ? out->p[i] : 0;
+        gaps += s->residual[i];
     }
+    out->stick_load = stuck / all;
+    out->mean_gap = gaps / (double)n;
     out->stick_area = out->nodes > 0 ? (double)out->stuck / (double)out->nodes : 0;
 }
 
@@ -601,7 +620,7 @@ int slip_press(struct slip *s, const double *z, double pressure, struct slip_sta
     if (status != 0)
         return status;
     s->start = along_load(s, s->flat);
-    s->work = 0;
+    s->work = s->dissipation = 0;
     s->pressed = true;
     fill(s, out);
     out->cost += cost;

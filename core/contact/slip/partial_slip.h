@@ -36,9 +36,12 @@ struct slip_state {
     const double *qx, *qy;     /* grid_points: tractions on the block; qy of profiles is NULL */
     size_t nodes, stuck;       /* with p > 0, and those of them that do not slip */
     double stick_area;         /* stuck over nodes; 0 without contact */
+    double stick_load;         /* pressures of stuck nodes over all */
+    double mean_gap;           /* the grid's length */
     double displacement;       /* of the flat over the mean plane of the face, along the load, since
                                   the end of pressing */
     double work;             /* of the traction on it, by area: E* times a length, by trapezoids */
+    double dissipation;      /* by slip, likewise */
     size_t sets, iterations; /* of this load; of linear equations */
     double cost;             /* points x transforms, as the work of contact_state */
     double violation;        /* largest, over what the tolerance refers to */

@@ -25,6 +25,8 @@ struct friction {
     struct friction_newton newton;
     struct point kept; /* of the last step that converged */
     bool pressed;
+    size_t nodes_without; /* in contact without friction, as the next: at the last pressure */
+    double gap_without;
     double start_flat, start_sliding, start_far, start_energy; /* at the end of pressing */
     double work, dissipation;                                  /* since then */
     double *start;              /* by node of the face: displacement over the flat then */
@@ -172,6 +174,8 @@ static int guess(struct friction *f, double pressure, struct friction_state *out
     out->newton += report.newton;
     if (status != 0)
         return status;
+    f->nodes_without = state.nodes;
+    f->gap_without = state.mean_gap;
     const struct newton *without = full_newton(f->full);
     if (f->kept.pressure == 0) {
         memcpy(f->newton.u, without->u, f->newton.unknowns * sizeof(double));
@@ -304,6 +308,8 @@ static void fill_state(struct friction *f, struct friction_state *out) {
     out->q = f->q;
     out->gap = f->gap;
     out->slip = f->slip;
+    out->gap_without = f->gap_without;
+    out->nodes_without = f->nodes_without;
     out->mean_gap = face_mean_gap(f->mesh, deforms ? n->u : NULL, n->gap) * f->mesh->unit;
     out->displacement = (f->kept.flat - f->start_flat) * f->mesh->unit;
     out->sliding = (flat_over_face(f) - f->start_sliding) * f->mesh->unit;

@@ -29,6 +29,8 @@ struct friction_state {
     const double *gap;
     const double *slip;   /* of the nodes in contact over the flat; NaN of others */
     double mean_gap;      /* as that of full_press */
+    double gap_without;   /* that without friction, under the same pressure */
+    size_t nodes_without; /* in contact, likewise */
     size_t nodes, stuck;  /* in contact, and those of them that do not slide */
     double stick_area;    /* stuck over nodes */
     double stick_load;    /* pressures of stuck nodes over all */

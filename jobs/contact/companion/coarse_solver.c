@@ -108,7 +108,7 @@ static int press_load(struct coarse_solver *solver, size_t k, const struct conta
 int coarse_solver_press(struct coarse_solver *solver, const double *z, double *series,
                         const struct contact_stopper *stopper, struct error *err) {
     const struct contact_case *one_case = solver->one_case;
-    const size_t n = one_case->load_count;
+    const size_t n = contact_case_slots(one_case);
     const struct measure_context context = {.one_case = one_case,
                                             .area = solver->area,
                                             .finder = solver->finder,
@@ -122,7 +122,7 @@ int coarse_solver_press(struct coarse_solver *solver, const double *z, double *s
     struct error reason = {0};
     contact_set_stop(solver->contact, stopper->stop, stopper->context);
     int status = contact_begin(solver->contact, z, &reason);
-    for (size_t k = 0; k < n && status == 0; k++) {
+    for (size_t k = 0; k < one_case->load_count && status == 0; k++) {
         struct contact_pressed pressed = {.stretch = 1, .open_stretch = 1};
         double values[MEASURE_OWN];
         status = press_load(solver, k, stopper, &pressed.state, &reason);
@@ -132,7 +132,7 @@ int coarse_solver_press(struct coarse_solver *solver, const double *z, double *s
         for (size_t a = 0; a < measure_paired(one_case) && status == 0; a++)
             series[a * n + k] = values[a];
     }
-    for (size_t k = n - 1; one_case->unloads && k-- > 0 && status == 0;) {
+    for (size_t k = one_case->load_count - 1; one_case->unloads && k-- > 0 && status == 0;) {
         struct contact_state state;
         status = press_load(solver, k, stopper, &state, &reason);
         if (status == 0)

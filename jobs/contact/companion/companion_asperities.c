@@ -87,7 +87,7 @@ static void asperities_clear(void *workspace) {
 static void press(const struct contact_case *one_case, const struct counted_asperities *asperities,
                   enum counted_theory theory, double *series) {
     for (size_t k = 0; k < one_case->load_count; k++)
-        series[MEASURE_EDGES * one_case->load_count + k] =
+        series[MEASURE_EDGES * contact_case_slots(one_case) + k] =
             counted_asperities_area(asperities, theory, one_case->loads[k]);
 }
 

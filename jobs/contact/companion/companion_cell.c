@@ -231,8 +231,8 @@ static void cell_clear(void *workspace) {
 static void scale_measures(const struct cell *cell, double *series) {
     double cells = pow(cell->plan->length, cell->one_case->surface.dimension);
     for (size_t a = 0; a < measure_paired(cell->one_case); a++)
-        for (size_t k = 0; k < cell->one_case->load_count; k++)
-            series[a * cell->one_case->load_count + k] *=
+        for (size_t k = 0; k < contact_case_slots(cell->one_case); k++)
+            series[a * contact_case_slots(cell->one_case) + k] *=
                 measure_factor(measure_row(a)->cell, cells);
 }
 
@@ -317,14 +317,22 @@ static struct change change_of(const struct contact_tally *tally, enum contact_m
                            hypot(own.mean.standard_error, other.mean.standard_error) / y};
 }
 
+/* Returns how far a load is from another, in factors of two; two points of sliding are half as far
+ * as that. */
+static double apart(const struct contact_case *one_case, enum measure_by by, size_t k,
+                    size_t load) {
+    return by == BY_SLIDING ? fabs((double)k - (double)load) / 2
+                            : fabs(log2(one_case->loads[k] / one_case->loads[load]));
+}
+
 /* Returns the own change of a load, or the part of that of a load around it that exceeds its
  * interval if that is larger, since a change vanishes where its sign changes. That part counts the
  * less the farther the load is, and from a factor of two on not at all. */
-static double change_around(const struct contact_case *one_case, const struct change *changes,
-                            size_t load) {
+static double change_around(const struct contact_case *one_case, enum measure_by by,
+                            const struct change *changes, size_t load) {
     double most = fabs(changes[load].value);
-    for (size_t k = 0; k < one_case->load_count; k++) {
-        double weight = 1 - fabs(log2(one_case->loads[k] / one_case->loads[load]));
+    for (size_t k = 0; k < contact_case_values(one_case, by); k++) {
+        double weight = 1 - apart(one_case, by, k, load);
         if (weight > 0)
             most = fmax(most, weight * (fabs(changes[k].value) - changes[k].interval));
     }
@@ -333,10 +341,10 @@ static double change_around(const struct contact_case *one_case, const struct ch
 
 /* Returns the error over the value. What a longer cell leaves of an error bounds it on both sides;
  * the change to a shorter one has no sign for longer ones. */
-static struct contact_error error_of(const struct contact_case *one_case,
+static struct contact_error error_of(const struct contact_case *one_case, enum measure_by by,
                                      const struct change *changes, double length, size_t load) {
     const struct change *own = &changes[load];
-    double around = change_around(one_case, changes, load);
+    double around = change_around(one_case, by, changes, load);
     double whole =
         contact_error_left(length, one_case->surface.dimension == 1 ? PROFILE_LEFT : SURFACE_LEFT);
     double left = length > 1 ? fmax(whole - 1, TRANSFER) : whole;
@@ -357,7 +365,8 @@ static bool cell_applies(const struct contact_case *one_case, size_t model) {
 static bool cell_errors(const struct contact_tally *tally, enum contact_measure measure,
                         size_t model, struct contact_error *out) {
     const struct contact_case *one_case = tally->one_case;
-    size_t n = one_case->load_count, finest = one_case->level_count - 1;
+    const enum measure_by by = measure_row(measure)->by;
+    size_t n = contact_case_values(one_case, by), finest = one_case->level_count - 1;
     enum companion_name length =
         contact_case_has(one_case, COMPANION_LONGER) ? COMPANION_LONGER : COMPANION_SHORTER;
     struct change changes[CONTACT_LOADS_MOST + CONTACT_LOADS_ADDED];
@@ -368,7 +377,7 @@ static bool cell_errors(const struct contact_tally *tally, enum contact_measure 
         changes[k] = change_of(tally, measure, length, k);
     for (size_t k = 0; k < n; k++) {
         double y = contact_mean(tally, measure, model, finest, k).value;
-        out[k] = error_of(one_case, changes, one_case->companions[length].length, k);
+        out[k] = error_of(one_case, by, changes, one_case->companions[length].length, k);
         out[k].value *= y;
         out[k].bound *= fabs(y);
         out[k].standard_error *= fabs(y);

@@ -90,7 +90,7 @@ static int press_own(struct law *law, const struct contact_surface *surface,
     const struct contact_case *one_case = tally->one_case;
     if (subset_has(&one_case->companions[COMPANION_PROBE].due, surface->key.realisation)) {
         memcpy(series, contact_tally_series(tally, COMPANION_PROBE, 0, 0),
-               measure_paired(one_case) * one_case->load_count * sizeof *series);
+               measure_paired(one_case) * contact_case_slots(one_case) * sizeof *series);
         return 0;
     }
     int status = contact_level_sample(&law->plan->level, &one_case->surface, law->rms_height,
@@ -131,7 +131,7 @@ bool companion_law_difference(const struct contact_tally *tally, enum contact_me
     bool any = false;
     if (measure >= MEASURE_PAIRED || !contact_case_has(one_case, COMPANION_LAW))
         return false;
-    for (size_t k = 0; k < one_case->load_count; k++) {
+    for (size_t k = 0; k < contact_case_values(one_case, measure_row(measure)->by); k++) {
         struct estimate pair =
             contact_tally_several(contact_tally_pair(tally, COMPANION_LAW, 0, measure, k));
         double factor = contact_mean(tally, measure, model, finest, k).value /

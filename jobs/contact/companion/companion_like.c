@@ -103,7 +103,7 @@ int companion_like_measure(const struct contact_case *one_case, const double *z,
                            double *gaps, struct error *err) {
     const struct contact_stopper stopper = {never, NULL};
     const struct grid grid = mirrored_grid(one_case);
-    size_t n = one_case->load_count;
+    const size_t loads = one_case->load_count, n = contact_case_slots(one_case);
     struct like like = {0};
     struct moments moments;
     double *series = array_create(n, MEASURE_PAIRED * sizeof *series);
@@ -120,8 +120,8 @@ int companion_like_measure(const struct contact_case *one_case, const double *z,
         status = coarse_solver_press(like.halfspace, like.z, series, &stopper, err);
     }
     if (status == 0) {
-        memcpy(areas, series + MEASURE_EDGES * n, n * sizeof *areas);
-        memcpy(gaps, series + MEASURE_GAP * n, n * sizeof *gaps);
+        memcpy(areas, series + MEASURE_EDGES * n, loads * sizeof *areas);
+        memcpy(gaps, series + MEASURE_GAP * n, loads * sizeof *gaps);
     }
     like_clear(&like);
     free(series);

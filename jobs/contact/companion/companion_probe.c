@@ -114,7 +114,7 @@ static int probe_solve(void *workspace, const struct contact_surface *surface,
             status = coarse_solver_press(probe->blocks[b], probe->z, series, stopper, err);
         else
             memcpy(series, companion_series(one_case, out, probe->same[b]),
-                   measure_paired(one_case) * one_case->load_count * sizeof *series);
+                   measure_paired(one_case) * contact_case_slots(one_case) * sizeof *series);
     }
     return status;
 }
@@ -129,7 +129,7 @@ static bool probe_errors(const struct contact_tally *tally, enum contact_measure
                          size_t model, struct contact_error *out) {
     const struct contact_case *one_case = tally->one_case;
     double bound = contact_case_block_bound(one_case, model);
-    for (size_t k = 0; k < one_case->load_count; k++) {
+    for (size_t k = 0; k < contact_case_values(one_case, measure_row(measure)->by); k++) {
         double y = contact_mean(tally, measure, model, one_case->level_count - 1, k).value;
         if (!block_is_low(bound)) {
             out[k] = block_error_high(y, bound);

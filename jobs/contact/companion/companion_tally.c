@@ -44,9 +44,9 @@ void companion_tally_begin(struct companion_tally *tally) {
 
 /* Computes the fits of a series of loads from its areas. */
 static void fill_fits(const struct contact_case *one_case, double *series) {
-    const size_t n = one_case->load_count;
-    contact_measure_fits(n, one_case->loads, series + MEASURE_EDGES * n, series + MEASURE_KAPPA * n,
-                         n);
+    const size_t n = contact_case_slots(one_case);
+    contact_measure_fits(one_case->load_count, one_case->loads, series + MEASURE_EDGES * n,
+                         series + MEASURE_KAPPA * n, n);
 }
 
 static void add_pair(struct companion_tally *tally, const struct contact_case *one_case,
@@ -54,7 +54,7 @@ static void add_pair(struct companion_tally *tally, const struct contact_case *o
     const double *of = companion_series(one_case, tally, plan->pairs[pair].of);
     const double *less = companion_series(one_case, tally, plan->pairs[pair].less);
     for (enum contact_measure a = 0; a < measure_paired(one_case); a++)
-        for (size_t k = 0; k < one_case->load_count; k++) {
+        for (size_t k = 0; k < contact_case_values(one_case, measure_row(a)->by); k++) {
             size_t cell = companion_cell(one_case, 0, a, k);
             contact_sums_add(&tally->differences, companion_cell(one_case, pair, a, k),
                              (of[cell] - less[cell]) * contact_sums_scale(one_case, a, k));
@@ -68,7 +68,7 @@ static void add_draw(struct companion_tally *tally, const struct contact_case *o
         double *values = companion_series(one_case, tally, series);
         fill_fits(one_case, values);
         for (enum contact_measure a = 0; a < measure_paired(one_case); a++)
-            for (size_t k = 0; k < one_case->load_count; k++)
+            for (size_t k = 0; k < contact_case_values(one_case, measure_row(a)->by); k++)
                 contact_sums_add(&tally->sums, companion_cell(one_case, series, a, k),
                                  values[companion_cell(one_case, 0, a, k)] *
                                      contact_sums_scale(one_case, a, k));

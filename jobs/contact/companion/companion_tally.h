@@ -16,7 +16,8 @@ struct companion_tally {
 /* Returns the index of a series or pair, a measure and a load. */
 static inline size_t companion_cell(const struct contact_case *one_case, size_t series,
                                     enum contact_measure measure, size_t load) {
-    return (series * measure_paired(one_case) + (size_t)measure) * one_case->load_count + load;
+    return (series * measure_paired(one_case) + (size_t)measure) * contact_case_slots(one_case) +
+           load;
 }
 /* Returns the values of a series of the draw that is being solved, by measure and load. */
 static inline double *companion_series(const struct contact_case *one_case,

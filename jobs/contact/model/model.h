@@ -83,6 +83,7 @@ struct contact_model {
     bool yields;    /* presses under a hardness (contact_case.yield) */
     bool coatings;  /* its block may have a coating */
     bool counter_faces;  /* presses the sum of two rough faces */
+    bool slides;         /* has friction of its own, at finite strain (quantity_sliding.c) */
     bool free_space;     /* presses maps that do not repeat, too: on the block's compliance there */
     double times_linear; /* least time over that of a linear model; 0: 1 */
     double default_height; /* of the block, in lengths of the cell; INFINITY */

@@ -60,15 +60,6 @@ static const char *const SCALARS[SCALAR_COUNT] = {
     [SCALAR_QUALITY] = "full_mesh_quality",
 };
 
-static struct full_options full_model_options(const struct contact_case *one_case,
-                                              const struct grid *grid) {
-    struct full_options options = FULL_DEFAULTS;
-    options.kinematics = one_case->kinematics;
-    options.transition = contact_case_transition(one_case, grid);
-    options.tolerance = one_case->tolerance;
-    return options;
-}
-
 static const char *kinematics_name(const struct contact_case *one_case) {
     return choice_name(KINEMATICS_CHOICES, (int)one_case->kinematics);
 }
@@ -119,14 +110,14 @@ static double mesh_floor(int dimension, enum measure_field field, double transit
 
 static double bytes(const struct contact_case *one_case, size_t model, const struct grid *grid) {
     const struct block *block = &one_case->blocks[model];
-    struct full_options options = full_model_options(one_case, grid);
+    struct full_options options = contact_case_full_options(one_case, grid);
     struct full_size size = cost_full_size(grid, block, &options, one_case->rms_slope);
     /* its states lend patches no memory */
     return cost_full_bytes(grid, block, &options, &size) + patch_finder_bytes(grid);
 }
 
 static double seconds(const struct contact_case *one_case, size_t model, const struct grid *grid) {
-    struct full_options options = full_model_options(one_case, grid);
+    struct full_options options = contact_case_full_options(one_case, grid);
     struct full_size size =
         cost_full_size(grid, &one_case->blocks[model], &options, one_case->rms_slope);
     return cost_full_contact(grid, &size, one_case->load_count);
@@ -150,7 +141,7 @@ static void destroy(struct contact_solver **solver) {
 static int create(struct contact_solver **out, const struct contact_case *one_case, size_t model,
                   const struct compliance *compliance, struct error *err) {
     const struct grid *grid = &compliance->grid;
-    struct full_options options = full_model_options(one_case, grid);
+    struct full_options options = contact_case_full_options(one_case, grid);
     struct contact_solver *solver = array_create(1, sizeof *solver);
     if (solver == NULL)
         return error_memory(err, sizeof *solver, "a contact solver");
@@ -214,7 +205,7 @@ static void measure(const struct model_values *values, double *out) {
 }
 
 static double nodes(const struct contact_case *one_case, size_t model, const struct grid *grid) {
-    struct full_options options = full_model_options(one_case, grid);
+    struct full_options options = contact_case_full_options(one_case, grid);
     double dimension = grid_is_profile(grid) ? 2 : 3;
     return (double)full_degrees_of_freedom(grid, &one_case->blocks[model], &options) / dimension;
 }
@@ -231,6 +222,7 @@ const struct contact_model FULL_MODEL = {
     .elements = true,
     .may_fail = true,
     .stretches = true,
+    .slides = true,
     .default_height = 1.5,
     .tolerance = 1e-9,
     .curve_count = sizeof CURVES / sizeof *CURVES,

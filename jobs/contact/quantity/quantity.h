@@ -14,7 +14,8 @@
  * behind all others. */
 #define CONTACT_QUANTITY_LIST(ENTRY)                                                               \
     ENTRY(CONDUCTANCE, 1)                                                                          \
-    ENTRY(LEAK, 7) ENTRY(HARDNESS, 5) ENTRY(UNLOAD, 3) ENTRY(FRICTION, 8) ENTRY(COUPLING, 3)
+    ENTRY(LEAK, 7)                                                                                 \
+    ENTRY(HARDNESS, 5) ENTRY(UNLOAD, 3) ENTRY(FRICTION, 8) ENTRY(COUPLING, 3) ENTRY(SLIDING, 6)
 
 /* NAME_AT: its position, as in quantities_asked. NAME_MEASURE: the number of its first measure. */
 #define CONTACT_QUANTITY_POSITION(name, count) name##_AT,
@@ -54,7 +55,13 @@ enum {
     FRICTION_RATIO,
     COUPLED_STICK = COUPLING_MEASURE,
     COUPLED_DISPLACEMENT,
-    COUPLED_AREA
+    COUPLED_AREA,
+    SLIDING_FORCE = SLIDING_MEASURE,
+    SLIDING_STICK_AREA,
+    SLIDING_STICK_LOAD,
+    SLIDING_AREA,
+    SLIDING_GAP,
+    SLIDING_DISSIPATION
 };
 
 /* What a quantity is measured on: one grid under one model. */
@@ -62,8 +69,9 @@ struct quantity_scene {
     const struct contact_case *one_case; /* borrowed, for as long as the state lives */
     struct grid grid;
     struct block block;
-    bool exact; /* by core/contact on the block itself, without a mesh */
-    bool open;  /* in free space */
+    bool exact;  /* by core/contact on the block itself, without a mesh */
+    bool open;   /* in free space */
+    bool slides; /* by the model full, with friction at finite strain */
 };
 
 struct quantity_state; /* each quantity's own */
@@ -71,10 +79,11 @@ struct quantity_state; /* each quantity's own */
 /* What scalars of a quantity are made of: one realisation of the first model on the finest level.
  */
 struct quantity_values {
-    size_t load_count;
-    const double *loads; /* p/(E* h') */
+    const struct contact_case *one_case;
+    size_t load_count;   /* contact_case_slots: room for so many values of a measure */
+    const double *loads; /* p/(E* h'); of sliding there may be more points than loads */
     const double *areas; /* by edges, a load each */
-    const double *of;    /* of its measures, by measure and load */
+    const double *of;    /* of its measures, by measure and load, or point of sliding */
 };
 
 struct contact_quantity {

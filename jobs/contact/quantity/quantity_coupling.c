@@ -36,8 +36,8 @@ static const struct parameter ROWS[] = {
      .later = true,
      .target_refusal = FRICTION_NO_TARGET,
      .example_json = "\"frictional\"",
-     .help = "with coupling: whether friction acts while the block is pressed (frictionless unless "
-             "given)"},
+     .help = "with coupling, or friction of the model full: whether it acts while the block is "
+             "pressed (frictionless unless given)"},
 };
 const struct parameter_table COUPLING_PARAMETERS = {"contact", ROWS, sizeof ROWS / sizeof *ROWS};
 
@@ -69,12 +69,14 @@ static bool asked(struct contact_case *one_case, struct values *values) {
     bool coupled = values_flag(values, COUPLING);
     if (coupled && !(one_case->friction > 0))
         values_fault(values, COUPLING, "nothing slips unless " FRICTION " is given");
-    if (!coupled && values_is_given(values, PRESSING))
-        values_fault(values, PRESSING, "%s is not asked for", COUPLING);
+    bool pressed = coupled || contact_case_slides(one_case);
+    if (!pressed && values_is_given(values, PRESSING))
+        values_fault(values, PRESSING, "%s is not asked for, nor friction of the model full",
+                     COUPLING);
+    if (pressed && values_is_given(values, PRESSING))
+        one_case->slip_pressing = values_choice(values, PRESSING) == PRESSING_FRICTIONAL;
     if (!coupled)
         return false;
-    if (values_is_given(values, PRESSING))
-        one_case->slip_pressing = values_choice(values, PRESSING) == PRESSING_FRICTIONAL;
     check(one_case, values);
     return one_case->friction > 0;
 }

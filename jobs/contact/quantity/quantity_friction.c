@@ -49,7 +49,8 @@ static const struct parameter ROWS[] = {
      .example_json = "0.2",
      .help = "coefficient of friction: the block is pressed, and a tangential load then rises to "
              "full slip; what sticks, how far it gives, and what a cycle takes, by the loads "
-             "below, to which some are added where they are far apart"},
+             "below, to which some are added where they are far apart. With the model full, of "
+             "profiles and up to 1, at finite strain by how far the flat slides"},
     {.path = "/contact/slip/pressure",
      .type = PARAMETER_NUMBER,
      .minimum = 0,
@@ -89,11 +90,8 @@ static bool asked(struct contact_case *one_case, struct values *values) {
         if (surface_case_dimension(values) == 1)
             values_fault(values, DIRECTION, "\"y\": profiles have one direction, x");
     }
+    slips = slips && !contact_case_slides(one_case); /* that is quantity_sliding.c */
     one_case->slip_measured = slips && has_lay(&one_case->surface);
-    for (size_t m = 0; slips && m < one_case->model_count; m++)
-        if (one_case->models[m]->elements && one_case->models[m]->block_of != NULL)
-            values_fault(values, FRICTION, "the model %s has none; leave one of them out",
-                         contact_model_name(one_case->models[m]));
     if (slips && contact_case_is_coated(one_case))
         values_fault(values, FRICTION,
                      "how a coating gives tangentially is not known from its contact; leave one of "

@@ -12,7 +12,7 @@ static struct quantity_values values_of(const struct contact_tally *tally, size_
                                         double *room) {
     const struct contact_case *one_case = tally->one_case;
     const double *kept = tally->rows.values + row * tally->rows.width;
-    size_t n = one_case->load_count, column;
+    size_t n = contact_case_slots(one_case), column;
     for (size_t a = 0; a <= QUANTITY_MEASURES_MOST; a++) {
         enum contact_measure measure =
             a == 0 ? MEASURE_EDGES : (enum contact_measure)(first + a - 1);
@@ -20,8 +20,11 @@ static struct quantity_values values_of(const struct contact_tally *tally, size_
         for (size_t k = 0; k < n; k++)
             room[a * n + k] = known ? kept[column + k] : (double)NAN;
     }
-    return (struct quantity_values){
-        .load_count = n, .loads = one_case->loads, .areas = room, .of = room + n};
+    return (struct quantity_values){.one_case = one_case,
+                                    .load_count = n,
+                                    .loads = one_case->loads,
+                                    .areas = room,
+                                    .of = room + n};
 }
 
 /* Appends the scalars of one quantity; columns: room for SCALARS_MOST of all realisations. */
@@ -51,7 +54,7 @@ static int put(const struct contact_tally *tally, const struct contact_quantity 
 int quantity_scalars(const struct contact_tally *tally, struct case_result *out,
                      struct error *err) {
     const struct contact_case *one_case = tally->one_case;
-    size_t loads = (QUANTITY_MEASURES_MOST + 1) * one_case->load_count;
+    size_t loads = (QUANTITY_MEASURES_MOST + 1) * contact_case_slots(one_case);
     size_t values = SCALARS_MOST * tally->rows.count;
     double *room = array_create(loads + values, sizeof *room);
     int status = room != NULL ? 0 : error_memory(err, (loads + values) * sizeof *room, "scalars");

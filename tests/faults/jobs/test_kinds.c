@@ -47,8 +47,10 @@ static const char TWO_FACES[] =
     "[0.1]}}}";
 static const char FULL[] =
     "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 2, \"length_ratio\": 1,"
-    " \"points_per_wavelength\": 4, \"rms_slope\": 0.3}, \"contact\": {\"model\": [\"full\"],"
-    " \"levels\": [4], \"block_height\": {\"lengths\": 1}, \"pressures\": {\"values\": [0.05]}}}";
+    " \"points_per_wavelength\": 4, \"rms_slope\": 0.3}, \"contact\": {\"model\": [\"halfspace\", "
+    "\"full\"],"
+    " \"friction\": 0.3, \"slip\": {\"to\": [0.3], \"steps\": 2}, \"levels\": [4], "
+    "\"block_height\": {\"lengths\": 1}, \"pressures\": {\"values\": [0.05]}}}";
 
 /* What a kind says of a case, with its faults. */
 static int check_case(void *context, struct error *err) {

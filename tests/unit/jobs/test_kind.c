@@ -135,6 +135,7 @@ static void readers_and_rows_agree(void **state) {
                                           "jobs/contact/quantity/quantity_friction.c",
                                           "jobs/contact/quantity/quantity_hardness.c",
                                           "jobs/contact/quantity/quantity_leak.c",
+                                          "jobs/contact/quantity/quantity_sliding.c",
                                           "jobs/contact/quantity/quantity_unload.c"};
     const char *source = getenv("RUGO_SOURCE");
     if (source == NULL) { /* it is set by tests/run-tests */

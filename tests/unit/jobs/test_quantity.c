@@ -430,15 +430,14 @@ static void what_does_not_fit_is_refused(void **state) {
            "\"rms_slope\": 0.1, \"young\": 1, \"poisson\": 0.2",
            "/counter_surface/poisson: 0.2: how both bodies give along the face is known of one "
            "Poisson's ratio, that of /contact/poisson; allowed with friction: the same, or none");
-    refuse("\"friction\": 0.1, \"model\": [\"halfspace\", \"full\"]",
-           "/contact/friction: the model full has none; leave one of them out");
     refuse("\"friction\": 0.1, \"coating\": {\"thickness\": 1, \"modulus\": 2}",
            "/contact/friction: how a coating gives tangentially is not known from its contact; "
            "leave one of them out");
     refuse("\"slip\": {\"coupling\": true}",
            "/contact/slip/coupling: nothing slips unless /contact/friction is given");
     refuse("\"friction\": 0.1, \"slip\": {\"pressing\": \"frictional\"}",
-           "/contact/slip/pressing: /contact/slip/coupling is not asked for");
+           "/contact/slip/pressing: /contact/slip/coupling is not asked for, nor friction of the "
+           "model full");
     refuse("\"friction\": 0.1, \"slip\": {\"coupling\": true}, \"hardness\": 1",
            "/contact/slip/coupling: a block that yields has none; leave one of them out");
     refuse("\"friction\": 0.1, \"slip\": {\"coupling\": true}, \"block_height\": {\"lengths\": 1}",

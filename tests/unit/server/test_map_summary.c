@@ -109,8 +109,7 @@ static void faults_fit_on_it_too(void **state) {
     char *text = summary_of(&record);
     check_screen(text);
     expect(text, (const char *const[]){"; open; 12.5 % not measured\n", "Heights: kurtosis ",
-                                       "Directions: they differ (p-value ",
-                                       " times as long at ",
+                                       "Directions: they differ (p-value ", " times as long at ",
                                        "Parts: they differ (p-value ", NULL});
     free(text);
 }

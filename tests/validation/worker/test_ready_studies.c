@@ -44,6 +44,7 @@ static void ready_studies(void **state) {
                    {"rce-weibull-2d-full", 20, 512, 20},
                    {"rce-slope", 6, 256, 20},
                    {"rce-3d-full", 2, 16, 10},
+                   {"rce-friction", 12, 128, 20},
                    {"rce-length", 18, 2048, 2000},
                    {"rce-length-3d", 12, 256, 100},
                    {"rce-amplitudes", 6, 1024, 2000},

@@ -1,0 +1,177 @@
+/* The flat is dragged by displacements over the far side of the block: neither the traction nor the
+ * sliding can drive it where all of the face sticks, or slides. Most of a displacement shears the
+ * block at first. So steps are chosen by how far the flat slid in the one before, and none is
+ * longer than an even part of the path with that shear. */
+#include "jobs/contact/quantity/sliding_full.h"
+#include "core/cost.h"
+#include "core/full/friction/friction.h"
+#include <math.h>
+#include <stdlib.h>
+
+/* Friction while pressing acts in so many steps, as on half-spaces. */
+enum { PRESS_STEPS = 10 };
+/* The longest step is this part of the path with the shear; a path ends in vain after so many
+ * times its points, and these. */
+enum { STEPS_LEAST = 16, STEPS_TIMES = 20 };
+/* Of estimates: steps beside those, and the sliding to full slip over the coefficient. */
+enum { STEPS_BESIDE = 4 };
+static const double SLIP_EXPECTED = 1.6;
+/* The least step, over the longest; how near a point may be that a step aims at, over what lies
+ * between points. */
+static const double STEP_LEAST = 1e-3, AIM_LEAST = 0.5;
+
+struct sliding_full {
+    struct friction *friction; /* owned */
+    struct block block;
+    struct friction_state state; /* of the last step */
+    double displacement;         /* of the flat then */
+};
+
+void sliding_full_destroy(struct sliding_full **sliding) {
+    if (*sliding != NULL)
+        friction_destroy(&(*sliding)->friction);
+    free(*sliding);
+    *sliding = NULL;
+}
+
+int sliding_full_create(struct sliding_full **out, const struct quantity_scene *scene,
+                        struct error *err) {
+    const struct contact_case *one_case = scene->one_case;
+    const struct full_options options = contact_case_full_options(one_case, &scene->grid);
+    const struct friction_options friction = {.coefficient = one_case->friction,
+                                              .press_steps =
+                                                  one_case->slip_pressing ? PRESS_STEPS : 0};
+    struct sliding_full *made = array_create(1, sizeof *made);
+    if (made == NULL)
+        return error_memory(err, sizeof *made, "sliding at finite strain");
+    made->block = scene->block;
+    int status =
+        friction_create(&made->friction, &scene->grid, &made->block, &options, &friction, err);
+    if (status != 0)
+        sliding_full_destroy(&made);
+    *out = made;
+    return status;
+}
+
+/* The mean gap is that of the held load without friction, with what friction changes of it. */
+static struct sliding_sample sample_of(const struct sliding_full *sliding,
+                                       const struct measure_context *context,
+                                       const struct sliding_record *record) {
+    const struct friction_state *state = &sliding->state;
+    const size_t held = context->one_case->slip_load;
+    const double values[SLIDING_VALUES] = {
+        [SAMPLE_FORCE] = state->traction / state->pressure,
+        [SAMPLE_STICK_AREA] = state->stick_area,
+        [SAMPLE_STICK_LOAD] = state->stick_load,
+        [SAMPLE_AREA] = (double)state->nodes / (double)state->nodes_without,
+        [SAMPLE_GAP] = record->values[MEASURE_GAP * record->stride + held] +
+                       (state->mean_gap - state->gap_without) / context->rms_height,
+        [SAMPLE_DISSIPATION] = state->dissipation / (context->rms_slope * context->rms_height)};
+    struct sliding_sample out = {.sliding = state->sliding / context->rms_height};
+    for (size_t a = 0; a < SLIDING_VALUES; a++)
+        out.of[a] = values[a];
+    return out;
+}
+
+/* Returns how far the far side lags at most where all of the face slides, Q h/G with G of the block
+ * undeformed (E* = 1). */
+static double shear_most(const struct sliding_full *sliding, double pressure, double friction) {
+    return friction * pressure * sliding->block.height * 2 / (1 - sliding->block.poisson);
+}
+
+/* Returns the point that a step is to reach: the next one, or where that is near the one behind. */
+static size_t aim_of(const struct sliding_record *record, double sliding) {
+    const double *at = record->one_case->slide;
+    const size_t next = record->next;
+    bool near = fabs(at[next] - sliding) < AIM_LEAST * fabs(at[next] - at[next - 1]);
+    return near && next < sliding_record_turn(record) ? next + 1 : next;
+}
+
+/* Drags the flat to the next turning point. Where all of the face slides, nothing changes any more
+ * but the work. */
+static int drag(struct sliding_full *sliding, const struct measure_context *context,
+                struct sliding_record *record, struct error *err) {
+    const struct contact_case *one_case = context->one_case;
+    const double *at = one_case->slide, height = context->rms_height;
+    const size_t first = record->next - 1, turn = sliding_record_turn(record);
+    const double span = at[turn] - at[first], forward = span > 0 ? 1 : -1;
+    const double shear =
+        (first > 0 ? 2 : 1) * shear_most(sliding, sliding->state.pressure, one_case->friction);
+    const double whole = fabs(span) * height + shear, most = whole / STEPS_LEAST;
+    const double first_step = fmin(most, whole / (double)one_case->slide_steps);
+    double rate = 0; /* sliding over displacement */
+    bool slides = false;
+    for (size_t step = 0; record->next <= turn; step++) {
+        const double before = sliding->state.sliding;
+        const size_t aim = slides ? turn : aim_of(record, before / height);
+        const double next = forward * (at[aim] * height - before);
+        double by = slides ? next : rate > 0 ? fmin(most, next / rate) : first_step;
+        by = fmax(by, STEP_LEAST * most);
+        if (step > STEPS_TIMES * (one_case->slide_steps + STEPS_LEAST))
+            return error_set(err, ERROR_NUMERIC, "the flat did not slide on in %zu steps", step);
+        int status = friction_drag(sliding->friction, sliding->displacement + forward * by,
+                                   &sliding->state, err);
+        if (status != 0)
+            return status;
+        sliding->displacement += forward * by;
+        rate = forward * (sliding->state.sliding - before) / by;
+        slides = sliding->state.stuck == 0;
+        const struct sliding_sample sample = sample_of(sliding, context, record);
+        sliding_record_add(record, &sample);
+    }
+    return 0;
+}
+
+int sliding_full_solve(struct sliding_full *sliding, const struct measure_context *context,
+                       const double *z, struct sliding_record *record, struct error *err) {
+    const struct contact_case *one_case = context->one_case;
+    const double load = one_case->loads[one_case->slip_load];
+    friction_set_stop(sliding->friction, context->stop, context->stop_context);
+    sliding->displacement = 0;
+    int status = friction_begin(sliding->friction, z, err);
+    if (status == 0)
+        status = friction_press(sliding->friction, load * context->rms_slope, &sliding->state, err);
+    if (status != 0) {
+        error_context(err, "load %g with friction", load);
+        return status;
+    }
+    const struct sliding_sample start = sample_of(sliding, context, record);
+    sliding_record_begin(record, &start);
+    while (!sliding_record_is_full(record) && status == 0)
+        status = drag(sliding, context, record, err);
+    if (status != 0)
+        error_context(err, "load %g, slid %.4g of %g", load, record->last.sliding,
+                      one_case->slide[sliding_record_turn(record)]);
+    return status;
+}
+
+/* --- cost --- */
+
+double sliding_full_bytes(const struct quantity_scene *scene) {
+    const struct contact_case *one_case = scene->one_case;
+    const struct full_options options = contact_case_full_options(one_case, &scene->grid);
+    const struct full_size size =
+        cost_full_size(&scene->grid, &scene->block, &options, one_case->rms_slope);
+    return cost_friction_bytes(&scene->grid, &scene->block, &options, &size);
+}
+
+/* Returns the steps along the whole path. */
+static double steps_expected(const struct contact_case *one_case) {
+    const size_t steps = one_case->slide_steps;
+    double all = 0;
+    for (size_t turn = 0; turn + 1 < one_case->slide_count; turn += steps) {
+        double slips = (turn > 0 ? 2 : 1) * SLIP_EXPECTED * one_case->friction;
+        double span = fabs(one_case->slide[turn + steps] - one_case->slide[turn]);
+        all += STEPS_BESIDE + fmax(STEPS_LEAST, (double)steps * fmin(1, slips / span));
+    }
+    return all;
+}
+
+double sliding_full_seconds(const struct quantity_scene *scene) {
+    const struct contact_case *one_case = scene->one_case;
+    const struct full_options options = contact_case_full_options(one_case, &scene->grid);
+    const struct full_size size =
+        cost_full_size(&scene->grid, &scene->block, &options, one_case->rms_slope);
+    const double steps = steps_expected(one_case) + (one_case->slip_pressing ? PRESS_STEPS : 0);
+    return cost_full_contact(&scene->grid, &size, 1) + cost_friction_steps(&size, steps);
+}

@@ -1,0 +1,113 @@
+#include "jobs/contact/quantity/sliding_linear.h"
+#include "core/contact/slip/partial_slip.h"
+#include "core/cost.h"
+#include <math.h>
+
+/* Friction while pressing acts in so many steps (quantity_coupling.c). Tractions rise in even
+ * steps, so many at least, and then halve what is left to full slip. */
+enum { PRESS_STEPS = 10, STEPS_LEAST = 10, HALVES = 3 };
+/* Above it nodes that hardly stick near full slip are lost among others. */
+static const double TOLERANCE_MOST = 1e-4;
+
+bool sliding_linear_follows(const struct contact_case *one_case) {
+    return one_case->slide_count == one_case->slide_steps + 1;
+}
+
+int sliding_linear_create(struct slip **out, const struct quantity_scene *scene,
+                          struct error *err) {
+    const struct contact_case *one_case = scene->one_case;
+    struct slip_options options = SLIP_DEFAULTS;
+    options.poisson = scene->block.poisson;
+    options.friction = one_case->friction;
+    options.press_steps = one_case->slip_pressing ? PRESS_STEPS : 0;
+    options.tolerance = fmin(one_case->tolerance, TOLERANCE_MOST);
+    return slip_create(out, &scene->grid, &options, err);
+}
+
+static size_t steps_of(const struct contact_case *one_case) {
+    return one_case->slide_steps > STEPS_LEAST ? one_case->slide_steps : STEPS_LEAST;
+}
+
+/* Goes on to full slip from a state near it, and along with it: what sticks is a small part that
+ * falls evenly. */
+static void slide_on(struct sliding_record *record, double forward, double share, double rate) {
+    const struct contact_case *one_case = record->one_case;
+    const double end = one_case->slide[one_case->slide_count - 1];
+    const double work = one_case->friction * one_case->loads[one_case->slip_load];
+    struct sliding_sample sample = record->last;
+    double step = (1 - share) * rate;
+    sample.sliding += step;
+    sample.of[SAMPLE_FORCE] = forward * one_case->friction;
+    sample.of[SAMPLE_STICK_AREA] = sample.of[SAMPLE_STICK_LOAD] = 0;
+    sample.of[SAMPLE_DISSIPATION] += work * fabs(step);
+    sliding_record_add(record, &sample);
+    step = fmax(0, forward * (end - sample.sliding));
+    sample.sliding += forward * step;
+    sample.of[SAMPLE_DISSIPATION] += work * step;
+    sliding_record_add(record, &sample);
+}
+
+/* Returns the traction of a step over that of full slip. */
+static double share_at(size_t step, size_t steps) {
+    double even = 1 / (double)steps;
+    return step < steps ? (double)step * even : 1 - even * ldexp(1, (int)(steps - 1) - (int)step);
+}
+
+/* gap_without: the mean gap that the block was pressed to. */
+static struct sliding_sample sample_of(const struct slip_state *state, double gap_without,
+                                       const struct measure_context *context,
+                                       const struct sliding_record *record) {
+    const size_t held = context->one_case->slip_load;
+    const double touching = record->values[MEASURE_NODES * record->stride + held] * context->points;
+    struct sliding_sample out = sliding_sample_none();
+    out.sliding = state->displacement / context->rms_height;
+    out.of[SAMPLE_FORCE] = state->traction / state->pressure;
+    out.of[SAMPLE_STICK_AREA] = state->stick_area;
+    out.of[SAMPLE_STICK_LOAD] = state->stick_load;
+    out.of[SAMPLE_AREA] = (double)state->nodes / touching;
+    if (!context->one_case->slip_pressing) /* else that without friction is not known */
+        out.of[SAMPLE_GAP] = record->values[MEASURE_GAP * record->stride + held] +
+                             (state->mean_gap - gap_without) / context->rms_height;
+    out.of[SAMPLE_DISSIPATION] = state->dissipation / (context->rms_slope * context->rms_height);
+    return out;
+}
+
+int sliding_linear_solve(struct slip *slip, const struct measure_context *context, const double *z,
+                         struct sliding_record *record, struct error *err) {
+    const struct contact_case *one_case = context->one_case;
+    const size_t steps = steps_of(one_case), last = steps - 1 + HALVES;
+    const double forward = one_case->slide[1] > 0 ? 1 : -1;
+    const double pressure = one_case->loads[one_case->slip_load] * context->rms_slope;
+    struct slip_state state;
+    double rate = 0; /* sliding over the share of full slip */
+    slip_set_stop(slip, context->stop, context->stop_context);
+    int status = slip_press(slip, z, pressure, &state, err);
+    if (status != 0)
+        return status;
+    const double gap = state.mean_gap;
+    struct sliding_sample sample = sample_of(&state, gap, context, record);
+    sliding_record_begin(record, &sample);
+    for (size_t step = 1; step <= last && !sliding_record_is_full(record); step++) {
+        double share = share_at(step, steps), from = record->last.sliding;
+        status = slip_load(slip, forward * share * one_case->friction * pressure, &state, err);
+        if (status != 0)
+            return status;
+        sample = sample_of(&state, gap, context, record);
+        rate = (sample.sliding - from) / (share - share_at(step - 1, steps));
+        sliding_record_add(record, &sample);
+    }
+    if (!sliding_record_is_full(record))
+        slide_on(record, forward, share_at(last, steps), rate);
+    return 0;
+}
+
+double sliding_linear_bytes(const struct quantity_scene *scene) {
+    return slip_bytes(&scene->grid);
+}
+
+double sliding_linear_seconds(const struct quantity_scene *scene) {
+    static const double TIMES = 2; /* the transforms of contact, as coupled slip */
+    const struct contact_case *one_case = scene->one_case;
+    const size_t loads = steps_of(one_case) + HALVES + (one_case->slip_pressing ? PRESS_STEPS : 0);
+    return TIMES * cost_linear_contact(&scene->grid, one_case->tolerance, loads);
+}
