@@ -122,7 +122,7 @@ struct calibration {
     struct like_table *table; /* borrowed, as the next fields */
     const struct map_spectrum *rings;
     const struct grid *cell;
-    const double *squares; /* LIKE_MOMENTS: of the map */
+    double *squares; /* LIKE_MOMENTS: of the map */
     struct like_expectation *expectation;
     double *density, *wanted, *expected; /* of rings; of rows */
     struct like_waves *waves;
@@ -178,19 +178,67 @@ static int measure_left(const struct calibration *c, struct like_left *left, str
     return status;
 }
 
-static int calibrate(struct calibration *c, struct like_left *left, struct error *err) {
+/* Returns the density of the map over that of the surfaces, by the waves that make the slope. */
+static int measure_scale(const struct calibration *c, const struct spectrum *spectrum,
+                         double *scale, struct error *err) {
+    const int power = grid_is_profile(c->cell) ? 3 : 4; /* rows are even in logarithms */
+    double map = 0, surfaces = 0;
+    int status = like_expectation_rings(c->expectation, spectrum, c->density, err);
+    if (status == 0)
+        status = like_table_rows(c->table, c->rings, c->density, c->expected, err);
+    for (size_t row = 0; status == 0 && row < c->table->count; row++) {
+        const double weight = pow(c->table->wave_number[row] / c->table->highest, power);
+        if (!isfinite(c->expected[row]))
+            continue;
+        map += weight * c->wanted[row];
+        surfaces += weight * c->expected[row];
+    }
+    *scale = map / surfaces;
+    return status;
+}
+
+/* Takes the noise out of the mean squares: of the height as white, for slope and curvature by what
+ * surfaces of these rings have. */
+static int squares_without(struct calibration *c, const struct like_noise *noise,
+                           struct error *err) {
+    const struct grid *grid = &c->rings->modes.grid;
+    const double whole = 2 * M_PI / grid_dx(grid); /* of wave numbers, along an axis */
+    const double power = noise->density * (grid_is_profile(grid) ? whole : whole * whole);
+    struct spectrum spectrum;
+    double scale;
+    int status = spectrum_of(c, &spectrum, err);
+    if (status == 0)
+        status = measure_scale(c, &spectrum, &scale, err);
+    if (status == 0)
+        status = like_expectation_waves(c->expectation, &spectrum, c->waves, err);
+    if (status == 0 && !(c->squares[0] > power))
+        return error_set(err, ERROR_INPUT,
+                         "the map has no more than noise: RMS height %g, noise %g",
+                         sqrt(c->squares[0]), sqrt(power));
+    c->squares[0] -= power;
+    for (int m = 1; status == 0 && m < LIKE_MOMENTS; m++) {
+        c->squares[m] = 0;
+        for (size_t n = 0; n < LIKE_WAVES; n++)
+            c->squares[m] += scale * c->waves[n].squares[m];
+    }
+    return status;
+}
+
+static int calibrate(struct calibration *c, const struct like_noise *noise, struct like_left *left,
+                     struct error *err) {
     int status = 0;
     for (int round = 0; round < ROUNDS_OF_ROWS && status == 0; round++)
         status = calibrate_rows(c, err);
+    if (status == 0 && noise->density > 0)
+        status = squares_without(c, noise, err);
     for (int round = 0; round < ROUNDS_OF_MOMENTS && status == 0; round++)
         status = calibrate_moments(c, err);
     return status == 0 ? measure_left(c, left, err) : status;
 }
 
 int like_table_calibrate(struct like_table *table, const struct map_spectrum *rings,
-                         enum detrend kind, const struct grid *cell,
-                         const double squares[LIKE_MOMENTS], struct like_left *left,
-                         struct error *err) {
+                         enum detrend kind, const struct grid *cell, const struct like_noise *noise,
+                         double squares[LIKE_MOMENTS], struct like_left *left, struct error *err) {
     double *wanted = array_create(2 * table->count, sizeof *wanted);
     struct calibration c = {.table = table,
                             .rings = rings,
@@ -206,7 +254,7 @@ int like_table_calibrate(struct like_table *table, const struct map_spectrum *ri
         c.expected = wanted + table->count;
         for (size_t row = 0; row < table->count; row++)
             wanted[row] = table->density[row];
-        status = calibrate(&c, left, err);
+        status = calibrate(&c, noise, left, err);
     }
     like_expectation_destroy(&c.expectation);
     free(wanted);

@@ -57,7 +57,8 @@ struct fit {
     struct map_spectrum *circles;  /* owned, as the next: of the map */
     struct map_spectrum *ellipses; /* along its lay; NULL where it has none */
     struct spectrum_fit law;
-    double rms_slope; /* of random surfaces on the cell */
+    double rms_slope;   /* of random surfaces on the cell */
+    bool without_noise; /* which the map has */
 };
 
 /* --- the map --- */
@@ -274,6 +275,22 @@ static bool put_measured(cJSON *like, const struct fit *fit) {
     return put;
 }
 
+/* What was done to the map, and to its spectrum. */
+static bool put_prepared(cJSON *like, const struct fit *fit) {
+    static const char NOISE[] = "noise: taken out of the spectrum, and waves below its reach";
+    const char *prepared = fit->source->prepared;
+    const size_t size = strlen(prepared) + sizeof NOISE + 2;
+    if (!fit->without_noise)
+        return field_put_text(like, "prepared", prepared);
+    char *text = array_create(size, 1);
+    if (text == NULL)
+        return false;
+    snprintf(text, size, "%s%s%s", prepared, *prepared != '\0' ? "; " : "", NOISE);
+    bool put = field_put_text(like, "prepared", text);
+    free(text);
+    return put;
+}
+
 static bool put_marks(cJSON *like, const struct fit *fit) {
     const struct like_source *source = fit->source;
     const struct grid *grid = fit->map.grid;
@@ -283,8 +300,7 @@ static bool put_marks(cJSON *like, const struct fit *fit) {
     return field_put_text(like, "file", source->file) &&
            field_put_text(like, "sha256", source->sha256) &&
            field_put_count(like, "bytes", source->bytes) &&
-           field_put_text(like, "format", source->format) &&
-           field_put_text(like, "prepared", source->prepared) &&
+           field_put_text(like, "format", source->format) && put_prepared(like, fit) &&
            field_put_text(like, "unit", fit->unit) &&
            field_put(like, "wavelength", json_number(fit->wavelength)) &&
            field_put(like, "spacing", json_number(grid_dx(grid) / fit->wavelength)) &&
@@ -319,23 +335,32 @@ static int check_left(const struct like_left *left, struct error *err) {
         WHAT[left->moment], 100 * left->relative, 100 * MOST);
 }
 
+/* Noise counts where it governs the curvature of the map. */
+static struct like_noise noise_of(const struct fit *fit) {
+    const double share =
+        spectrum_fit_noise_share(&fit->law, fit->map.grid, fit->measured[PATCH_RMS_CURVATURE]);
+    return (struct like_noise){share > NOISE_SHARE_MOST ? fit->law.noise : 0,
+                               2 * M_PI / fit->law.trusted_to};
+}
+
 static int fit_table(cJSON *surface, struct fit *fit, struct error *err) {
-    const double squares[LIKE_MOMENTS] = {pow(fit->measured[PATCH_RMS_HEIGHT], 2),
-                                          pow(fit->measured[PATCH_RMS_SLOPE], 2),
-                                          pow(fit->measured[PATCH_RMS_CURVATURE], 2)};
+    double squares[LIKE_MOMENTS] = {pow(fit->measured[PATCH_RMS_HEIGHT], 2),
+                                    pow(fit->measured[PATCH_RMS_SLOPE], 2),
+                                    pow(fit->measured[PATCH_RMS_CURVATURE], 2)};
     const struct map_spectrum *rings = fit->ellipses != NULL ? fit->ellipses : fit->circles;
+    const struct like_noise noise = noise_of(fit);
     struct like_left left;
-    int status = like_table_measure(&fit->table, rings, err);
+    int status = like_table_measure(&fit->table, rings, &noise, err);
     if (status == 0)
-        status = like_table_calibrate(&fit->table, rings, fit->source->detrend, &fit->cell, squares,
-                                      &left, err);
+        status = like_table_calibrate(&fit->table, rings, fit->source->detrend, &fit->cell, &noise,
+                                      squares, &left, err);
+    fit->without_noise = noise.density > 0;
     if (status == 0)
         status = check_left(&left, err);
     if (status != 0)
         return status;
     fit->wavelength = 2 * M_PI / fit->table.highest;
-    status = like_table_slope(&fit->table, &fit->cell, fit->measured[PATCH_RMS_SLOPE],
-                              &fit->rms_slope, err);
+    status = like_table_slope(&fit->table, &fit->cell, sqrt(squares[1]), &fit->rms_slope, err);
     if (status == 0 && !(put_spectrum(surface, fit) && put_scale(surface, fit)))
         status = error_memory(err, fit->table.count * sizeof(double), "a table spectrum");
     return status;

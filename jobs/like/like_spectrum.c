@@ -106,8 +106,18 @@ static int rows_fill(struct like_table *out, const struct map_spectrum *rings,
 }
 
 int like_table_measure(struct like_table *out, const struct map_spectrum *rings,
-                       struct error *err) {
-    return rows_fill(out, rings, rings->density, rings->rings, 0, err);
+                       const struct like_noise *noise, struct error *err) {
+    static const double LEAST = 0.05; /* of what was measured: what is left has an error, too */
+    if (noise->density == 0)
+        return rows_fill(out, rings, rings->density, rings->rings, 0, err);
+    double *rest = array_create(rings->rings, sizeof *rest);
+    if (rest == NULL)
+        return error_memory(err, rings->rings * sizeof *rest, "a spectral density");
+    for (size_t r = 0; r < rings->rings; r++)
+        rest[r] = fmax(rings->density[r] - noise->density, LEAST * rings->density[r]);
+    int status = rows_fill(out, rings, rest, rings->rings, noise->wave_number, err);
+    free(rest);
+    return status;
 }
 
 int like_table_rows(const struct like_table *table, const struct map_spectrum *rings,

@@ -263,19 +263,40 @@ static double power_integral(double power, double low, double high) {
                                   : (pow(high, power + 1) - pow(low, power + 1)) / (power + 1);
 }
 
-/* Returns the logarithm of the mean square height (order 0) or slope (2) of a law, its wave
- * numbers being in waves per side, from lowest to highest, or the law's own ends. */
+/* Orders of the moments of a law: mean squares of |k|^0, |k| and |k|^2 times the height. */
+enum { MOMENTS = 3 };
+
+/* Returns what an order is over that of the same density over circles: by the area of ellipses, and
+ * along the lay by k over k'. Of profiles 1. */
+static double lay_share(const struct lay *lay, int order) {
+    const double square = 1 / (lay->ratio * lay->ratio);
+    const double along = order == 0   ? 1
+                         : order == 1 ? (1 + square) / 2
+                                      : 3 * (1 + square * square) / 8 + square / 4;
+    return along / lay->ratio;
+}
+
+/* Returns how the logarithm of an order changes with that of the ratio, for ellipses of one area.
+ */
+static double lay_slope(const struct lay *lay, int order) {
+    static const double STEP = 1e-4;
+    struct lay wider = *lay;
+    wider.ratio *= 1 + STEP;
+    return (log(lay_share(&wider, order) / lay_share(lay, order)) + (order + 1) * log1p(STEP)) /
+           log1p(STEP);
+}
+
+/* Returns the logarithm of a moment of a law, its wave numbers being in waves per side, from lowest
+ * to highest, or the law's own ends. */
 static double log_moment(const struct law_problem *problem, const double *p, int order,
                          double lowest, double highest) {
     bool profile = problem->dimension == 1;
     double fall = problem->dimension + 2 * p[LAW_HURST], begin = exp(p[LAW_ROLLOFF]);
     double low = lowest > 0 ? lowest : exp(p[LAW_LONG]);
     double high = highest > 0 ? highest : exp(p[LAW_SHORT]);
-    const double ratio =
-        problem->spectrum->lay.ratio; /* by which areas and, along, slopes are less */
-    double lay = profile ? 1 : (order == 0 ? 1 : (1 + 1 / (ratio * ratio)) / 2) / ratio;
-    double scale = lay * pow(2 * M_PI / problem->spectrum->side, problem->dimension + order);
-    double weight = (profile ? 0 : 1) + order, knee = fmin(fmax(begin, low), high);
+    double scale = (profile ? 1 : lay_share(&problem->spectrum->lay, order)) *
+                   pow(2 * M_PI / problem->spectrum->side, problem->dimension + 2 * order);
+    double weight = (profile ? 0 : 1) + 2 * order, knee = fmin(fmax(begin, low), high);
     double flat = power_integral(weight, low, knee) * pow(begin / problem->reference, -fall);
     double falling = power_integral(weight - fall, knee, high) * pow(problem->reference, fall);
     return p[LAW_AMPLITUDE] + log((profile ? 2 : 2 * M_PI) * scale * (flat + falling));
@@ -289,38 +310,60 @@ static struct interval about(double logarithm, double error) {
                              error < TOLD ? exp(logarithm + SCORE * error) : NONE};
 }
 
-/* The root of a mean square, with its error by those of the law. */
-static struct interval moment(const struct fitted *fitted, const struct spectrum_fit *fit,
-                              int order) {
-    static const double STEP = 1e-5;
-    const struct law *law = &fitted->plain;
-    double side = fitted->problem->spectrum->side, slope[LAW_PARAMETERS], variance = 0;
+/* The logarithm of a product of powers of the moments. */
+static double log_product(const struct fitted *fitted, const struct spectrum_fit *fit,
+                          const struct law *law, const double powers[MOMENTS]) {
+    double side = fitted->problem->spectrum->side, total = 0;
     double low = law->free[LAW_LONG] ? 0 : side / fit->longest;
     double high = law->free[LAW_SHORT] ? 0 : side / fit->shortest;
-    double value = log_moment(fitted->problem, law->p, order, low, high);
+    for (int order = 0; order < MOMENTS; order++)
+        if (powers[order] != 0)
+            total += powers[order] * log_moment(fitted->problem, law->p, order, low, high);
+    return total;
+}
+
+/* A factor times a product of powers of the moments, with its error by those of the law and of its
+ * lay. */
+static struct interval product(const struct fitted *fitted, const struct spectrum_fit *fit,
+                               double factor, const double powers[MOMENTS]) {
+    static const double STEP = 1e-5;
+    const struct law *law = &fitted->plain;
+    const struct lay *lay = &fitted->problem->spectrum->lay;
+    double slope[LAW_PARAMETERS], variance = 0, by_lay = 0;
+    double value = log_product(fitted, fit, law, powers);
     for (size_t a = 0; a < LAW_PARAMETERS; a++) {
         struct law moved = *law;
         moved.p[a] += STEP;
-        slope[a] = law->free[a]
-                       ? (log_moment(fitted->problem, moved.p, order, low, high) - value) / STEP
-                       : 0;
+        slope[a] = law->free[a] ? (log_product(fitted, fit, &moved, powers) - value) / STEP : 0;
     }
     for (size_t a = 0; a < LAW_PARAMETERS; a++)
         for (size_t b = 0; b < LAW_PARAMETERS; b++)
             variance += slope[a] * fitted->covariance[a][b] * slope[b];
     variance *= fitted->widening;
-    /* of what the ratio of the lay changes: ellipses of the same area keep the height */
-    const struct lay *lay = &fitted->problem->spectrum->lay;
-    const double square = lay->ratio * lay->ratio;
-    const double by_lay = order == 2 ? (square - 1) / (square + 1) * lay->ratio_error : 0;
-    struct interval interval = about(value / 2, sqrt(variance + by_lay * by_lay) / 2);
+    for (int order = 1; order < MOMENTS && !lay_is_plain(lay); order++)
+        by_lay += powers[order] * lay_slope(lay, order) * lay->ratio_error;
+    struct interval interval = about(log(factor) + value, sqrt(variance + by_lay * by_lay));
     if (isnan(fit->rolloff_wavelength.value) && fit->rolloff_wavelength.low < fit->longest) {
         /* a roll-off may lie beyond the longest waves that are seen */
         struct law bent = *law;
-        bent.p[LAW_ROLLOFF] = log(side / fit->rolloff_wavelength.low);
-        interval.low *= exp((log_moment(fitted->problem, bent.p, order, low, high) - value) / 2);
+        bent.p[LAW_ROLLOFF] = log(fitted->problem->spectrum->side / fit->rolloff_wavelength.low);
+        interval.low *= fmin(exp(log_product(fitted, fit, &bent, powers) - value), 1);
     }
     return interval;
+}
+
+static void fill_moments(const struct fitted *fitted, struct spectrum_fit *out) {
+    static const double HEIGHT[] = {0.5, 0, 0}, SLOPE[] = {0, 0.5, 0}, CURVATURE[] = {0, 0, 0.5},
+                        ALPHA[] = {1, -2, 1}, DENSITY[] = {0, -1, 1}, PEAKS[] = {0, -0.5, 0.5};
+    const bool profile = out->profile;
+    out->rms_height = product(fitted, out, 1, HEIGHT);
+    out->rms_slope = product(fitted, out, 1, SLOPE);
+    out->rms_curvature = product(fitted, out, profile ? 1 : 0.5, CURVATURE);
+    if (!lay_is_plain(&fitted->problem->spectrum->lay))
+        return;
+    out->nayak_alpha = product(fitted, out, profile ? 1 : 1.5, ALPHA);
+    out->summit_density = profile ? product(fitted, out, 1 / (2 * M_PI), PEAKS)
+                                  : product(fitted, out, 0.75 / (6 * M_PI * sqrt(3)), DENSITY);
 }
 
 /* Widens an interval of a positive value by what an error of its logarithm adds. */
@@ -379,8 +422,7 @@ static void fill(struct fitted *fitted, const struct spectrum_range *range,
     out->amplitude = (struct interval){exp(p[LAW_AMPLITUDE]), exp(bound(fitted, LAW_AMPLITUDE, -1)),
                                        exp(bound(fitted, LAW_AMPLITUDE, 1))};
     include(&out->amplitude);
-    out->rms_height = moment(fitted, out, 0);
-    out->rms_slope = moment(fitted, out, 2);
+    fill_moments(fitted, out);
     fill_lay(&problem->spectrum->lay, out);
 }
 
@@ -409,6 +451,9 @@ int spectrum_fit_measure(const struct map_spectrum *spectrum,
                                  .amplitude = UNKNOWN,
                                  .rms_height = UNKNOWN,
                                  .rms_slope = UNKNOWN,
+                                 .rms_curvature = UNKNOWN,
+                                 .nayak_alpha = UNKNOWN,
+                                 .summit_density = UNKNOWN,
                                  .longest = NONE,
                                  .shortest = NONE,
                                  .lay_ratio = {1, NONE, NONE},
@@ -444,6 +489,15 @@ double spectrum_fit_density(const struct spectrum_fit *fit, double wave_number) 
         total += density_across(fit, wave_number * hypot(ratio * cos(angle), sin(angle)));
     }
     return total / DIRECTIONS;
+}
+
+double spectrum_fit_noise_share(const struct spectrum_fit *fit, const struct grid *grid,
+                                double rms_curvature) {
+    const double dx = grid_dx(grid), whole = 2 * M_PI / dx; /* of wave numbers, along an axis */
+    const double power = fit->noise * (fit->profile ? whole : whole * whole);
+    /* of (l - 2 z + r)/dx^2, and of half the sum of both of a surface, for independent heights */
+    const double bend = (fit->profile ? 6 : 5) * power / (dx * dx * dx * dx);
+    return fit->noise > 0 ? fmin(bend / (rms_curvature * rms_curvature), 1) : 0;
 }
 
 int spectrum_fit_law(const struct spectrum_fit *fit, struct spectrum *out, struct error *err) {

@@ -27,8 +27,10 @@ struct spectrum_fit {
     struct interval amplitude;   /* density there, of the law as it falls from the roll-off on */
     /* Of the law from `longest`, which is long_wavelength or else the longer side of the map, to
      * `shortest`, which is short_wavelength or else trusted_to. */
-    struct interval rms_height, rms_slope;
+    struct interval rms_height, rms_slope, rms_curvature;
     double longest, shortest;
+    /* Of Gaussian surfaces of this law (F6.7), of profiles of the peaks (F7.2); NaN with a lay. */
+    struct interval nayak_alpha, summit_density;
     /* Of a lay, whose spectrum is over ellipses: wavelengths and densities above are those of waves
      * across it. The ratio is 1 where there is none, and the angle NaN, both without ends. */
     struct interval lay_ratio, lay_angle; /* angle in radians, counter-clockwise from x */
@@ -48,6 +50,12 @@ int spectrum_fit_measure(const struct map_spectrum *spectrum,
 /* Returns the density of the law at a wave number, with a lay its mean over all directions; 0
  * beyond its ends. */
 double spectrum_fit_density(const struct spectrum_fit *fit, double wave_number);
+/* Returns which share of the mean square curvature of a map (F18.2) its noise has, taken as white
+ * up to the shortest waves of the points: 0 where none was seen. rms_curvature: of the map. */
+double spectrum_fit_noise_share(const struct spectrum_fit *fit, const struct grid *grid,
+                                double rms_curvature);
+/* Above this share noise governs what short waves are measured by. */
+#define NOISE_SHARE_MOST 0.05
 /* Fills the spectrum of a study that makes surfaces by the law: what was not seen is as long, or as
  * short, as that of the RMS height above. ERROR_INPUT where nothing was fitted. */
 int spectrum_fit_law(const struct spectrum_fit *fit, struct spectrum *out, struct error *err);

@@ -1,6 +1,10 @@
 #include "server/show/map/main_values.h"
+#include "core/statistics/spectra/spectrum_fit.h"
 #include <math.h>
 #include <string.h>
+
+/* Values without noise, which are shown where there is some. */
+static const char NOISELESS[] = "trusted";
 
 /* The rows in their order; those without a value are left out. Of rows with one label the first
  * that has a value is shown. */
@@ -16,13 +20,18 @@ static const struct table_row {
     {"skewness", "heights", "skewness", 0, 0, NULL},
     {"kurtosis", "heights", "kurtosis", 0, 0, NULL},
     {"RMS slope", "finite_difference", "rms_slope", 0, 0, NULL},
+    {"  without noise", NOISELESS, "rms_slope", 0, 0, NULL},
     {"RMS curvature", "finite_difference", "rms_curvature", -1, 0, NULL},
+    {"  without noise", NOISELESS, "rms_curvature", -1, 0, NULL},
     {"correlation length Sal", "areal", "Sal", 1, 0, NULL},
     {"texture aspect Str", "areal", "Str", 0, 0, NULL},
     {"developed area Sdr", "areal", "Sdr", 0, 0, NULL},
     {"Nayak's alpha", "finite_difference", "nayak_alpha", 0, 0, NULL},
+    {"  without noise", NOISELESS, "nayak_alpha", 0, 0, NULL},
     {"summit density", "summits_nine_point", "density", -2, 0, NULL},
+    {"  without noise", NOISELESS, "summit_density", -2, 0, NULL},
     {"peak density", "peaks", "density", -1, 0, NULL},
+    {"  without noise", NOISELESS, "peak_density", -1, 0, NULL},
     {"Hurst exponent H", "spectrum_fit", "hurst", 0, 0, NULL},
     {"roll-off wavelength", "spectrum_fit", "rolloff_wavelength", 1, 0, NULL},
     {"shortest wavelength", "spectrum_fit", "short_wavelength", 1, 0, NULL},
@@ -120,14 +129,20 @@ static bool write_value(const struct list *list, const struct table_row *row,
     return true;
 }
 
+bool main_values_have_noise(const struct named_values *found) {
+    return named_number(found, NOISELESS, "noise_share") > NOISE_SHARE_MOST;
+}
+
 size_t main_values_list(struct main_value out[MAIN_VALUES_MOST], const struct map_figure *figure,
                         const char *plus_minus) {
     const struct list list = {figure->found, figure_units_of(figure), plus_minus};
     const bool has_areal = isfinite(named_number(list.found, "areal", "Sq"));
+    const bool has_noise = main_values_have_noise(list.found);
     size_t count = 0;
     for (size_t n = 0; n < ROW_COUNT && count < MAIN_VALUES_MOST; n++) {
         const bool twin = has_areal && strcmp(ROWS[n].label, "RMS height") == 0;
-        if (twin || !write_value(&list, &ROWS[n], out[count].text))
+        if (twin || (ROWS[n].group == NOISELESS && !has_noise) ||
+            !write_value(&list, &ROWS[n], out[count].text))
             continue;
         out[count].label = ROWS[n].label;
         figure_unit_text(&list.units, ROWS[n].x_power, ROWS[n].z_power, out[count].unit);

@@ -6,13 +6,15 @@
 #include "server/show/map/map_figure.h"
 #include "server/show/map/map_figure_internal.h"
 
-enum { MAIN_VALUES_MOST = 24, MAIN_VALUE_SIZE = 96 };
+enum { MAIN_VALUES_MOST = 32, MAIN_VALUE_SIZE = 96 };
 
 struct main_value {
     const char *label;          /* "RMS slope"; static */
     char text[MAIN_VALUE_SIZE]; /* rounded to its error */
     char unit[UNIT_TEXT_SIZE];  /* for svg_label; "" where none is known */
 };
+/* Returns whether noise governs the slopes and curvatures of the map. */
+bool main_values_have_noise(const struct named_values *found);
 /* Lists those that the map has, and returns their number. plus_minus stands before an error. */
 size_t main_values_list(struct main_value out[MAIN_VALUES_MOST], const struct map_figure *figure,
                         const char *plus_minus);

@@ -258,6 +258,39 @@ static void add_stationarity(struct named_values *out, const struct map_characte
         add_spreads(out, GROUPS[d], AREAS[d], s->spread[d], s->p_value[d]);
 }
 
+/* What the map has without noise, and without what an instrument does not transmit: of the law from
+ * the longest to the shortest wavelength that is trusted. */
+static void add_trusted(struct named_values *out, const struct spectrum_fit *fit,
+                        const struct map_parameters *parameters) {
+    static const char GROUP[] = "trusted";
+    const struct {
+        const char *name, *low, *high;
+        const struct interval *interval;
+        int power;
+    } rows[] = {
+        {"rms_height", "rms_height_low", "rms_height_high", &fit->rms_height, 1},
+        {"rms_slope", "rms_slope_low", "rms_slope_high", &fit->rms_slope, 0},
+        {"rms_curvature", "rms_curvature_low", "rms_curvature_high", &fit->rms_curvature, -1},
+        {"nayak_alpha", "nayak_alpha_low", "nayak_alpha_high", &fit->nayak_alpha, 0},
+        {fit->profile ? "peak_density" : "summit_density",
+         fit->profile ? "peak_density_low" : "summit_density_low",
+         fit->profile ? "peak_density_high" : "summit_density_high", &fit->summit_density,
+         fit->profile ? -1 : -2},
+    };
+    named_values_add_length(out, GROUP, "from", fit->longest, 1);
+    named_values_add_length(out, GROUP, "to", fit->shortest, 1);
+    named_values_add(
+        out, GROUP, "noise_share",
+        spectrum_fit_noise_share(fit, &parameters->grid, parameters->roughness.rms_curvature));
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
+        if (isnan(rows[n].interval->value))
+            continue;
+        named_values_add_length(out, GROUP, rows[n].name, rows[n].interval->value, rows[n].power);
+        named_values_add_length(out, GROUP, rows[n].low, rows[n].interval->low, rows[n].power);
+        named_values_add_length(out, GROUP, rows[n].high, rows[n].interval->high, rows[n].power);
+    }
+}
+
 static void add_fit(struct named_values *out, const struct spectrum_fit *fit) {
     static const char GROUP[] = "spectrum_fit";
     const int power = fit->profile ? 3 : 4;
@@ -426,5 +459,7 @@ int map_report_fill(struct named_values *out, const struct map_characterisation 
     add_stationarity(out, found);
     if (found->spectra.has_fit)
         add_fit(out, &found->spectra.fit);
+    if (found->spectra.has_fit && found->spectra.fit.fitted)
+        add_trusted(out, &found->spectra.fit, &found->parameters);
     return add_tables(out, found, err);
 }

@@ -1,4 +1,5 @@
 #include "server/show/map/map_verdicts.h"
+#include "server/show/map/main_values.h"
 #include "server/show/map/map_figure_internal.h"
 #include "server/show/plot/plot_words.h"
 #include <math.h>
@@ -35,9 +36,9 @@ static void judge_errors(struct verdicts *verdicts, const struct named_values *f
         say(verdicts, "Errors: none are known: %s.", errors + strlen(NONE));
     else
         say(verdicts,
-            "Errors: +- one standard error of a patch %.3g correlation lengths wide, of which a 95 "
-            "%% "
-            "interval has %.3g; [ ] a 95 %% interval.",
+            "Errors: +- one standard error of a patch %.3g correlation lengths wide (95 %%: %.3g "
+            "of "
+            "them); [ ] a 95 %% interval.",
             lengths, named_number(found, GROUP, "factor_95"));
 }
 
@@ -58,6 +59,17 @@ static void judge_law(struct verdicts *verdicts, const struct named_values *foun
             deviance);
 }
 
+static void judge_noise(struct verdicts *verdicts, const struct named_values *found) {
+    const double measured = named_number(found, "finite_difference", "rms_slope");
+    const double trusted = named_number(found, "trusted", "rms_slope");
+    if (main_values_have_noise(found))
+        say(verdicts,
+            "Noise: the RMS slope is %.3g with it and %.3g without. Values without noise are of "
+            "the "
+            "law of the spectrum, for Gaussian heights; --filter S=LENGTH takes it out of the map.",
+            measured, trusted);
+}
+
 static void judge_short_waves(struct verdicts *verdicts, const struct map_figure *figure) {
     static const char GROUP[] = "spectrum_fit";
     const struct figure_units units = figure_units_of(figure);
@@ -67,11 +79,7 @@ static void judge_short_waves(struct verdicts *verdicts, const struct map_figure
     if (by == NULL || !isfinite(length))
         return;
     if (strcmp(by, SPECTRUM_END_NAMES[SPECTRUM_END_NOISE]) == 0)
-        say(verdicts,
-            "Short waves: below %.3g%s%s they are noise, which slopes, curvatures and summits have "
-            "in "
-            "them; --filter S=LENGTH takes it out.",
-            length, gap, units.x_name);
+        say(verdicts, "Short waves: below %.3g%s%s they are noise.", length, gap, units.x_name);
     else if (strcmp(by, SPECTRUM_END_NAMES[SPECTRUM_END_LOW_PASS]) == 0)
         say(verdicts,
             "Short waves: below %.3g%s%s they fall off as in an instrument that does not transmit "
@@ -143,6 +151,7 @@ size_t map_verdicts_list(char out[VERDICTS_MOST][VERDICT_SIZE], const struct map
     judge_errors(&verdicts, figure->found);
     judge_law(&verdicts, figure->found);
     judge_short_waves(&verdicts, figure);
+    judge_noise(&verdicts, figure->found);
     judge_heights(&verdicts, figure->found);
     judge_directions(&verdicts, figure->found);
     judge_parts(&verdicts, figure->found);

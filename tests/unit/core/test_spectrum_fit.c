@@ -5,6 +5,7 @@
 #include "tests/support/check.h"
 
 #include "core/statistics/spectra/spectrum_fit.h"
+#include "core/theory/nayak.h"
 #include "tests/support/spectrum_recovery.h"
 
 enum { SIDE = 128 };
@@ -77,7 +78,7 @@ static void exact_spectra_give_their_law(void **state) {
 static void laws_are_what_they_tell(void **state) {
     (void)state;
     enum { STEPS = 20000 };
-    double *z = surface(&LAW, AMPLITUDES_FIXED, &GRID, 2), height = 0, slope = 0;
+    double *z = surface(&LAW, AMPLITUDES_FIXED, &GRID, 2), height = 0, slope = 0, bend = 0;
     struct spectrum_fit fit = fit_of(&GRID, z, BOUNDARY_PERIODIC, &BY_THE_MAP);
     double low = 2 * M_PI / fit.longest, high = 2 * M_PI / fit.shortest;
     double step = log(high / low) / STEPS;
@@ -85,9 +86,14 @@ static void laws_are_what_they_tell(void **state) {
         double k = low * exp((a + 0.5) * step), density = spectrum_fit_density(&fit, k);
         height += 2 * M_PI * density * k * k * step;
         slope += 2 * M_PI * density * pow(k, 4) * step;
+        bend += 2 * M_PI * density * pow(k, 6) * step;
     }
     check_relative(fit.rms_height.value, sqrt(height), 1e-6);
     check_relative(fit.rms_slope.value, sqrt(slope), 1e-6);
+    check_relative(fit.rms_curvature.value, sqrt(bend) / 2, 1e-6);
+    /* m4 is 3/8 of the mean of |k|^4, m2 half of that of |k|^2 */
+    check_relative(fit.nayak_alpha.value, 1.5 * height * bend / (slope * slope), 1e-6);
+    check_relative(fit.summit_density.value, nayak_summit_density(slope / 2, 3 * bend / 8), 1e-6);
     assert_true(spectrum_fit_density(&fit, 0.9 * low) == 0);
     assert_true(spectrum_fit_density(&fit, 1.1 * high) == 0);
     struct spectrum law;

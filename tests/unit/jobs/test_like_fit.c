@@ -275,6 +275,34 @@ static void grooves(void **state) {
     height_map_clear(&map);
 }
 
+/* Noise in a map is not in its surfaces: their slope is that of the map without it. */
+static void noise_stays_out(void **state) {
+    (void)state;
+    static const double NOISE = 0.05; /* of the RMS height */
+    struct height_map map = patch(false, 2);
+    cJSON *clean = fitted("{}", &map);
+    size_t points = grid_points(&map.grid);
+    double *white = calloc(points, sizeof *white), square = 0;
+    assert_non_null(white);
+    random_uniform((struct random_key){3, 0, 0}, STREAM_HEIGHTS, 0, points, white);
+    for (size_t n = 0; n < points; n++)
+        square += map.z[n] * map.z[n] / (double)points;
+    for (size_t n = 0; n < points; n++)
+        map.z[n] += NOISE * sqrt(12 * square) * (white[n] - 0.5); /* a mean square of 1/12 */
+    cJSON *noisy = fitted("{}", &map);
+    double slope = number(noisy, "/rms_slope"), without = number(clean, "/rms_slope");
+    print_message("slope %.4f of %.4f\n", slope, without);
+    assert_true(fabs(slope / without - 1) < 0.03);
+    assert_non_null(strstr(
+        cJSON_GetStringValue(json_at(cJSON_GetObjectItem(noisy, "like"), "/prepared")), "noise"));
+    assert_null(strstr(
+        cJSON_GetStringValue(json_at(cJSON_GetObjectItem(clean, "like"), "/prepared")), "noise"));
+    cJSON_Delete(noisy);
+    cJSON_Delete(clean);
+    free(white);
+    height_map_clear(&map);
+}
+
 static void refused(const struct height_map *map, const char *words) {
     cJSON *surface = cJSON_CreateObject();
     struct error err = {0};
@@ -317,6 +345,7 @@ int main(void) {
         cmocka_unit_test(maps_that_cannot_be_fitted),
         cmocka_unit_test(laws),
         cmocka_unit_test(grooves),
+        cmocka_unit_test(noise_stays_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
