@@ -59,6 +59,7 @@ struct fit {
     struct spectrum_fit law;
     double rms_slope;   /* of random surfaces on the cell */
     bool without_noise; /* which the map has */
+    struct like_left left;
 };
 
 /* --- the map --- */
@@ -81,6 +82,7 @@ static int check_map(const struct height_map *map, struct error *err) {
 
 /* Finds whether directions differ, from the map alone. */
 static int find_lay(struct fit *fit, struct lay *lay, struct error *err) {
+    static const double RATIO_MOST = 100;
     const struct spectrum_fit_request by_the_map = {0};
     struct map_chance *chance = NULL;
     struct cell_differences nearest;
@@ -95,15 +97,21 @@ static int find_lay(struct fit *fit, struct lay *lay, struct error *err) {
     map_directions_measure(&directions, &fit->map, chance, fit->circles, &nearest);
     map_chance_destroy(&chance);
     status = map_directions_lay(lay, &directions, fit->circles, &by_the_map, err);
-    if (status != 0 || !lay_is_plain(lay) || !map_directions_differ(&directions) ||
-        fit->spectrum == LIKE_SPECTRUM_GIVEN)
+    if (status != 0 || !lay_is_plain(lay) || !map_directions_differ(&directions))
         return status;
+    /* no one lay is most likely: that of the slopes is next */
+    *lay = (struct lay){.ratio = directions.fine.ratio,
+                        .angle = remainder(directions.fine.direction + M_PI / 2, M_PI)};
+    if (lay->ratio < RATIO_MOST)
+        return 0;
+    *lay = LAY_NONE;
+    if (fit->spectrum == LIKE_SPECTRUM_GIVEN)
+        return 0;
     return error_set(
         err, ERROR_INPUT,
-        "the map differs by direction (slopes by a factor of %.3g), and its waves have "
-        "no one lay, as those of grooves that do not end; random surfaces have one: "
-        "give the spectrum",
-        directions.fine.ratio);
+        "slopes of the map differ by direction by a factor of %.3g, as those of grooves "
+        "that do not end; random surfaces have less than %g: give the spectrum",
+        directions.fine.ratio, RATIO_MOST);
 }
 
 /* Measures the rings of the map and the law that fits them, over the ellipses of its lay. */
@@ -275,17 +283,23 @@ static bool put_measured(cJSON *like, const struct fit *fit) {
     return put;
 }
 
-/* What was done to the map, and to its spectrum. */
+static const char *const SQUARES[LIKE_MOMENTS] = {"height", "slope", "curvature"};
+
+/* What was done to the map, and to its spectrum, and what is left between it and its surfaces. */
 static bool put_prepared(cJSON *like, const struct fit *fit) {
-    static const char NOISE[] = "noise: taken out of the spectrum, and waves below its reach";
-    const char *prepared = fit->source->prepared;
-    const size_t size = strlen(prepared) + sizeof NOISE + 2;
-    if (!fit->without_noise)
-        return field_put_text(like, "prepared", prepared);
-    char *text = array_create(size, 1);
+    enum { SIZE = 4000, NAMED = 1 }; /* per cent */
+    const double left = 100 * fit->left.relative;
+    char *text = array_create(SIZE, 1);
     if (text == NULL)
         return false;
-    snprintf(text, size, "%s%s%s", prepared, *prepared != '\0' ? "; " : "", NOISE);
+    int used = snprintf(text, SIZE, "%s", fit->source->prepared);
+    if (fit->without_noise && used >= 0 && used < SIZE)
+        used += snprintf(text + used, (size_t)(SIZE - used),
+                         "%snoise: taken out of the spectrum, with the waves in it",
+                         used > 0 ? "; " : "");
+    if (fabs(left) > NAMED && used >= 0 && used < SIZE)
+        snprintf(text + used, (size_t)(SIZE - used), "%sRMS %s of the surfaces: %+.2g %% off",
+                 used > 0 ? "; " : "", SQUARES[fit->left.moment], left);
     bool put = field_put_text(like, "prepared", text);
     free(text);
     return put;
@@ -324,15 +338,14 @@ static int put_like(cJSON *surface, const struct fit *fit, struct error *err) {
 
 /* Refuses a table whose surfaces would not be like the map. */
 static int check_left(const struct like_left *left, struct error *err) {
-    static const double MOST = 0.05;
-    static const char *const WHAT[LIKE_MOMENTS] = {"height", "slope", "curvature"};
+    static const double MOST = 0.25;
     if (fabs(left->relative) <= MOST)
         return 0;
     return error_set(
         err, ERROR_INPUT,
         "no smooth spectrum has the map's: the RMS %s of its surfaces would be %.2g %% "
         "off; %.2g %% is allowed; give \"spectrum\": \"fit\", or prepare the map",
-        WHAT[left->moment], 100 * left->relative, 100 * MOST);
+        SQUARES[left->moment], 100 * left->relative, 100 * MOST);
 }
 
 /* Noise counts where it governs the curvature of the map. */
@@ -349,14 +362,13 @@ static int fit_table(cJSON *surface, struct fit *fit, struct error *err) {
                                     pow(fit->measured[PATCH_RMS_CURVATURE], 2)};
     const struct map_spectrum *rings = fit->ellipses != NULL ? fit->ellipses : fit->circles;
     const struct like_noise noise = noise_of(fit);
-    struct like_left left;
     int status = like_table_measure(&fit->table, rings, &noise, err);
     if (status == 0)
         status = like_table_calibrate(&fit->table, rings, fit->source->detrend, &fit->cell, &noise,
-                                      squares, &left, err);
+                                      squares, &fit->left, err);
     fit->without_noise = noise.density > 0;
     if (status == 0)
-        status = check_left(&left, err);
+        status = check_left(&fit->left, err);
     if (status != 0)
         return status;
     fit->wavelength = 2 * M_PI / fit->table.highest;
