@@ -2,7 +2,8 @@
 #include "server/show/map/main_values.h"
 #include <string.h>
 
-enum { LEFT = 484, TOP = 112, ROW = 16 };
+/* BOTTOM: of the note below the rows, which are closer where there are many. */
+enum { LEFT = 484, TOP = 112, ROW = 16, BOTTOM = 474 };
 
 static void draw_row(const struct figure_page *page, const struct main_value *row, int y) {
     FILE *file = page->pen.file;
@@ -30,7 +31,9 @@ static void draw_note(const struct figure_page *page, int y) {
 void figure_draw_table(struct figure_page *page) {
     struct main_value rows[MAIN_VALUES_MOST];
     const size_t count = main_values_list(rows, page->figure, "±");
+    const double closer = (BOTTOM - TOP - 10) / (count > 0 ? (double)count : 1);
+    const double row = closer < ROW ? closer : ROW;
     for (size_t n = 0; n < count; n++)
-        draw_row(page, &rows[n], TOP + 8 + ROW * (int)n);
-    draw_note(page, TOP + 10 + ROW * (int)count);
+        draw_row(page, &rows[n], TOP + 8 + (int)(row * (double)n));
+    draw_note(page, TOP + 10 + (int)(row * (double)count));
 }
