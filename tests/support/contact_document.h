@@ -72,4 +72,37 @@ static inline void assert_near(double value, double expected, double tolerance, 
         fail_msg("%.17g at load %g, expected %.17g within %g", value, load, expected, tolerance);
 }
 
+/* The document of realisations 0 .. count - 1 in blocks of `block`, which the caller frees. *bytes:
+ * of their results; may be NULL. */
+static inline char *in_blocks(const char *study, uint64_t count, uint64_t block, size_t *bytes) {
+    const struct job_kind *kind = kind_find("contact");
+    struct job_runner *runner = NULL;
+    struct job_merger *merger = NULL;
+    struct error err = {0};
+    cJSON *parameters = cJSON_Parse(study), *document = NULL;
+    size_t size = 0;
+    assert_non_null(parameters);
+    if (runner_create(&runner, kind, parameters, NULL, CONTACT_SEED, 0, &err) != 0 ||
+        merger_create(&merger, kind, parameters, &err) != 0)
+        fail_msg("%s: %s", study, err.text);
+    for (uint64_t first = 0; first < count; first += block) {
+        struct block_result result = {0};
+        if (runner_run(runner, first, block, NULL, &result, &err) != 0 ||
+            merger_add(merger, &result, &err) != 0)
+            fail_msg("%s: %s", study, err.text);
+        size += result.size;
+        block_result_clear(&result);
+    }
+    if (merger_tree(merger, NULL, NULL, &document, &err) != 0)
+        fail_msg("%s: %s", study, err.text);
+    char *text = cJSON_PrintUnformatted(document);
+    cJSON_Delete(document);
+    cJSON_Delete(parameters);
+    runner_destroy(&runner);
+    merger_destroy(&merger);
+    if (bytes != NULL)
+        *bytes = size;
+    return text;
+}
+
 #endif

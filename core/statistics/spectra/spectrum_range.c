@@ -103,7 +103,7 @@ static size_t edge_find(const struct map_spectrum *s, size_t first, size_t last)
 static size_t noise_find(const struct map_spectrum *s, size_t last, double *noise) {
     static const double FLAT = -0.5, FAR_BELOW = 0.1, ROUNDING = 1e-26;
     double highest = 0, least = INFINITY, error;
-    size_t begin = 0, shortest = last / 10 > 6 ? last / 10 : 6;
+    size_t begin = 0, shortest = last / 10 > 6 ? last / 10 : 6, block = block_of(s, last);
     for (size_t r = 1; r <= last; r++)
         highest = fmax(highest, s->density[r]);
     for (size_t r = slope_first(last); r >= LEAST_RING; r--) {
@@ -111,7 +111,7 @@ static size_t noise_find(const struct map_spectrum *s, size_t last, double *nois
         if (slope < FLAT - 2 * error || s->density[r] > FAR_BELOW * highest)
             break;
         begin = slope_first(r);
-        least = fmin(least, s->density[r]);
+        least = fmin(least, mean_density(s, r, r + block - 1 < last ? r + block - 1 : last));
     }
     if (begin == 0 || last - begin < shortest || !(least > ROUNDING * highest))
         return 0;

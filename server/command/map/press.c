@@ -4,6 +4,7 @@
 #include "core/nodal/step_folder.h"
 #include "jobs/allotment.h"
 #include "jobs/maps/map_counter.h"
+#include "jobs/maps/map_noise.h"
 #include "jobs/maps/map_press_curves.h"
 #include "jobs/maps/map_press_error.h"
 #include "schema/result/csv.h"
@@ -393,6 +394,24 @@ static void warn_of_few_nodes(const struct press_order *order, const struct pres
                 order->path, row->value[PRESS_LOAD], nodes, nodes > 1 ? "points are" : "point is");
 }
 
+/* Slopes with noise in them are no measure of loads; press takes the map as it is. Of larger maps
+ * the spectrum would take longer than a load. */
+static int warn_of_noise(const struct press_order *order, const struct height_map *map,
+                         struct error *err) {
+    enum { POINTS_SEEN = 1 << 20 };
+    const struct measured_map measured = {&map->grid, map->z, order->record.boundary};
+    struct map_noise noise;
+    if (grid_points(&map->grid) > POINTS_SEEN || order->record.window_power < 1)
+        return 0;
+    int status = map_noise_measure(&noise, &measured, err);
+    if (status == 0 && noise.governs)
+        fprintf(stderr,
+                "rugo press: warning: %s: noise governs the slopes, whose RMS is %.3g with it and "
+                "%.3g without; --filter S=LENGTH takes it out (`rugo characterise` shows it)\n",
+                order->path, noise.slope, noise.without);
+    return status;
+}
+
 static double map_area(const struct map_press *press) {
     const struct grid *grid = &press->map;
     return grid_is_profile(grid) ? grid->lx : grid->lx * grid->ly;
@@ -652,6 +671,8 @@ static int run(const void *values, const char *const *arguments) {
         status = press_files_check(&options->paths, &err);
     if (status == 0)
         status = read_map(&map, order, &err);
+    if (status == 0)
+        status = warn_of_noise(order, &map, &err);
     if (status == 0)
         status = press_map(order, &map, &err);
     height_map_clear(&map);

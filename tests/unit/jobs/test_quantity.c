@@ -140,35 +140,6 @@ static void gaps_leak_until_they_close(void **state) {
     cJSON_Delete(document);
 }
 
-/* The document of realisations 0 .. 3 in blocks of `block`. */
-static char *in_blocks(const char *study, uint64_t block, size_t *bytes) {
-    const struct job_kind *kind = kind_find("contact");
-    struct job_runner *runner = NULL;
-    struct job_merger *merger = NULL;
-    struct error err = {0};
-    cJSON *parameters = cJSON_Parse(study), *document = NULL;
-    *bytes = 0;
-    if (runner_create(&runner, kind, parameters, NULL, CONTACT_SEED, 0, &err) != 0 ||
-        merger_create(&merger, kind, parameters, &err) != 0)
-        fail_msg("%s: %s", study, err.text);
-    for (uint64_t first = 0; first < 4; first += block) {
-        struct block_result result = {0};
-        if (runner_run(runner, first, block, NULL, &result, &err) != 0 ||
-            merger_add(merger, &result, &err) != 0)
-            fail_msg("%s: %s", study, err.text);
-        *bytes += result.size;
-        block_result_clear(&result);
-    }
-    if (merger_tree(merger, NULL, NULL, &document, &err) != 0)
-        fail_msg("%s: %s", study, err.text);
-    char *text = cJSON_PrintUnformatted(document);
-    cJSON_Delete(document);
-    cJSON_Delete(parameters);
-    runner_destroy(&runner);
-    merger_destroy(&merger);
-    return text;
-}
-
 static void blocks_do_not_matter(void **state) {
     (void)state;
     static const char *const STUDIED[] = {
@@ -177,8 +148,8 @@ static void blocks_do_not_matter(void **state) {
         SURFACE("\"conductance\": true, \"leak\": true, \"pressures\": {\"values\": [0.1, 0.3]}")};
     for (size_t s = 0; s < 2; s++) {
         size_t one_block, four_blocks;
-        char *one = in_blocks(STUDIED[s], 4, &one_block);
-        char *four = in_blocks(STUDIED[s], 1, &four_blocks);
+        char *one = in_blocks(STUDIED[s], 4, 4, &one_block);
+        char *four = in_blocks(STUDIED[s], 4, 1, &four_blocks);
         assert_string_equal(one, four);
         assert_non_null(strstr(one, "\"conductance\""));
         free(one);
@@ -379,8 +350,8 @@ static void what_is_not_asked_for_takes_no_room(void **state) {
         assert_false(measure_row(a)->kept(&one_case) || measure_row(a)->shown(&one_case, 0));
     }
     contact_case_clear(&one_case);
-    free(in_blocks(STUDY("\"conductance\": false"), 4, &without));
-    free(in_blocks(STUDY("\"conductance\": true"), 4, &with));
+    free(in_blocks(STUDY("\"conductance\": false"), 4, 4, &without));
+    free(in_blocks(STUDY("\"conductance\": true"), 4, 4, &with));
     assert_true(with > without);
     for (size_t a = 0; a < MEASURE_OWN; a++) /* each has its curve once */
         for (size_t b = 0; b < a; b++)

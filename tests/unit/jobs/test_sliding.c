@@ -153,34 +153,6 @@ static void a_path_turns(void **state) {
     cJSON_Delete(document);
 }
 
-/* The document of realisations 0 .. count - 1 in blocks of `block`. */
-static char *in_blocks(const char *study, uint64_t count, uint64_t block) {
-    const struct job_kind *kind = kind_find("contact");
-    struct job_runner *runner = NULL;
-    struct job_merger *merger = NULL;
-    struct error err = {0};
-    cJSON *parameters = cJSON_Parse(study), *document = NULL;
-    assert_non_null(parameters);
-    if (runner_create(&runner, kind, parameters, NULL, CONTACT_SEED, 0, &err) != 0 ||
-        merger_create(&merger, kind, parameters, &err) != 0)
-        fail_msg("%s: %s", study, err.text);
-    for (uint64_t first = 0; first < count; first += block) {
-        struct block_result result = {0};
-        if (runner_run(runner, first, block, NULL, &result, &err) != 0 ||
-            merger_add(merger, &result, &err) != 0)
-            fail_msg("%s: %s", study, err.text);
-        block_result_clear(&result);
-    }
-    if (merger_tree(merger, NULL, NULL, &document, &err) != 0)
-        fail_msg("%s: %s", study, err.text);
-    char *text = cJSON_PrintUnformatted(document);
-    cJSON_Delete(document);
-    cJSON_Delete(parameters);
-    runner_destroy(&runner);
-    merger_destroy(&merger);
-    return text;
-}
-
 /* More points than loads, and fewer; with companions, and a model that has none of it. */
 static void blocks_do_not_matter(void **state) {
     (void)state;
@@ -191,7 +163,7 @@ static void blocks_do_not_matter(void **state) {
         STUDY("0.1", "\"model\": \"full\", \"friction\": 0.4, \"slip\": {\"steps\": 2}, "
                      "\"pressures\": {\"values\": [0.01, 0.02, 0.05, 0.1, 0.2]}")};
     for (size_t s = 0; s < sizeof STUDIES / sizeof *STUDIES; s++) {
-        char *one = in_blocks(STUDIES[s], 4, 4), *four = in_blocks(STUDIES[s], 4, 1);
+        char *one = in_blocks(STUDIES[s], 4, 4, NULL), *four = in_blocks(STUDIES[s], 4, 1, NULL);
         assert_string_equal(one, four);
         assert_non_null(strstr(one, "\"sliding_force\""));
         free(one);
@@ -207,7 +179,7 @@ static void a_path_that_ends_has_a_note(void **state) {
     char *text = in_blocks(
         STUDY("0.35", "\"model\": \"full\", \"friction\": 0.9, \"pressures\": {\"values\": "
                       "[0.2]}"),
-        COUNT, 3);
+        COUNT, 3, NULL);
     cJSON *document = cJSON_Parse(text);
     const cJSON *force = curve_of(document, "sliding_force", "", "full");
     const cJSON *note, *notes = json_at(document, "/notes/kept");

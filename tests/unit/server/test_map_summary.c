@@ -125,7 +125,7 @@ static void noise_is_named(void **state) {
     const struct spectrum law = {.type = SPECTRUM_SELF_AFFINE,
                                  .hurst = 0.8,
                                  .wavelength_long = SIDE,
-                                 .wavelength_rolloff = SIDE / 8,
+                                 .wavelength_rolloff = 32,
                                  .wavelength_short = 8,
                                  .scale = SCALE_RMS_HEIGHT,
                                  .scale_value = 1e-7};
