@@ -75,7 +75,7 @@ static void axis_fill(struct axis *axis) {
 }
 
 /* length and cell: sides of the map and of the cell along the axis; side: the shorter one of the
- * map; stretch: of rings along the axis, in waves. */
+ * map. */
 static int axis_create(struct axis *axis, size_t points, double length, double cell, double side,
                        struct error *err) {
     const bool none = points == 1;
@@ -153,8 +153,8 @@ struct seen {
     size_t ring;
 };
 
-/* Returns what a wave of the cell puts into a mode: less its trend, and less its mean under the
- * window. coefficient: of the trend in the wave; middle: of the wave so far in mode 0. */
+/* Returns what a wave of the cell puts into a mode, less its trend, of which it has these
+ * coefficients. */
 static complex double amplitude(const struct like_expectation *e, long kx, long ky, long mx,
                                 long my, const complex double *coefficient) {
     const struct axis *x = &e->x, *y = &e->y;
