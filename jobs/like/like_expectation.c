@@ -1,5 +1,6 @@
 #include "jobs/like/like_expectation.h"
 #include "core/statistics/spectra/spectrum_leakage.h"
+#include "core/statistics/spectra/windowed_psd.h"
 #include "core/surface/spectrum.h"
 #include "core/surface/spectrum_density.h"
 #include <complex.h>
@@ -42,11 +43,6 @@ static double legendre(int degree, double x) {
     return degree == 0 ? 1 : degree == 1 ? sqrt(3) * x : sqrt(5) * (3 * x * x - 1) / 2;
 }
 
-static double hann(size_t i, size_t n) {
-    double sine = sin(M_PI * ((double)i + 0.5) / (double)n);
-    return n == 1 ? 1 : sine * sine;
-}
-
 static double position_of(const struct axis *axis, size_t i) {
     return (double)i + 0.5 - (double)axis->points / 2;
 }
@@ -54,7 +50,7 @@ static double position_of(const struct axis *axis, size_t i) {
 static void axis_fill(struct axis *axis) {
     const double n = (double)axis->points;
     for (size_t i = 0; i < axis->points; i++) {
-        const double at = position_of(axis, i), window = hann(i, axis->points) / n;
+        const double at = position_of(axis, i), window = hann_window(i, axis->points) / n;
         double polynomial[DEGREES];
         for (int p = 0; p < DEGREES; p++)
             polynomial[p] = axis->points == 1 ? (p == 0 ? 1 : 0) : legendre(p, 2 * at / n);

@@ -1,4 +1,5 @@
 #include "core/statistics/spectra/lay_fit.h"
+#include "core/statistics/spectra/windowed_psd.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -10,8 +11,6 @@ enum { KNOTS_LEAST = 4, KNOTS_MOST = OCTAVES_MOST * KNOTS_AN_OCTAVE };
 /* Of the density over the wave number, in logarithms: steeper ones are those of sharp ends, which
  * the window blurs. */
 static const double STEEPEST = 6;
-/* As many waves beside each other are alike under Hann's window, along each axis. */
-static const double ALIKE_WINDOWED = 35.0 / 18;
 /* Of the errors found to those estimated without it, over 800 sub-maps of known lay. */
 static const double MEASURED = 1.1;
 static const double RATIO_MOST = 100;
@@ -216,7 +215,7 @@ static bool climb(struct lay *lay, const struct map_spectrum *s, struct profile 
         each_wave(s, &frame, score_add, &scoring);
         if (!score_step(&scoring.score, step, error))
             return false;
-        double alike = s->windowed ? ALIKE_WINDOWED : 1; /* of two axes, and a root */
+        double alike = s->windowed ? WINDOWED_ALIKE : 1; /* of two axes, and a root */
         lay->ratio_error = MEASURED * alike * error[0] / sqrt(s->heights);
         lay->angle_error = MEASURED * alike * error[1] / sqrt(s->heights);
         const double moved = fmax(fabs(step[0]) / error[0], fabs(step[1]) / error[1]);

@@ -53,8 +53,7 @@ static int holes_fill(const struct grid *grid, double *z, struct error *err) {
     return status;
 }
 
-/* Hann's window over n points; a profile has no second one. */
-static double window_at(size_t i, size_t n) {
+double hann_window(size_t i, size_t n) {
     double sine = sin(M_PI * ((double)i + 0.5) / (double)n);
     return n == 1 ? 1 : sine * sine;
 }
@@ -65,7 +64,7 @@ static double window_apply(const struct grid *grid, const double *along, double 
     struct sum total = {0}, heights = {0}, squares = {0};
     for (int pass = 0; pass < 2; pass++)
         for (size_t j = 0; j < grid->ny; j++) {
-            double across = window_at(j, grid->ny);
+            double across = hann_window(j, grid->ny);
             for (size_t i = 0; i < grid->nx; i++) {
                 double weight = across * along[i], *at = &z[j * grid->nx + i];
                 if (pass == 1) {
@@ -87,7 +86,7 @@ int windowed_heights(const struct measured_map *map, double *z, double *power, s
     if (along == NULL)
         return error_memory(err, nx * sizeof *along, "a window");
     for (size_t i = 0; i < nx; i++)
-        along[i] = window_at(i, nx);
+        along[i] = hann_window(i, nx);
     int status = holes_fill(map->grid, z, err);
     if (status == 0)
         *power = window_apply(map->grid, along, z);

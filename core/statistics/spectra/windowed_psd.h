@@ -4,6 +4,14 @@
 
 #include "core/statistics/measured_map.h"
 
+/* Under Hann's window so many waves beside each other count as one, along an axis:
+ * 1 + 2 (2/3)^2 + 2 (1/6)^2. */
+#define WINDOWED_ALIKE (35.0 / 18)
+/* Returns Hann's window at point i of n; 1 of a single one, as profiles have along their second
+ * axis.
+ */
+double hann_window(size_t i, size_t n);
+
 /* Fills rings as psd_measure does, radial_bins(grid) of them, of an open map times Hann's window,
  * its density divided by the mean square of the window; the mean under the window is taken out.
  * Holes are filled from their rim inwards by means of neighbours (FORMULAS.md, F18.7).

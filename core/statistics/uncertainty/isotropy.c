@@ -1,11 +1,8 @@
 #include "core/statistics/uncertainty/isotropy.h"
 #include "core/statistics/heights/roughness.h"
+#include "core/statistics/spectra/windowed_psd.h"
 #include <gsl/gsl_cdf.h>
 #include <math.h>
-
-/* Under Hann's window waves beside each other are alike; this many count as one along an axis:
- * 1 + 2 (2/3)^2 + 2 (1/6)^2. */
-static const double ALIKE_WINDOWED = 35.0 / 18;
 
 struct sector {
     double power, expected, squares; /* squares of what is expected */
@@ -43,7 +40,7 @@ void angular_spectrum_measure(const struct map_spectrum *s, struct angular_spect
     for (size_t mx = 0; 2 * mx < grid->nx; mx++)
         for (long my = mx > 0 ? -most_y : 1; my <= most_y; my++)
             mode_add(s, mx, my, cell, sectors);
-    double alike = s->windowed ? ALIKE_WINDOWED * ALIKE_WINDOWED : 1;
+    double alike = s->windowed ? WINDOWED_ALIKE * WINDOWED_ALIKE : 1;
     for (size_t n = 0; n < ANGULAR_SECTORS; n++) {
         out->angle[n] = M_PI * ((double)n / ANGULAR_SECTORS - 0.5);
         for (int kind = 0; kind < ANGULAR_KINDS; kind++) {
