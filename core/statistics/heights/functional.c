@@ -1,6 +1,8 @@
 #include "core/statistics/heights/functional.h"
-#include "core/statistics/heights/areal.h"
+#include "core/statistics/lanes.h"
+#include "core/statistics/summits/hills.h"
 #include "core/surface/rank.h"
+#include "core/vectors.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -77,25 +79,62 @@ struct integrals {
     double zeroth, first;
 };
 
-/* Integrates exactly, corner by corner. */
-static struct integrals integrate(const struct material_curve *curve, double from, double to) {
-    const double middle = (from + to) / 2;
-    struct sum zeroth = {0}, first = {0};
-    const double corner = ceil(from * (double)curve->n - 0.5);
-    size_t k = corner > 0 ? (size_t)corner : 0;
-    double m = from, z = material_height(curve, from);
-    while (m < to) {
-        const bool inside = k < curve->n && ratio_of(curve, k) < to;
-        const double next = inside ? ratio_of(curve, k) : to;
-        const double z_next = inside ? height_number(curve, k) : material_height(curve, to);
-        sum_add(&zeroth, (next - m) * (z + z_next) / 2);
-        sum_add(&first, (next - m) / 6 *
-                            ((2 * z + z_next) * (m - middle) + (z + 2 * z_next) * (next - middle)));
-        m = next;
-        z = z_next;
-        k++;
+/* Adds the integrals between two corners. */
+static void straight_add(struct integrals *out, double middle, double from, double z, double to,
+                         double z_to) {
+    out->zeroth += (to - from) * (z + z_to) / 2;
+    out->first +=
+        (to - from) / 6 * ((2 * z + z_to) * (from - middle) + (z + 2 * z_to) * (to - middle));
+}
+
+enum { TOGETHER = 64 * LANES }; /* heights whose lanes are added up at once */
+
+/* Adds heights number k to k + n - 1, and each times its number less `middle`. */
+WIDE_VECTORS static void corners_add(const struct material_curve *curve, size_t k, size_t n,
+                                     double middle, struct lanes *restrict zeroth,
+                                     struct lanes *restrict first) {
+    const double *z = curve->z + (curve->n - k - n);
+    const double last = (double)(k + n - 1) - middle;
+    const size_t whole = n - n % LANES;
+    for (size_t i = 0; i < whole; i += LANES)
+        for (size_t l = 0; l < LANES; l++) {
+            zeroth->sum[l] += z[i + l];
+            first->sum[l] += z[i + l] * (last - (double)i - (double)l);
+        }
+    for (size_t i = whole; i < n; i++) {
+        zeroth->sum[i - whole] += z[i];
+        first->sum[i - whole] += z[i] * (last - (double)i);
     }
-    return (struct integrals){sum_value(&zeroth), sum_value(&first)};
+}
+
+/* Integrates exactly. Between the first and the last corner inside a height counts by the hat that
+ * it is the tip of; these two have half a hat each. */
+static struct integrals integrate(const struct material_curve *curve, double from, double to) {
+    const double n = (double)curve->n, width = 1 / n, middle = (from + to) / 2;
+    const double corner = fmax(ceil(from * n - 0.5), 0), beyond = fmin(ceil(to * n - 0.5), n);
+    const double z_from = material_height(curve, from), z_to = material_height(curve, to);
+    struct integrals out = {0, 0};
+    if (!(corner < beyond)) {
+        straight_add(&out, middle, from, z_from, to, z_to);
+        return out;
+    }
+    const size_t begin = (size_t)corner, last = (size_t)beyond - 1;
+    const double m_begin = ratio_of(curve, begin), m_last = ratio_of(curve, last);
+    const double z_begin = height_number(curve, begin), z_last = height_number(curve, last);
+    struct lane_mean zeroth = {0}, first = {0};
+    for (size_t k = begin; k <= last; k += TOGETHER) {
+        struct lanes heights = {0}, moments = {0};
+        corners_add(curve, k, last + 1 - k < TOGETHER ? last + 1 - k : TOGETHER, middle * n - 0.5,
+                    &heights, &moments);
+        lane_mean_add(&zeroth, &heights);
+        lane_mean_add(&first, &moments);
+    }
+    out.zeroth = width * (sum_value(&zeroth.sum) - (z_begin + z_last) / 2);
+    out.first = width * (width * sum_value(&first.sum) - z_begin * (m_begin - middle) / 2 -
+                         z_last * (m_last - middle) / 2 + width * (z_begin - z_last) / 6);
+    straight_add(&out, middle, from, z_from, m_begin, z_begin);
+    straight_add(&out, middle, m_last, z_last, to, z_to);
+    return out;
 }
 
 /* --- core, peaks and valleys --- */

@@ -4,6 +4,7 @@
  * of waves, by both standards. */
 #include "core/statistics/heights/areal.h"
 #include "core/statistics/heights/functional.h"
+#include "core/statistics/summits/hills.h"
 #include "tests/support/check.h"
 #include "tests/support/noise.h"
 #include <gsl/gsl_cdf.h>
