@@ -1,9 +1,11 @@
-/* How long statistical tests take: RUGO_EFFORT=n makes n times as many realisations, which makes
- * their standard errors, and with them their tolerances, smaller. Tests that draw problems, or let
- * some of many allocations fail, take n times as many. `make test` takes 1. */
+/* How long tests take. `make test` tries a third of each table of cases that take long; with
+ * RUGO_EFFORT=n, as `make nightly` has it, all of them are tried, with n times as many
+ * realisations, which makes standard errors, and with them tolerances, smaller. Tests that draw
+ * problems, or let some of many allocations fail, take n times as many. */
 #ifndef RUGO_TESTS_SUPPORT_EFFORT_H
 #define RUGO_TESTS_SUPPORT_EFFORT_H
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
 
@@ -15,14 +17,18 @@ static inline uint64_t effort(void) {
     return n < 1 ? 1 : n > EFFORT_MOST ? EFFORT_MOST : (uint64_t)n;
 }
 
-/* By how many rows a test goes on in a table of cases that take long. Sanitizers, which look for
- * faults of memory and take ten times as long, try each third, and with RUGO_EFFORT each one. */
+static inline bool every_case(void) {
+    return getenv("RUGO_EFFORT") != NULL;
+}
+
+/* By how many rows a test goes on in a table of cases that take long. */
 static inline size_t case_step(void) {
-#ifdef RUGO_SANITIZED
-    return getenv("RUGO_EFFORT") != NULL ? 1 : 3;
-#else
-    return 1;
-#endif
+    return every_case() ? 1 : 3;
+}
+
+/* How many of n such realisations or drawn problems are made. */
+static inline uint64_t cases_of(uint64_t n) {
+    return every_case() ? n * effort() : (n + 2) / 3;
 }
 
 #endif

@@ -31,7 +31,7 @@ struct program {
 /* Allocations of a command that fail, spread over all of them, times RUGO_EFFORT, unless
  * RUGO_FAULTS=all; each alone, and with all behind it, or where workers wait until there is memory
  * again, with some. */
-enum { FAILURES = 16, SOME = 10 };
+enum { FAILURES = 24, SOME = 10 };
 
 static uint64_t allocations(const char *path) {
     char *text = slurp(path);
@@ -99,7 +99,7 @@ static void each_failure(const struct program *program) {
     assert_true(program->from == NULL || *expected != 0);
     const char *wish = getenv("RUGO_FAULTS");
     bool all = wish != NULL && strcmp(wish, "all") == 0;
-    uint64_t most = FAILURES * effort(), step = all || most == 0 || total < most ? 1 : total / most;
+    uint64_t most = cases_of(FAILURES), step = all || most == 0 || total < most ? 1 : total / most;
     for (uint64_t n = 0; n < total; n += step, failed += 2) {
         fail_at(program, n, 1, expected);
         fail_at(program, n, program->store != NULL ? SOME : UINT64_MAX, expected);

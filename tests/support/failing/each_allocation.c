@@ -9,13 +9,9 @@
 #include <time.h>
 
 /* CPU time that one loop may take, unless all allocations are asked for, and the least number of
- * them; RUGO_EFFORT multiplies both. Under sanitizers a call takes several times as long. */
-static const double SECONDS = 1;
-#ifdef RUGO_SANITIZED
-enum { LEAST = 16 };
-#else
+ * them, a third of it without RUGO_EFFORT, which multiplies both. */
+static const double SECONDS = 0.5;
 enum { LEAST = 24 };
-#endif
 
 /* Of the leak checker, where there is one. */
 __attribute__((weak)) int __lsan_do_recoverable_leak_check(void);
@@ -32,7 +28,7 @@ static uint64_t step_of(uint64_t total, double seconds_a_call) {
     if (wish != NULL && strcmp(wish, "all") == 0)
         return 1;
     /* Two modes, and each time the call that fails and the one that passes. */
-    double most = (double)effort() * fmax(SECONDS / (4 * seconds_a_call), LEAST);
+    double most = fmax((double)effort() * SECONDS / (4 * seconds_a_call), (double)cases_of(LEAST));
     return (double)total <= most ? 1 : (uint64_t)ceil((double)total / most);
 }
 

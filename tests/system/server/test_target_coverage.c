@@ -2,6 +2,7 @@
  * plain sampling on long cells and fine meshes: profiles and surfaces, Gaussian and other heights,
  * linear models and full. So do its densities of pressure in every bin. */
 #include "tests/support/check.h"
+#include "tests/support/effort.h"
 #include "tests/support/target_coverage.h"
 #include <math.h>
 
@@ -157,8 +158,9 @@ static void check_moments(const struct density_question *question,
     check_relative(moment, question->load, 0.01);
 }
 
-/* At 95 % four of 80 bins miss what is reported; more than 10 of 80 independent ones do so twice in
- * 1000 times. Bins are not independent, as their sum and first moment are known. */
+/* At 95 % four of 80 bins miss what is reported; more than 10 of 80 independent ones, or 6 of 40,
+ * do so two or three times in 1000. Bins are not independent, as their sum and first moment are
+ * known. */
 static void densities_are_within_what_is_told(void **state) {
     (void)state;
     static const struct coverage_scene SMOOTH = {GAUSSIAN, 1, 0.8, 4, "[0.1,0.2]"},
@@ -173,9 +175,9 @@ static void densities_are_within_what_is_told(void **state) {
         {&SURFACE, HALFSPACE, "halfspace", DENSITY("0.2"), 0.2, 12, 8, "[8,16]"}};
     int bins = 0, covered = 0;
     double told_most = 0;
-    for (int q = 0; q < 4; q++) {
+    for (size_t q = 0; q < 4; q += case_step()) {
         struct coverage_points answer[2] = {{0}}, reference[2] = {{0}};
-        ask_density(&QUESTIONS[q], q + 1, answer);
+        ask_density(&QUESTIONS[q], (int)q + 1, answer);
         refer_density(&QUESTIONS[q], reference);
         check_moments(&QUESTIONS[q], answer);
         assert_int_equal(answer[1].count, COVERAGE_POINTS);
@@ -195,7 +197,7 @@ static void densities_are_within_what_is_told(void **state) {
     assert_true(told_most < 0.25);
     print_message("highest bins within %.2g; %d of %d bins are within the reported errors\n",
                   told_most, covered, bins);
-    assert_true(covered >= bins - 10);
+    assert_true(covered >= bins - 2 - bins / 10);
 }
 
 int main(void) {

@@ -3,6 +3,7 @@
 #include "core/theory/nayak.h"
 #include "core/theory/quadrature.h"
 #include "tests/support/check.h"
+#include "tests/support/effort.h"
 
 static const double ALPHAS[] = {1.5001, 1.51, 1.6, 2, 3.7617, 5, 11.89, 206.45, 1e4};
 enum { ALPHA_COUNT = sizeof ALPHAS / sizeof *ALPHAS };
@@ -50,7 +51,7 @@ static double integral(double alpha, int order, double (*pdf)(double, double)) {
 
 static void densities_have_their_moments(void **state) {
     (void)state;
-    for (size_t a = 0; a < ALPHA_COUNT; a++) {
+    for (size_t a = 0; a < ALPHA_COUNT; a += case_step()) {
         double alpha = ALPHAS[a], mean = integral(alpha, 1, nayak_summit_pdf);
         check_close(integral(alpha, 0, nayak_summit_pdf), 1, tolerance(alpha));
         check_relative(mean, 4 / sqrt(M_PI * alpha), tolerance(alpha));
@@ -63,7 +64,7 @@ static void densities_have_their_moments(void **state) {
 
 static void distribution_is_the_integral(void **state) {
     (void)state;
-    for (size_t a = 0; a < ALPHA_COUNT; a++)
+    for (size_t a = 0; a < ALPHA_COUNT; a += case_step())
         for (double z = -1; z <= 3; z += 0.7) {
             struct moment m = {ALPHAS[a], 0, nayak_summit_pdf};
             double low = ALPHAS[a] < 1.52 ? -2 : -14;
@@ -110,7 +111,7 @@ static double curvature_weighted(double z, const void *context) {
 static void overall_curvature(void **state) {
     (void)state;
     check_close(nayak_overall_curvature(), 1.50450556, 5e-9);
-    for (size_t a = 0; a < ALPHA_COUNT; a++) {
+    for (size_t a = 0; a < ALPHA_COUNT; a += case_step()) {
         struct moment m = {ALPHAS[a], 0, NULL};
         double low = ALPHAS[a] < 1.52 ? -2 : -14;
         double mean = quadrature(curvature_weighted, &m, low, 0, 400) +

@@ -2,6 +2,7 @@
  * order of merging gives the same document; foreign and damaged results are refused whole; a run
  * that is stopped gives nothing. */
 #include "schema/result/bytes.h"
+#include "tests/support/effort.h"
 #include "tests/support/seed.h"
 #include "tests/support/statistics_study.h"
 #include <stdlib.h>
@@ -17,7 +18,7 @@ static void any_split_and_order(void **state) {
         merge(whole, &result);
         block_result_clear(&result);
         char *expected = text_of(whole);
-        for (int trial = 0; trial < 3; trial++) {
+        for (size_t trial = 0; trial < 3; trial += case_step()) {
             struct job_merger *merger = merger_of(STUDIES[s]);
             struct block_result parts[REALISATIONS];
             size_t count = 0;

@@ -187,7 +187,8 @@ static void every_case_ends_in_a_solution(void **state) {
         for (size_t g = 0; g < sizeof GRIDS / sizeof *GRIDS; g++) {
             struct scene scene;
             scene_open(&scene, GRIDS[g], BLOCKS[b].block, g % 2 ? 1e-12 : 1e-10);
-            for (size_t s = 0; s < sizeof SURFACES / sizeof *SURFACES; s++) {
+            for (size_t s = (b + g) % case_step(); s < sizeof SURFACES / sizeof *SURFACES;
+                 s += case_step()) {
                 fill(&scene, SURFACES[s].height);
                 press_all(&scene, SURFACES[s].name, BLOCKS[b].name);
             }
@@ -335,7 +336,7 @@ static void small_problems_by_every_set(void **state) {
     struct draw draw = {{.seed = seed_of_now()}, 0};
     static const struct grid grids[] = {{2, 1, 1, 1}, {3, 1, 1, 1}, {5, 1, 1, 1}, {9, 1, 1, 1},
                                         {2, 2, 1, 1}, {3, 3, 1, 1}, {2, 4, 1, 1}, {4, 2, 1, 3}};
-    for (size_t a = 0; a < 64 * effort(); a++) {
+    for (size_t a = 0; a < cases_of(64); a++) {
         struct scene scene;
         random_scene(&draw, &scene, grids[a % 8]);
         double full = contact_full_pressure(scene.contact);
@@ -353,7 +354,7 @@ static void small_problems_by_every_set(void **state) {
 static void random_problems(void **state) {
     (void)state;
     struct draw draw = {{.seed = seed_of_now(), .sequence = 1}, 0};
-    for (size_t a = 0; a < 24 * effort(); a++) {
+    for (size_t a = 0; a < cases_of(24); a++) {
         struct grid grid = {2 + draw_below(&draw, 40), 1 + draw_below(&draw, 40), 1, 1};
         struct scene scene;
         random_scene(&draw, &scene, grid);
@@ -372,7 +373,7 @@ static void random_problems(void **state) {
 static void careful_steps_converge(void **state) {
     (void)state;
     struct draw draw = {{.seed = seed_of_now(), .sequence = 2}, 0};
-    for (size_t a = 0; a < 24 * effort(); a++) {
+    for (size_t a = 0; a < cases_of(24); a++) {
         struct grid grid = {2 + draw_below(&draw, 40), 1 + draw_below(&draw, 40), 1, 1};
         struct scene scene;
         random_scene(&draw, &scene, grid);

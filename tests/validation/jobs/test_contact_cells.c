@@ -65,8 +65,8 @@ static void errors_of_cells_cover(void **state) {
         {1, "gaussian", 1, 1, 32, 512, 256},    {1, "gaussian", 1, 2, 32, 512, 256},
         {1, "gaussian", 1, 4, 32, 256, 256},    {1, "weibull_min", 1, 1, 32, 512, 256},
         {1, "weibull_min", 1, 2, 32, 512, 256}, {1, "weibull_min", 1, 4, 32, 256, 256},
-        {1, "lognormal", 0.6, 2, 64, 512, 128}, {2, "gaussian", 1, 1, 4, 128, 16},
-        {2, "weibull_min", 1, 1, 4, 128, 16},
+        {2, "weibull_min", 1, 1, 4, 128, 16},   {2, "gaussian", 1, 1, 4, 128, 16},
+        {1, "lognormal", 0.6, 2, 64, 512, 128},
     };
     static const char *const CURVES[][2] = {
         {"contact_area", "edges"}, {"contact_area", "edges_stretched"},
@@ -75,10 +75,10 @@ static void errors_of_cells_cover(void **state) {
         {"patch_mean_area", ""}};
     struct coverage coverage = {0};
     cJSON *true_ones = NULL;
-    for (size_t s = 0; s < sizeof SCENES / sizeof *SCENES; s++) {
+    for (size_t s = 0; s < sizeof SCENES / sizeof *SCENES; s += case_step()) {
         const struct scene *scene = &SCENES[s];
         cJSON *told = solve_length(scene, scene->length, "", scene->realisations);
-        if (s == 0 || !same_reference(scene, scene - 1)) {
+        if (s == 0 || !same_reference(scene, scene - case_step())) {
             cJSON_Delete(true_ones);
             true_ones =
                 solve_length(scene, scene->reference, "\"cell_error\": \"none\",", scene->control);
@@ -95,7 +95,7 @@ static void errors_of_cells_cover(void **state) {
     cJSON_Delete(true_ones);
     print_message("%d of %d covered, %d closely\n", coverage.covered, coverage.points,
                   coverage.within);
-    assert_true(coverage.points > 400);
+    assert_true(coverage.points > (every_case() ? 400 : 150));
     assert_true(coverage.covered >= 0.99 * coverage.points);
     assert_true(coverage.within >= 0.8 * coverage.points);
 }

@@ -215,22 +215,17 @@ static void count_curves(const struct question *question, const struct scene *sc
         count(where, &question->curves[a], document, reference, scene->model, &coverage[a]);
 }
 
-/* Whether all scenes are taken. */
-static bool is_thorough(void) {
-    return effort() > 1;
-}
-
-/* The scenes of the short run: two profiles and a surface, of heights of each skewness. */
-static const size_t SHORT[] = {0, 4, 9};
+/* The scenes of the short run: a profile and a surface, of other heights. */
+static const size_t SHORT[] = {4, 9};
 
 static size_t scene_count(void) {
-    return is_thorough() ? SCENES : sizeof SHORT / sizeof *SHORT;
+    return every_case() ? SCENES : sizeof SHORT / sizeof *SHORT;
 }
 
 /* Of a question to surfaces alone the scenes of profiles are surfaces of the other Hurst exponent.
  */
 static struct scene scene_at(const struct question *question, size_t s) {
-    struct scene scene = TABLE[is_thorough() ? s : SHORT[s]];
+    struct scene scene = TABLE[every_case() ? s : SHORT[s]];
     if (question->surfaces && scene.dimension == 1) {
         scene.dimension = 2;
         scene.hurst = 1.1 - scene.hurst;
@@ -262,11 +257,11 @@ static void check_meshes(const struct question *question, double least) {
     struct coverage coverage[CURVES] = {0};
     for (size_t s = 0; s < scene_count(); s++) {
         const struct scene scene = scene_at(question, s);
-        int finest = (scene.dimension == 1 ? 32 : 16) * (is_thorough() ? 2 : 1);
+        int finest = (scene.dimension == 1 ? 32 : 16) * (every_case() ? 2 : 1);
         uint64_t count = scene.dimension == 1 ? 12 : 2;
-        cJSON *reference = solve_scene(question, &scene, FINE[is_thorough()][scene.dimension - 1],
+        cJSON *reference = solve_scene(question, &scene, FINE[every_case()][scene.dimension - 1],
                                        finest, 0, count);
-        for (size_t l = 0; l < (is_thorough() ? 3 : 1); l++) {
+        for (size_t l = 0; l < (every_case() ? 3 : 1); l++) {
             cJSON *document = solve_scene(question, &scene, LEVELS[l], finest, 0, count);
             count_curves(question, &scene, LEVELS[l], document, reference, count_mesh, coverage);
             cJSON_Delete(document);
@@ -281,9 +276,9 @@ static void check_solvers(const struct question *question, double least) {
     struct coverage coverage[CURVES] = {0};
     for (size_t s = 0; s < scene_count(); s++) {
         const struct scene scene = scene_at(question, s);
-        uint64_t count = (scene.dimension == 1 ? 6U : 2U) * (is_thorough() ? 2 : 1);
+        uint64_t count = (scene.dimension == 1 ? 6U : 2U) * (every_case() ? 2 : 1);
         cJSON *exact = solve_scene(question, &scene, "[8]", 8, 1e-11, count);
-        for (size_t t = 0; t < (is_thorough() ? 3 : 1); t++) {
+        for (size_t t = 0; t < (every_case() ? 3 : 1); t++) {
             char how[32];
             cJSON *rough = solve_scene(question, &scene, "[8]", 8, TOLERANCES[t], count);
             snprintf(how, sizeof how, "tolerance %g", TOLERANCES[t]);

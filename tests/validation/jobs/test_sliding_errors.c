@@ -20,7 +20,7 @@ static const struct scene SCENES[] = {{0.1, 0.3, 0.3, "frictionless", "dual"},
                                       {0.05, 0.6, 0, "frictional", "dual"}};
 
 static size_t scene_count(void) {
-    return effort() > 1 ? sizeof SCENES / sizeof *SCENES : 2;
+    return every_case() ? sizeof SCENES / sizeof *SCENES : 1;
 }
 
 static cJSON *solve_scene(const struct scene *scene, const char *levels, const char *more) {

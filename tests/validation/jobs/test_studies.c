@@ -276,9 +276,10 @@ static double curvature_at(const cJSON *curves, double z) {
  * errors. */
 static void weibull_findings(void **state) {
     (void)state;
-    const char *format = "{'surface': {'hurst': 0.8, 'wavelength_ratio': 8, 'heights': "
-                         "{'distribution': '%s', 'shape': %g}}, 'statistics': {'bins': {'height': "
-                         "[-3, 5, 40], 'curvature': [-16, 0, 40]}}}";
+    const char *format = "{'surface': {'hurst': 0.8, 'wavelength_ratio': 8, "
+                         "'points_per_wavelength': 8, 'heights': {'distribution': '%s', 'shape': "
+                         "%g}}, 'statistics': {'bins': {'height': [-3, 5, 40], 'curvature': "
+                         "[-16, 0, 40]}}}";
     cJSON *highest = study(10 * effort(), format, "weibull_max", 1.0);
     cJSON *lowest = study(10 * effort(), format, "weibull_min", 1.0);
     cJSON *near = study(10 * effort(), format, "weibull_max", 3.602);
