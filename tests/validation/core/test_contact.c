@@ -7,6 +7,7 @@
 #include "core/surface/surface.h"
 #include "core/theory/contact.h"
 #include "tests/support/contact_scene.h"
+#include "tests/support/effort.h"
 #include "tests/support/hertz.h"
 
 static const struct block LAYERED = {
@@ -412,7 +413,7 @@ static void rough_profiles(void **state) {
                  {&LAYERED, 0.04, 0.04, 0.17},
                  {&LAYERED_DUAL, 0.025, 0.02, 0.49}};
     for (size_t b = 0; b < 3; b++)
-        for (size_t h = 0; h < 2; h++) {
+        for (size_t h = b % 2; h < 2; h += case_step()) {
             struct rough_surface rough = {.hurst = h ? 0.8 : 0.2, .ratio = 8, .long_waves = 8};
             struct grid coarse = line(512), fine = line(4096);
             struct mean_areas few, many;
@@ -436,7 +437,7 @@ static void rough_profiles(void **state) {
 /* The same of one surface each, against 32 points. */
 static void rough_surfaces(void **state) {
     (void)state;
-    for (size_t h = 0; h < 2; h++) {
+    for (size_t h = 0; h < 2; h += case_step()) {
         struct rough_surface rough = {.hurst = h ? 0.8 : 0.2, .ratio = 4, .long_waves = 4};
         struct grid coarse = square(128), fine = square(512);
         struct mean_areas few, many;

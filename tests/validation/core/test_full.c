@@ -217,7 +217,7 @@ static void small_slopes_are_layered(void **state) {
 static void solvers_agree(void **state) {
     (void)state;
     static const struct grid GRIDS[] = {{64, 1, 1, 1}, {10, 8, 1, 1}};
-    for (size_t c = 0; c < 4; c++) {
+    for (size_t c = 0; c < 4; c += case_step()) {
         struct pressed p[2];
         struct block block = BLOCK;
         block.weighting = c < 2 ? GAP_DUAL : GAP_STANDARD;

@@ -89,7 +89,7 @@ static void table_3_1(void **state) {
         double hurst, ratio, alpha;
     } table[] = {{0.8, 8, 5.34},     {0.8, 16, 11.89}, {0.8, 32, 29.11}, {0.8, 64, 75.88},
                  {0.8, 128, 206.45}, {0.2, 8, 3.76},   {0.2, 16, 5.61}};
-    for (size_t a = 0; a < sizeof table / sizeof *table; a++) {
+    for (size_t a = 0; a < sizeof table / sizeof *table; a += case_step()) {
         cJSON *curves = study(2,
                               "{'surface': {'hurst': %g, 'wavelength_ratio': %g,"
                               " 'points_per_wavelength': %g}, 'statistics': {" FEW_BINS "}}",
@@ -107,8 +107,8 @@ static void table_3_3(void **state) {
     (void)state;
     static const double table[5][3] = {
         {1, 2, 9}, {1.2, 1.52, 6.24}, {1.5, 1.07, 4.39}, {2, 0.63, 3.25}, {3.602, 0, 2.72}};
-    for (int a = 0; a < 5; a++) {
-        for (int side = 0; side < 2; side++) {
+    for (size_t a = 0; a < 5; a++) {
+        for (size_t side = a % 2; side < 2; side += case_step()) {
             cJSON *curves =
                 study(2,
                       "{'surface': {'hurst': 0.8, 'wavelength_ratio': 8, 'heights': {"
@@ -137,8 +137,8 @@ static void table_3_5(void **state) {
     static const double table[3][3] = {
         {9.751, 23.058, 37.921}, {8.308, 16.538, 24.126}, {7.669, 14.163, 19.661}};
     static const double low[] = {5.075, 10.165, 15.245}, high[] = {5.115, 10.255, 15.405};
-    for (int h = 0; h < 3; h++) {
-        for (int a = 0; a < 3; a++) {
+    for (size_t h = 0; h < 3; h++) {
+        for (size_t a = h % case_step(); a < 3; a += case_step()) {
             cJSON *curves =
                 study(1,
                       "{'surface': {'hurst': %g, 'nayak_alpha': %g, 'alpha_formula': "
@@ -170,7 +170,7 @@ static void density_of_summits(void **state) {
                  {"nine_point", 16, 1.0103, 0.005}, {"five_point", 16, 1.3064, 0.02},
                  {"refined", 4, 0, 0.02},           {"refined", 8, 0, 0.01},
                  {"refined", 16, 0, 0.005}};
-    for (size_t a = 0; a < sizeof cases / sizeof *cases; a++) {
+    for (size_t a = 0; a < sizeof cases / sizeof *cases; a += case_step()) {
         cJSON *curves =
             study(20 * effort(),
                   "{'surface': {'hurst': 0.8, 'wavelength_ratio': 8, "
@@ -272,7 +272,7 @@ static double curvature_at(const cJSON *curves, double z) {
 
 /* The reference's findings (sections 3.2.4, 3.2.5): C = 1 maximum has its summits near the bound, 1
  * deviation above the mean, and flatter ones the higher they are; the minimum the opposite; C
- * = 3.602 is near Gaussian; more summits for the maximum. 10 surfaces: differences of many standard
+ * = 3.602 is near Gaussian; more summits for the maximum. 5 surfaces: differences of many standard
  * errors. */
 static void weibull_findings(void **state) {
     (void)state;
@@ -280,10 +280,10 @@ static void weibull_findings(void **state) {
                          "'points_per_wavelength': 8, 'heights': {'distribution': '%s', 'shape': "
                          "%g}}, 'statistics': {'bins': {'height': [-3, 5, 40], 'curvature': "
                          "[-16, 0, 40]}}}";
-    cJSON *highest = study(10 * effort(), format, "weibull_max", 1.0);
-    cJSON *lowest = study(10 * effort(), format, "weibull_min", 1.0);
-    cJSON *near = study(10 * effort(), format, "weibull_max", 3.602);
-    cJSON *gaussian = study(10 * effort(), format, "gaussian", 1.0);
+    cJSON *highest = study(cases_of(15), format, "weibull_max", 1.0);
+    cJSON *lowest = study(cases_of(15), format, "weibull_min", 1.0);
+    cJSON *near = study(cases_of(15), format, "weibull_max", 3.602);
+    cJSON *gaussian = study(cases_of(15), format, "gaussian", 1.0);
     double mode = mode_of(curve_of(highest, "summit_height_pdf"));
     assert_true(mode > 0.6 && mode < 1.2);
     assert_true(mode_of(curve_of(lowest, "summit_height_pdf")) < 0.6);
