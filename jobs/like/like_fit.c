@@ -298,7 +298,7 @@ static bool put_prepared(cJSON *like, const struct fit *fit) {
                          "%snoise: taken out of the spectrum, with the waves in it",
                          used > 0 ? "; " : "");
     if (fabs(left) > NAMED && used >= 0 && used < SIZE)
-        snprintf(text + used, (size_t)(SIZE - used), "%sRMS %s of the surfaces: %+.2g %% off",
+        snprintf(text + used, (size_t)(SIZE - used), "%sRMS %s of the surfaces: %+.3g %% off",
                  used > 0 ? "; " : "", SQUARES[fit->left.moment], left);
     bool put = field_put_text(like, "prepared", text);
     free(text);
@@ -337,15 +337,16 @@ static int put_like(cJSON *surface, const struct fit *fit, struct error *err) {
 /* --- together --- */
 
 /* Refuses a table whose surfaces would not be like the map. */
-static int check_left(const struct like_left *left, struct error *err) {
-    static const double MOST = 0.25;
-    if (fabs(left->relative) <= MOST)
+static int check_left(const struct fit *fit, struct error *err) {
+    static const double MOST = 0.05;
+    const struct like_left *left = &fit->left;
+    if (fabs(left->relative) <= MOST || fit->source->off_stated)
         return 0;
-    return error_set(
-        err, ERROR_INPUT,
-        "no smooth spectrum has the map's: the RMS %s of its surfaces would be %.2g %% "
-        "off; %.2g %% is allowed; give \"spectrum\": \"fit\", or prepare the map",
-        SQUARES[left->moment], 100 * left->relative, 100 * MOST);
+    return error_set(err, ERROR_INPUT,
+                     "no smooth spectrum has the map's: the RMS %s of its surfaces would be %+.3g "
+                     "%% off; %.2g %% is allowed; prepare the map, give \"spectrum\": \"fit\", or "
+                     "\"off\": \"stated\" to take them as they are",
+                     SQUARES[left->moment], 100 * left->relative, 100 * MOST);
 }
 
 /* Noise counts where it governs the curvature of the map. */
@@ -368,7 +369,7 @@ static int fit_table(cJSON *surface, struct fit *fit, struct error *err) {
                                       squares, &fit->left, err);
     fit->without_noise = noise.density > 0;
     if (status == 0)
-        status = check_left(&fit->left, err);
+        status = check_left(fit, err);
     if (status != 0)
         return status;
     fit->wavelength = 2 * M_PI / fit->table.highest;

@@ -15,6 +15,7 @@ struct like_source {
     enum detrend detrend; /* of the trend that was removed */
     enum like_spectrum spectrum;
     enum like_heights heights;
+    bool off_stated; /* surfaces whose RMS values are off by more than 5 % are made all the same */
 };
 
 /* Writes the parameters of surfaces like the map into the object "surface" of a study, but for

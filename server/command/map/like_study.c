@@ -27,6 +27,7 @@ struct like_options {
     struct map_options map;
     int spectrum, heights; /* enum like_spectrum, enum like_heights */
     int contact;           /* 0: the map is pressed, too, mirrored; 1: it is not */
+    int off;               /* 0: refused; 1: stated */
     size_t number_count;
     char numbers[LIKE_NUMBERS_MOST]
                 [LIKE_NUMBER_SIZE]; /* texts of numbers that were given as such */
@@ -93,6 +94,7 @@ static const struct option_row ROWS[] = {
     {"spectrum", 0, OPTION_CHOICE, 0, 0, AT(spectrum), "table|fit", "table", NULL},
     {"heights", 0, OPTION_CHOICE, 0, 0, AT(heights), "quantiles|fit|gaussian", "quantiles", NULL},
     {"contact", 0, OPTION_CHOICE, 0, 0, AT(contact), "mirrored|none", "mirrored", NULL},
+    {"off", 0, OPTION_CHOICE, 0, 0, AT(off), "refused|stated", "refused", NULL},
     MAP_OPTION_ROWS(struct like_options, map),
     {0}};
 
@@ -236,6 +238,7 @@ static int fit_map(cJSON *document, const char *place, const struct like_options
     source.file = options->file;
     source.spectrum = (enum like_spectrum)options->spectrum;
     source.heights = (enum like_heights)options->heights;
+    source.off_stated = options->off == 1;
     status = like_fit(cJSON_GetObjectItemCaseSensitive(document, "surface"), &map, &source, err);
     if (status == 0 && options->contact == 0)
         status = like_contact_add(document, &map, err);
@@ -321,8 +324,9 @@ int like_study_make(cJSON **out, const struct height_map *map,
                     const struct preparation_record *record, struct error *err) {
     enum { REALISATIONS = 100, NAME_SIZE = 80 };
     char steps[PREPARATION_STEPS_TEXT], name[NAME_SIZE];
-    const struct like_source source = source_of(record, steps);
+    struct like_source source = source_of(record, steps);
     cJSON *study = cJSON_CreateObject();
+    source.off_stated = true; /* by the study that is written */
     snprintf(name, sizeof name, "like %.70s", source.file != NULL ? source.file : "a map");
     cJSON *surface = NULL;
     if (study != NULL && field_put_text(study, "name", name) &&

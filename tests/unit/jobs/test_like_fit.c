@@ -312,6 +312,31 @@ static void refused(const struct height_map *map, const char *words) {
     cJSON_Delete(surface);
 }
 
+/* A bow of ten times the roughness is a wave longer than the map, which no sub-map less its plane
+ * has: the surfaces are refused, or made by one who asks, and say what is off. */
+static void what_stays_off_is_refused_or_stated(void **state) {
+    (void)state;
+    struct height_map map = patch(false, 8);
+    struct like_source source = SOURCE;
+    const struct grid *grid = &map.grid;
+    double square = 0;
+    for (size_t n = 0; n < grid_points(grid); n++)
+        square += map.z[n] * map.z[n] / (double)grid_points(grid);
+    for (size_t n = 0; n < grid_points(grid); n++) {
+        double x = (double)(n % grid->nx) / (double)grid->nx - 0.5;
+        map.z[n] += 40 * sqrt(square) * x * x;
+    }
+    refused(&map, "\"off\": \"stated\"");
+    source.off_stated = true;
+    cJSON *surface = fitted_by("{}", &map, &source);
+    const char *prepared = cJSON_GetStringValue(json_at(surface, "/like/prepared"));
+    assert_non_null(prepared);
+    print_message("%s\n", prepared);
+    assert_non_null(strstr(prepared, "RMS height of the surfaces: -"));
+    cJSON_Delete(surface);
+    height_map_clear(&map);
+}
+
 static void maps_that_cannot_be_fitted(void **state) {
     (void)state;
     struct height_map map = patch(false, 6);
@@ -342,6 +367,7 @@ int main(void) {
         cmocka_unit_test(units_do_not_matter),
         cmocka_unit_test(the_study_stands),
         cmocka_unit_test(the_law_of_heights_stands),
+        cmocka_unit_test(what_stays_off_is_refused_or_stated),
         cmocka_unit_test(maps_that_cannot_be_fitted),
         cmocka_unit_test(laws),
         cmocka_unit_test(grooves),
