@@ -1,5 +1,6 @@
 #include "jobs/like/like_percentile.h"
 #include "jobs/estimate.h"
+#include "jobs/like/like_verdict.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -33,7 +34,8 @@ static int add(struct case_result *out, const char *before, const char *name, do
 }
 
 static int add_quantity(const struct like_case *like, enum patch_quantity quantity, size_t n,
-                        const double *values, struct case_result *out, struct error *err) {
+                        const double *values, double difference, struct case_result *out,
+                        struct error *err) {
     const struct like_place place = like_place_of(n, values, like->measured[quantity]);
     const struct estimate mean = estimate_mean(n, values);
     double standard_error, percentile = like_percentile(&place, &standard_error);
@@ -43,7 +45,21 @@ static int add_quantity(const struct like_case *like, enum patch_quantity quanti
         status = add(out, "measured", name, like->measured[quantity], 0, err);
     if (status == 0)
         status = add(out, "percentile", name, percentile, standard_error, err);
+    if (status == 0)
+        status = add(out, "difference", name, difference, NAN, err);
     return status;
+}
+
+static int add_all(const struct like_case *like, size_t n, const double *values,
+                   struct case_result *out, struct error *err) {
+    struct like_verdict verdict;
+    int status = like_verdict_measure(n, values, like->measured, &verdict, err);
+    for (size_t a = 0; a < PATCH_QUANTITY_COUNT && status == 0; a++)
+        if (isfinite(like->measured[a]))
+            status = add_quantity(like, (enum patch_quantity)a, n, values + a * n,
+                                  verdict.difference[a], out, err);
+    return status == 0 ? add(out, "like", "p_value", verdict.p_value, verdict.standard_error, err)
+                       : status;
 }
 
 int like_scalars(const struct like_case *like, const struct realisations *realisations,
@@ -51,15 +67,12 @@ int like_scalars(const struct like_case *like, const struct realisations *realis
     size_t n = (size_t)realisations->count;
     if (!like_case_is_cut(like))
         return 0;
-    double *values = array_create(n + 1, sizeof *values);
+    double *values = array_create(n + 1, PATCH_QUANTITY_COUNT * sizeof *values);
     if (values == NULL)
-        return error_memory(err, n * sizeof *values, "sub-maps of surfaces");
-    int status = 0;
-    for (size_t a = 0; a < PATCH_QUANTITY_COUNT && status == 0; a++) {
-        realisations_column(realisations, first + a, values);
-        if (isfinite(like->measured[a]))
-            status = add_quantity(like, (enum patch_quantity)a, n, values, out, err);
-    }
+        return error_memory(err, n * PATCH_QUANTITY_COUNT * sizeof *values, "sub-maps of surfaces");
+    for (size_t a = 0; a < PATCH_QUANTITY_COUNT; a++)
+        realisations_column(realisations, first + a, values + a * n);
+    int status = add_all(like, n, values, out, err);
     free(values);
     return status;
 }

@@ -16,9 +16,10 @@ struct like_place like_place_of(size_t n, const double *values, double measured)
  * if it was not measured. */
 double like_percentile(const struct like_place *place, double *standard_error);
 
-/* Appends three scalars for each quantity of a case with sub-maps: "piece_NAME", its mean over the
- * sub-maps, "measured_NAME", that of the measured map, and "percentile_NAME". first: the number of
- * the scalar of a realisation that is the first quantity. */
+/* Appends four scalars for each quantity of a case with sub-maps: "piece_NAME", its mean over the
+ * sub-maps, "measured_NAME", that of the measured map, "percentile_NAME", and "difference_NAME"
+ * (like_verdict.h); then "like_p_value", of the largest difference. first: the number of the scalar
+ * of a realisation that is the first quantity. */
 int like_scalars(const struct like_case *like, const struct realisations *realisations,
                  size_t first, struct case_result *out, struct error *err);
 

@@ -73,6 +73,26 @@ static void print_head(const struct case_result *one, FILE *file) {
     fputc('\n', file);
 }
 
+/* Says whether the measured surface may be one of them, and what differs most. */
+static void print_verdict(const struct case_result *one, FILE *file) {
+    static const double LEVEL = 0.05;
+    static const char DIFFERENCE[] = "difference_";
+    const struct scalar *p_value = result_scalar(one, "like_p_value"), *most = NULL;
+    for (size_t s = 0; s < one->scalar_count; s++) {
+        const struct scalar *scalar = &one->scalars[s];
+        if (strncmp(scalar->name, DIFFERENCE, sizeof DIFFERENCE - 1) == 0 &&
+            !isnan(scalar->value) && (most == NULL || fabs(scalar->value) > fabs(most->value)))
+            most = scalar;
+    }
+    if (p_value == NULL || isnan(p_value->value) || most == NULL)
+        return;
+    const char *least = p_value->value * ((double)one->realisations + 1) < 1.5 ? ", the least" : "";
+    fprintf(file, "%s: %s differs most, by %.1f deviations (p-value %.2g%s%s)\n",
+            p_value->value < LEVEL ? "not one of them" : "may be one of them",
+            most->name + sizeof DIFFERENCE - 1, fabs(most->value), p_value->value, least,
+            *least != '\0' ? " of so many surfaces" : "");
+}
+
 /* Prints what was measured of each quantity, the mean and deviation over the sub-maps of the
  * surfaces, and the percentile; nothing of a case that is like no measured surface. */
 static void summary_of_like(const struct case_result *one, FILE *file) {
@@ -90,6 +110,7 @@ static void summary_of_like(const struct case_result *one, FILE *file) {
     if (rows > 0) {
         print_head(one, file);
         table_print(&table, file);
+        print_verdict(one, file);
     } else if (is_expected(one)) {
         print_name(one, file);
         fputs(
