@@ -185,12 +185,7 @@ static int fill_slide(struct contact_case *out, const double *turns, size_t coun
     out->slide = array_create(count * steps + 1, sizeof *out->slide);
     if (out->slide == NULL)
         return error_memory(err, (count * steps + 1) * sizeof *out->slide, "a path of the flat");
-    for (size_t a = 0; a < count; a++) {
-        double from = a > 0 ? turns[a - 1] : 0;
-        for (size_t k = 0; k < steps; k++)
-            out->slide[a * steps + k + 1] =
-                k + 1 < steps ? from + contact_load(turns[a] - from, k, steps) : turns[a];
-    }
+    contact_loads_path(turns, count, steps, out->slide);
     out->slide_count = count * steps + 1;
     return 0;
 }

@@ -98,6 +98,22 @@ static int check(struct contact_case *one_case, size_t model, struct values *val
     return 0;
 }
 
+static int face_fits(const struct block *block, double rms_slope, double rms_height,
+                     struct error *err) {
+    double height = block->height / rms_height;
+    if (rms_slope > SLOPE_MOST)
+        return error_set(err, ERROR_INPUT,
+                         "RMS slope %.4g: the model full can mesh surfaces up to about %g; "
+                         "--filter S=LENGTH takes short waves out, which are the steepest",
+                         rms_slope, SLOPE_MOST);
+    if (height < HEIGHT_LEAST * (1 - ROUNDING))
+        return error_set(err, ERROR_INPUT,
+                         "the block is %.4g RMS heights high: the model full needs %g or more, as "
+                         "layers of lower blocks fold over valleys; take a larger --height",
+                         height, HEIGHT_LEAST);
+    return 0;
+}
+
 /* --- errors --- */
 
 static double mesh_floor(int dimension, enum measure_field field, double transition_depth) {
@@ -231,6 +247,7 @@ const struct contact_model FULL_MODEL = {
     .scalars = SCALARS,
     .kinematics = kinematics_name,
     .check = check,
+    .face_fits = face_fits,
     .mesh_floor = mesh_floor,
     .bytes = bytes,
     .seconds = seconds,
