@@ -49,6 +49,22 @@ static bool is_uncertain(const struct press_report *report, const struct press_c
     return column->uncertain && has_column(report, column);
 }
 
+/* Return whether tables for people show a column of this model, and its errors: where some load has
+ * a value, or none has any. */
+static bool is_printed(const struct part *part, const struct press_column *column) {
+    const struct press_row *rows = part->series->rows;
+    bool some = false, solved = false;
+    for (size_t l = 0; l < part->report->loads; l++) {
+        some = some || !isnan(value_of(part, l, column));
+        solved = solved || !isnan(rows[l].value[PRESS_CONTACT_NODES]);
+    }
+    return has_column(part->report, column) && (some || !solved);
+}
+
+static bool is_error_printed(const struct part *part, const struct press_column *column) {
+    return column->uncertain && is_printed(part, column);
+}
+
 static const struct press_column *column_of(size_t value) {
     size_t c = 0;
     while (PRESS_COLUMNS[c].value != value)
@@ -131,6 +147,9 @@ static void print_physical(FILE *file, const struct part *part) {
     bool profile = grid_is_profile(&report->press->map);
     struct text_table table = {0};
     fill_physical(report, columns);
+    for (size_t c = 0; c < PHYSICAL_COLUMNS; c++)
+        if (!is_printed(part, column_of(columns[c].value)))
+            columns[c].scale = 0;
     for (size_t c = 0; c < PHYSICAL_COLUMNS; c++)
         table.columns += columns[c].scale > 0;
     if (table.columns == 0)
@@ -260,7 +279,7 @@ static void print_errors(FILE *file, const struct part *part, enum error_source 
     struct text_table table = {.columns = 1};
     bool known = source == ERROR_DISCRETISATION;
     for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++) {
-        bool shown = is_uncertain(part->report, &PRESS_COLUMNS[c]);
+        bool shown = is_error_printed(part, &PRESS_COLUMNS[c]);
         table.columns += shown;
         known = known || (shown && error_of(part, &PRESS_COLUMNS[c], source).value != NULL);
     }
@@ -268,12 +287,12 @@ static void print_errors(FILE *file, const struct part *part, enum error_source 
         return;
     table_cell(&table, "%s", column_of(PRESS_LOAD)->heading);
     for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++)
-        if (is_uncertain(part->report, &PRESS_COLUMNS[c]))
+        if (is_error_printed(part, &PRESS_COLUMNS[c]))
             table_cell(&table, "%s", PRESS_COLUMNS[c].heading);
     for (size_t l = 0; l < part->report->loads; l++) {
         table_number(&table, value_of(part, l, column_of(PRESS_LOAD)));
         for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++)
-            if (is_uncertain(part->report, &PRESS_COLUMNS[c])) {
+            if (is_error_printed(part, &PRESS_COLUMNS[c])) {
                 struct curve_error error = error_of(part, &PRESS_COLUMNS[c], source);
                 put_error(&table, &error, l);
             }
@@ -287,9 +306,9 @@ static void print_part(FILE *file, const struct part *part) {
     struct text_table table = {0};
     print_heading(file, part);
     for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++)
-        table.columns += has_column(part->report, &PRESS_COLUMNS[c]);
+        table.columns += is_printed(part, &PRESS_COLUMNS[c]);
     for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++) {
-        if (!has_column(part->report, &PRESS_COLUMNS[c]))
+        if (!is_printed(part, &PRESS_COLUMNS[c]))
             continue;
         if (PRESS_COLUMNS[c].fold)
             table_fold(&table);
@@ -297,7 +316,7 @@ static void print_part(FILE *file, const struct part *part) {
     }
     for (size_t l = 0; l < part->report->loads; l++)
         for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++)
-            if (has_column(part->report, &PRESS_COLUMNS[c]))
+            if (is_printed(part, &PRESS_COLUMNS[c]))
                 table_number(&table, value_of(part, l, &PRESS_COLUMNS[c]));
     table_print(&table, file);
     table_clear(&table);
