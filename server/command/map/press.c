@@ -32,7 +32,7 @@ enum { POINTS_SHARED = 1 << 15 };
 /* With fewer nodes in contact, areas and pressures are rough. */
 enum { CONTACT_NODES_FEW = 50 };
 
-/* From so many seconds on, as estimated, each load is told on standard error. */
+/* From so many seconds on, as estimated, each load is named on standard error. */
 static const double SECONDS_WATCHED = 10;
 /* The most that the model full slides with. */
 static const double SLIDING_FRICTION_MOST = 1;

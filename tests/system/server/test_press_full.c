@@ -1,6 +1,6 @@
 /* Protects: `rugo press --model full`: the numbers of a study on the same heights, without friction
  * and with it; open maps are mirrored; what a load without a solution leaves; the block as a file;
- * what it takes is told before; what is refused. */
+ * what it takes is printed before; what is refused. */
 #include "schema/json/json.h"
 #include "tests/support/check.h"
 #include "tests/support/process.h"
@@ -64,11 +64,13 @@ static void a_map_is_pressed_as_in_a_study(void **state) {
 /* A load without a solution leaves those before: their table, and as files the last of them. */
 static void loads_without_values_are_noted(void **state) {
     (void)state;
-    check_shell("sh ./press --model full --loads 0.2,1000 --error none -o p.npy --mesh m.vtu --steps "
-                "st --format json > two.json && mv shell.err told && sh ./press --model full "
-                "--loads 0.2 --error none -o q.npy --mesh n.vtu >/dev/null && cmp p.npy q.npy && "
-                "cmp m.vtu n.vtu && cmp m.vtu st/step-1.vtu && [ ! -e st/step-2.vtu ]");
-    assert_true(contains("told", "warning: z.npy: model full: no values from p/(E* h') = 1000 on"));
+    check_shell(
+        "sh ./press --model full --loads 0.2,1000 --error none -o p.npy --mesh m.vtu --steps "
+        "st --format json > two.json && mv shell.err words && sh ./press --model full "
+        "--loads 0.2 --error none -o q.npy --mesh n.vtu >/dev/null && cmp p.npy q.npy && "
+        "cmp m.vtu n.vtu && cmp m.vtu st/step-1.vtu && [ ! -e st/step-2.vtu ]");
+    assert_true(
+        contains("words", "warning: z.npy: model full: no values from p/(E* h') = 1000 on"));
     cJSON *map = read_json("two.json");
     assert_non_null(strstr(json_at(map, "/note")->valuestring, "was reached up to"));
     assert_true(json_at(map, "/edges/0")->valuedouble > 0);
@@ -102,7 +104,7 @@ static void open_maps_are_mirrored(void **state) {
     assert_true(contains("shell.out", "boundary: open (by seam)\n"));
 }
 
-static void what_it_takes_is_told(void **state) {
+static void what_it_takes_is_estimated(void **state) {
     (void)state;
     check_shell("awk 'BEGIN { for (j = 0; j < 128; j++) for (i = 0; i < 256; i++) printf "
                 "\"%.5f%c\", cos(i * 0.3) * cos(j * 0.2), i < 255 ? 44 : 10 }' > large.csv && "
@@ -154,7 +156,7 @@ int main(void) {
         cmocka_unit_test(loads_without_values_are_noted),
         cmocka_unit_test(the_block_is_written),
         cmocka_unit_test(open_maps_are_mirrored),
-        cmocka_unit_test(what_it_takes_is_told),
+        cmocka_unit_test(what_it_takes_is_estimated),
         cmocka_unit_test(what_has_no_meaning_is_refused),
     };
     return cmocka_run_group_tests(tests, setup, NULL);
