@@ -136,7 +136,8 @@ static double seconds(const struct contact_case *one_case, size_t model, const s
     struct full_options options = contact_case_full_options(one_case, grid);
     struct full_size size =
         cost_full_size(grid, &one_case->blocks[model], &options, one_case->rms_slope);
-    return cost_full_contact(grid, &size, one_case->load_count);
+    double expected = cost_full_contact(grid, &size, one_case->load_count);
+    return one_case->time_limit > 0 ? fmin(expected, one_case->time_limit) : expected;
 }
 
 /* --- solving --- */
@@ -157,7 +158,8 @@ static void destroy(struct contact_solver **solver) {
 static int create(struct contact_solver **out, const struct contact_case *one_case, size_t model,
                   const struct compliance *compliance, struct error *err) {
     const struct grid *grid = &compliance->grid;
-    struct full_options options = contact_case_full_options(one_case, grid);
+    struct full_options options =
+        contact_case_limited_options(one_case, grid, &one_case->blocks[model]);
     struct contact_solver *solver = array_create(1, sizeof *solver);
     if (solver == NULL)
         return error_memory(err, sizeof *solver, "a contact solver");
