@@ -75,8 +75,8 @@ static const struct option_row OPTIONS[] = {
      "pressure at which the block yields, such as 2GPa; without it, it is elastic"},
     {"friction", 0, OPTION_NUMBER, 1e-3, 10, AT(words.friction), "MU", NULL,
      "coefficient of friction: what sticks, and how far the face gives, as a tangential load rises "
-     "under the highest load; loads below it are added. With the model full, of profiles and up to "
-     "1, at finite strain by how far the flat slides (--slide-to)"},
+     "under the highest load (loads below it are added); the model full drags the flat over "
+     "profiles (--slide-to), with up to 1"},
     {"direction", 0, OPTION_CHOICE, 0, 0, AT(along_y), "x|y", "x", "of the tangential load"},
     {"coupling", 0, OPTION_CHOICE, 0, 0, AT(coupling), COUPLINGS, "none",
      "with --friction: also solve slip with pressures and tractions coupled, after pressing the "
