@@ -14,11 +14,11 @@ struct mesh_file {
     size_t count;
 };
 /* Notes a step of so many at most, which has a mesh; nothing without a path. ERROR_MEMORY. */
-int mesh_file_note(struct mesh_file *file, const struct nodal_step *step, size_t most,
+int mesh_file_note(struct mesh_file *mesh, const struct nodal_step *step, size_t most,
                    struct error *err);
 /* Writes the block as it is in this step, with all that were noted, over what was there. No file is
  * left after a failure. */
-int mesh_file_write(const struct mesh_file *file, const struct nodal_step *step, struct error *err);
-void mesh_file_clear(struct mesh_file *file);
+int mesh_file_write(const struct mesh_file *mesh, const struct nodal_step *step, struct error *err);
+void mesh_file_clear(struct mesh_file *mesh);
 
 #endif
