@@ -1,6 +1,8 @@
 #include "jobs/maps/map_press_curves.h"
 #include "jobs/maps/map_press_error.h"
+#include "jobs/notes.h"
 #include <math.h>
+#include <stdio.h>
 
 /* What the curves are made from. */
 struct curve_maker {
@@ -151,6 +153,21 @@ static int append_own(const struct curve_maker *maker, size_t m, struct error *e
     return status;
 }
 
+/* Adds why models have no values, as notes on the one realisation. */
+static int append_notes(const struct curve_maker *maker, struct error *err) {
+    struct notes notes = {.count = 0};
+    for (size_t m = 0; m < maker->count; m++) {
+        const struct press_series *series = &maker->series[m];
+        char text[NOTE_SIZE];
+        if (series->note[0] == '\0')
+            continue;
+        snprintf(text, sizeof text, "model %.40s: %s", contact_model_name(series->block.model),
+                 series->note);
+        notes_add(&notes, 0, text);
+    }
+    return notes_result(&notes, maker->out, err);
+}
+
 int map_press_result(struct case_result *out, const struct map_press *press, size_t count,
                      const struct press_series *series, size_t loads, struct error *err) {
     const struct curve_maker maker = {press, count, loads, series, out};
@@ -163,7 +180,7 @@ int map_press_result(struct case_result *out, const struct map_press *press, siz
             status = append_value(&maker, MEASURE_CURVES[a], err);
     for (size_t m = 0; m < count && status == 0; m++)
         status = append_own(&maker, m, err);
-    return status;
+    return status == 0 ? append_notes(&maker, err) : status;
 }
 
 const struct curve *map_press_curve(const struct case_result *result,

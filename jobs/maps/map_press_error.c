@@ -105,7 +105,7 @@ static int sides_begin(struct sides *sides, const struct map_press *press,
                        const struct height_map *map, size_t step, size_t loads,
                        const double *pressures, struct error *err) {
     *sides = (struct sides){.press = press,
-                            .side = {.team = press->team, .seconds_most = press->seconds_most},
+                            .side = {.team = press->team},
                             .loads = loads,
                             .pressures = array_create(loads, sizeof *sides->pressures)};
     if (sides->pressures == NULL)
@@ -160,6 +160,8 @@ static int take_slide(struct sides *sides, struct press_series *side, struct err
 }
 
 static int press_side(struct sides *sides, struct press_series *side, struct error *err) {
+    /* as the loads themselves: other models take as long as they do */
+    sides->side.seconds_most = side->block.model->may_fail ? sides->press->seconds_most : 0;
     int status =
         map_press_loads(&sides->side, sides->map.z, sides->loads, sides->pressures, side, err);
     map_press_release(&sides->side);

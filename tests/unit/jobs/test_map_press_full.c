@@ -244,7 +244,10 @@ static void the_flat_slides(void **state) {
         assert_true(slides[i].error[ERROR_SOLVER][SLIDING_GAP].bound > 0);
     }
     assert_true(isnan(rows[1].value[SLIDING_FORCE]));
+    snprintf(series.note, sizeof series.note, "the path ends");
     assert_int_equal(map_press_result(&result, &press, 1, &series, 2, &err), 0);
+    assert_int_equal(result.note_count, 1);
+    assert_string_equal(result.notes[0].text, "model full: the path ends");
     const struct curve *force = result_curve(&result, "sliding_force");
     assert_non_null(force);
     assert_int_equal(force->n, POINTS);
