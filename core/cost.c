@@ -225,10 +225,26 @@ struct full_size cost_full_size(const struct grid *grid, const struct block *blo
     return size;
 }
 
+/* Returns the nanoseconds a degree of freedom of an iteration of the linear equations. */
+static double linear_nanoseconds(const struct grid *grid, const struct full_size *size) {
+    return (grid_is_profile(grid) ? PROFILE_LINEAR_NS : SURFACE_LINEAR_NS) +
+           (size->pressures ? PRESSURE_NS : 0);
+}
+
+struct full_limit cost_full_limit(const struct grid *grid, const struct full_size *size,
+                                  double seconds) {
+    const bool profile = grid_is_profile(grid);
+    const double unit = 1e-9 * size->degrees_of_freedom;
+    return (struct full_limit){.seconds = seconds,
+                               .newton = unit * (profile ? PROFILE_NEWTON_NS : SURFACE_NEWTON_NS),
+                               .linear = unit * linear_nanoseconds(grid, size),
+                               .factored =
+                                   unit * (profile ? PROFILE_FACTORED_NS : SURFACE_FACTORED_NS)};
+}
+
 double cost_full_contact(const struct grid *grid, const struct full_size *size, size_t loads) {
     bool profile = grid_is_profile(grid);
-    double linear =
-        (profile ? PROFILE_LINEAR_NS : SURFACE_LINEAR_NS) + (size->pressures ? PRESSURE_NS : 0);
+    double linear = linear_nanoseconds(grid, size);
     double nanoseconds = (profile ? PROFILE_NEWTON_NS : SURFACE_NEWTON_NS) + linear * size->linear;
     if (size->factored)
         nanoseconds = profile ? PROFILE_FACTORED_NS : SURFACE_FACTORED_NS;

@@ -57,6 +57,9 @@ struct full_size cost_full_size(const struct grid *grid, const struct block *blo
  * 0.45 for steep profiles, not all of which are factorised in the end. The time of three loads was
  * 1.0 to 2.1 of the estimate; 3.2 at a Poisson's ratio of 0.4999. */
 double cost_full_contact(const struct grid *grid, const struct full_size *size, size_t loads);
+/* What iterations on a mesh of this size count of a limit of so many of these seconds. */
+struct full_limit cost_full_limit(const struct grid *grid, const struct full_size *size,
+                                  double seconds);
 double cost_full_bytes(const struct grid *grid, const struct block *block,
                        const struct full_options *options, const struct full_size *size);
 /* CPU seconds of steps with friction of profiles (core/full/friction), and bytes of their solver.

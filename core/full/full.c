@@ -30,6 +30,7 @@ struct full {
                               the load being tried */
     double load;           /* that load; 0: no contact */
     double rms;            /* RMS height */
+    double used;           /* counted seconds since full_begin (struct full_limit) */
 };
 
 static int options_check(const struct full_options *options, struct error *err) {
@@ -198,6 +199,7 @@ int full_begin(struct full *f, const double *z, struct error *err) {
     if (status == 0)
         status = contact_begin(f->linear, z, err);
     lift(f);
+    f->used = 0;
     return status;
 }
 
@@ -242,6 +244,9 @@ static int step_to(struct full *f, double load, double *change, struct newton_en
     report->factored += end->factored;
     report->changes += end->changes;
     report->cycles += end->cycles;
+    f->used += f->options.limit.newton * (double)end->iterations +
+               f->options.limit.linear * (double)end->linear +
+               f->options.limit.factored * (double)end->factored;
     *change = status == 0 ? face_stretch_change(f->mesh, f->newton.u, f->kept) : 0;
     if (*change > FACE_CHANGE_MOST)
         status = error_set(err, ERROR_NUMERIC, "the face jumps, by %.2g of a cell", *change);
@@ -254,6 +259,16 @@ static int step_to(struct full *f, double load, double *change, struct newton_en
     return status;
 }
 
+static int check_limit(const struct full *f, double goal, struct error *err) {
+    const double seconds = f->options.limit.seconds;
+    if (!(seconds > 0 && f->used > seconds))
+        return 0;
+    return error_set(err, ERROR_NUMERIC,
+                     "contact on the true geometry under a mean pressure of %g E* was reached up "
+                     "to %g E* only: the time limit of %g s was used up",
+                     goal, f->load, seconds);
+}
+
 /* Goes from the last load to another, in one step or in smaller ones. Steps grow again once two in
  * a row have converged with changes below half of FACE_CHANGE_MOST. */
 static int raise_load(struct full *f, double goal, struct newton_end *end,
@@ -262,6 +277,8 @@ static int raise_load(struct full *f, double goal, struct newton_end *end,
     bool cut = false;
     int status = 0;
     do {
+        if (check_limit(f, goal, err) != 0)
+            return ERROR_NUMERIC;
         step = fabs(step) < fabs(goal - f->load) ? step : goal - f->load;
         double next = step == goal - f->load ? goal : f->load + step;
         status = step_to(f, next, &change, end, report, err);

@@ -26,6 +26,17 @@ struct full_options contact_case_full_options(const struct contact_case *one_cas
     return options;
 }
 
+struct full_options contact_case_limited_options(const struct contact_case *one_case,
+                                                 const struct grid *grid,
+                                                 const struct block *block) {
+    struct full_options options = contact_case_full_options(one_case, grid);
+    if (!(one_case->time_limit > 0))
+        return options;
+    const struct full_size size = cost_full_size(grid, block, &options, one_case->rms_slope);
+    options.limit = cost_full_limit(grid, &size, one_case->time_limit);
+    return options;
+}
+
 bool contact_case_slides(const struct contact_case *one_case) {
     bool slides = false;
     for (size_t m = 0; m < one_case->model_count; m++)

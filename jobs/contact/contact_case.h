@@ -75,8 +75,9 @@ struct contact_case {
     double slip_angle;             /* of the tangential load from x, in radians */
     size_t slide_count;            /* points of curves by sliding at the held load; 0: none */
     size_t slide_steps;            /* of them from one turning point to the next */
-    double *slide;    /* owned: where the flat is at each, over the RMS height; the first is 0 */
-    double tolerance; /* of solutions (contact_tolerance.h) */
+    double *slide;     /* owned: where the flat is at each, over the RMS height; the first is 0 */
+    double tolerance;  /* of solutions (contact_tolerance.h) */
+    double time_limit; /* counted seconds of the loads of full (full.h); 0: none */
     size_t pdf_count;
     size_t *pdf_loads;    /* owned: loads whose pressures are counted, rising */
     bool pdf_pairs;       /* on all levels, with their differences (contact_densities.h) */
@@ -141,9 +142,13 @@ double contact_case_block_bound(const struct contact_case *one_case, size_t mode
 size_t contact_case_complete(const struct contact_case *one_case);
 /* Returns the depth on a mesh from which columns become wider, in widths of the wide ones. */
 double contact_case_transition(const struct contact_case *one_case, const struct grid *grid);
-/* Returns how the case has the model full solved on a grid. */
+/* Returns how the case has the model full solved on a grid, and the same with the limit of what the
+ * loads on this block may take. */
 struct full_options contact_case_full_options(const struct contact_case *one_case,
                                               const struct grid *grid);
+struct full_options contact_case_limited_options(const struct contact_case *one_case,
+                                                 const struct grid *grid,
+                                                 const struct block *block);
 /* Returns whether there is friction and a model that has it at finite strain. */
 bool contact_case_slides(const struct contact_case *one_case);
 /* Returns how far the flat has gone on its path at point i, over the RMS height. */

@@ -56,6 +56,12 @@ static void read_coating(struct block *block, struct values *values) {
             (struct coating){thickness, modulus, isnan(poisson) ? block->poisson : poisson};
 }
 
+static const char TIME_LIMIT[] = "/contact/time_limit";
+
+static double given_or(double number, double usual) {
+    return isnan(number) ? usual : number;
+}
+
 static void read_block(struct contact_case *out, struct asked *asked, struct values *values) {
     int models[CONTACT_MODELS_MOST];
     size_t before = values_fault_count(values);
@@ -63,11 +69,12 @@ static void read_block(struct contact_case *out, struct asked *asked, struct val
                           .layer_growth = values_number(values, "/contact/layer_growth"),
                           .weighting =
                               (enum gap_weighting)values_choice(values, "/contact/gap_weighting")};
-    bool elements = false;
+    bool elements = false, fails = false;
     read_coating(&block, values);
     out->model_count = values_choices(values, "/contact/model", models);
     out->kinematics = (enum kinematics)values_choice(values, "/contact/kinematics");
     out->transition_depth = values_number(values, "/contact/transition_depth");
+    out->time_limit = given_or(values_number(values, TIME_LIMIT), 0);
     asked->height = values_measure(values, "/contact/block_height", &asked->height_unit);
     asked->fine = values_measure(values, FINE_HEIGHT, &asked->fine_unit);
     for (size_t m = 0; m < out->model_count; m++) {
@@ -75,6 +82,7 @@ static void read_block(struct contact_case *out, struct asked *asked, struct val
         out->blocks[m] = block;
         out->blocks[m].model = out->models[m]->block;
         elements = elements || out->models[m]->elements;
+        fails = fails || out->models[m]->may_fail;
         if (block_is_coated(&block) && !out->models[m]->coatings)
             values_fault(values, COATING, "the model %s has no coatings",
                          contact_model_name(out->models[m]));
@@ -83,6 +91,8 @@ static void read_block(struct contact_case *out, struct asked *asked, struct val
         values_fault(
             values, "/contact/block_height",
             "only a halfspace can be infinite, and a block of finite elements is asked for");
+    if (!fails && out->model_count > 0 && out->time_limit > 0)
+        values_fault(values, TIME_LIMIT, "belongs to the model full, which is not asked for");
     if (!elements && out->model_count > 0 && block.weighting == GAP_DUAL)
         values_fault(values, "/contact/gap_weighting",
                      "\"dual\" belongs to finite elements, and no such model is asked for");
@@ -185,12 +195,7 @@ static int fill_slide(struct contact_case *out, const double *turns, size_t coun
     out->slide = array_create(count * steps + 1, sizeof *out->slide);
     if (out->slide == NULL)
         return error_memory(err, (count * steps + 1) * sizeof *out->slide, "a path of the flat");
-    for (size_t a = 0; a < count; a++) {
-        double from = a > 0 ? turns[a - 1] : 0;
-        for (size_t k = 0; k < steps; k++)
-            out->slide[a * steps + k + 1] =
-                k + 1 < steps ? from + contact_load(turns[a] - from, k, steps) : turns[a];
-    }
+    contact_loads_path(turns, count, steps, out->slide);
     out->slide_count = count * steps + 1;
     return 0;
 }

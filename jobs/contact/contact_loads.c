@@ -17,6 +17,16 @@ double contact_load(double to, size_t k, size_t count) {
     return strtod(text, NULL);
 }
 
+void contact_loads_path(const double *turns, size_t count, size_t steps, double *path) {
+    path[0] = 0;
+    for (size_t a = 0; a < count; a++) {
+        double from = a > 0 ? turns[a - 1] : 0;
+        for (size_t k = 0; k < steps; k++)
+            path[a * steps + k + 1] =
+                k + 1 < steps ? from + contact_load(turns[a] - from, k, steps) : turns[a];
+    }
+}
+
 static cJSON *list_of(double to, size_t count) {
     cJSON *list = cJSON_CreateArray();
     bool done = list != NULL;

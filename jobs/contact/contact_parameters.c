@@ -148,6 +148,19 @@ static const struct parameter ROWS[] = {
      .example_json = "[\"standard\", \"dual\"]",
      .help = "layered, full: shape functions that weight the gap of a node: standard ones, over it "
              "and its neighbours, or dual ones, at it alone; multipliers are dual in both"},
+    {.path = "/contact/time_limit",
+     .type = PARAMETER_NUMBER,
+     .minimum = 0,
+     .maximum = 1e9,
+     .above_minimum = true,
+     .target_refusal = "a target solves what its error takes",
+     .later = true,
+     .unit = "s",
+     .example_json = "600",
+     .help =
+         "full: seconds of CPU time that the loads of a realisation may take on a level, and as "
+         "many its sliding, counted by iterations as rugo check counts them, so that results "
+         "stay the same; the loads before keep their values, and a note says so"},
     {.path = "/contact/kinematics",
      .type = PARAMETER_CHOICE,
      .choices = KINEMATICS_CHOICES,

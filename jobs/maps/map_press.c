@@ -6,6 +6,8 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+#include <time.h>
 
 #define OWN(value) [PRESS_##value - PRESS_LOAD]
 static const struct measure OWN_MEASURES[PRESS_VALUES - PRESS_LOAD] = {
@@ -124,56 +126,68 @@ static double tolerance_of(const struct press_block *asked) {
     return asked->model->tolerance > 0 ? asked->model->tolerance : CONTACT_DEFAULTS.tolerance;
 }
 
-/* The case of one load after the other, on one mesh, by one model. The map's slopes are known. */
-static void fill_case(struct map_press *press, const struct press_block *asked) {
-    const struct contact_model *model = asked->model;
-    double lengths = asked->lengths > 0 ? asked->lengths : model->default_height;
-    press->one_case =
-        (struct contact_case){.surface = {.dimension = grid_is_profile(&press->grid) ? 1 : 2,
-                                          .spectrum = {.scale = SCALE_RMS_SLOPE}},
-                              .two_faces = asked->two_faces,
-                              .model_count = 1,
-                              .models = {model},
-                              .blocks = {{.model = model->block,
-                                          .poisson = asked->poisson,
-                                          .height = lengths * press->grid.lx,
-                                          .layer_growth = 1.1,
-                                          .weighting = GAP_STANDARD,
-                                          .coating = asked->coating}},
-                              .kinematics = FULL_DEFAULTS.kinematics,
-                              .transition_depth = FULL_DEFAULTS.transition,
-                              .level_count = 1,
-                              .levels = {{.grid = press->grid, .stride = 1}},
-                              .load_count = 1,
-                              .nodes = true,
-                              .edges = true,
-                              .perimeter = true,
-                              .stiffness = true,
-                              .tangent = true,
-                              .tolerance = tolerance_of(asked)};
-    if (asked->hardness > 0) {
-        press->one_case.yield = asked->hardness;
-        press->one_case.hardness = asked->hardness / press->slope;
-        contact_quantities_ask(&press->one_case, HARDNESS_MEASURE);
+/* Asks for what slips: where the flat slides along a path, or by lighter loads. */
+static void ask_friction(struct contact_case *one_case, const struct map_press *press,
+                         const struct press_block *asked) {
+    one_case->friction = asked->friction;
+    one_case->slip_pressing = asked->pressing;
+    if (asked->slide != NULL) {
+        one_case->slide = asked->slide;
+        one_case->slide_count = asked->slide_count;
+        one_case->slide_steps = asked->slide_steps;
+        contact_quantities_ask(one_case, SLIDING_MEASURE);
+        return;
     }
-    if (asked->friction > 0) {
-        press->one_case.friction = asked->friction;
-        press->one_case.slip_angle = asked->angle;
-        press->one_case.slip_measured =
-            press->boundary != PRESS_OPEN && !grid_is_profile(&press->grid);
-        press->one_case.unloads = asked->hardness > 0;
-        contact_quantities_ask(&press->one_case, FRICTION_MEASURE);
+    one_case->slip_angle = asked->angle;
+    one_case->slip_measured = press->boundary != PRESS_OPEN && !grid_is_profile(&press->grid);
+    one_case->unloads = asked->hardness > 0;
+    contact_quantities_ask(one_case, FRICTION_MEASURE);
+    if (asked->coupled)
+        contact_quantities_ask(one_case, COUPLING_MEASURE);
+}
+
+struct contact_case map_press_case(const struct map_press *press, const struct grid *grid,
+                                   const struct press_block *block) {
+    const struct contact_model *model = block->model;
+    double lengths = block->lengths > 0 ? block->lengths : model->default_height;
+    struct contact_case out = {.surface = {.dimension = grid_is_profile(grid) ? 1 : 2,
+                                           .spectrum = {.scale = SCALE_RMS_SLOPE}},
+                               .two_faces = block->two_faces,
+                               .model_count = 1,
+                               .models = {model},
+                               .blocks = {{.model = model->block,
+                                           .poisson = block->poisson,
+                                           .height = lengths * grid->lx,
+                                           .layer_growth = 1.1,
+                                           .weighting = block->weighting,
+                                           .coating = block->coating}},
+                               .kinematics = block->kinematics,
+                               .transition_depth = block->transition > 0 ? block->transition
+                                                                         : FULL_DEFAULTS.transition,
+                               .rms_slope = press->slope,
+                               .level_count = 1,
+                               .levels = {{.grid = *grid, .stride = 1}},
+                               .load_count = 1,
+                               .nodes = true,
+                               .edges = true,
+                               .perimeter = true,
+                               .stiffness = true,
+                               .tangent = true,
+                               .tolerance = tolerance_of(block)};
+    if (block->hardness > 0) {
+        out.yield = block->hardness;
+        out.hardness = block->hardness / press->slope;
+        contact_quantities_ask(&out, HARDNESS_MEASURE);
     }
-    if (asked->coupled) {
-        press->one_case.slip_pressing = asked->pressing;
-        contact_quantities_ask(&press->one_case, COUPLING_MEASURE);
-    }
-    if (press->one_case.unloads)
-        contact_quantities_ask(&press->one_case, UNLOAD_MEASURE);
-    if (asked->conducts)
-        contact_quantities_ask(&press->one_case, CONDUCTANCE_MEASURE);
-    if (asked->leaks)
-        contact_quantities_ask(&press->one_case, LEAK_MEASURE);
+    if (block->friction > 0)
+        ask_friction(&out, press, block);
+    if (out.unloads)
+        contact_quantities_ask(&out, UNLOAD_MEASURE);
+    if (block->conducts)
+        contact_quantities_ask(&out, CONDUCTANCE_MEASURE);
+    if (block->leaks)
+        contact_quantities_ask(&out, LEAK_MEASURE);
+    return out;
 }
 
 static int solver_create(struct map_press *press, struct error *err) {
@@ -198,7 +212,8 @@ static int solver_create(struct map_press *press, struct error *err) {
                                          .grid = *grid,
                                          .block = one_case->blocks[0],
                                          .exact = linear_is_exact(model_of(press)),
-                                         .open = open};
+                                         .open = open,
+                                         .slides = model_of(press)->slides};
     return status == 0 ? contact_quantities_create(&press->quantities, &scene, err) : status;
 }
 
@@ -245,6 +260,26 @@ int map_press_begin(struct map_press *press, struct height_map *map, enum press_
     return status == 0 && !grid_is_profile(&map->grid) ? count_summits(press, map, err) : status;
 }
 
+static double cpu_seconds(void) {
+    struct timespec now = {0};
+    (void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static int is_over(void *context) {
+    const struct map_press *press = context;
+    return press->seconds_most > 0 && cpu_seconds() - press->began > press->seconds_most;
+}
+
+/* Adds what makes a face fit that cannot be meshed. */
+static void advise(struct error *err) {
+    struct error found = *err;
+    error_fill(err, found.code,
+               "%.300s; --filter S=LENGTH makes the map less steep, a larger --height the block "
+               "higher",
+               found.text);
+}
+
 int map_press_lift(struct map_press *press, const double *z, const struct press_block *block,
                    struct error *err) {
     double facts[MODEL_FACTS_MOST];
@@ -257,10 +292,17 @@ int map_press_lift(struct map_press *press, const double *z, const struct press_
     if (status != 0)
         return status;
     map_press_release(press);
-    fill_case(press, block);
-    status = solver_create(press, err);
+    press->began = cpu_seconds();
+    press->one_case = map_press_case(press, &press->grid, block);
+    if (model->face_fits != NULL)
+        status = model->face_fits(press->one_case.blocks, press->slope, press->height, err);
     if (status == 0)
-        status = model->begin(press->solver, z, NULL, NULL, facts, err);
+        status = solver_create(press, err);
+    if (status == 0) {
+        status = model->begin(press->solver, z, is_over, press, facts, err);
+        if (status == ERROR_INPUT && model->face_fits != NULL)
+            advise(err);
+    }
     press->full_contact = NAN;
     if (status == 0 && press->boundary != PRESS_OPEN && model->full_pressure != NULL)
         press->full_contact = model->full_pressure(press->solver);
@@ -340,39 +382,94 @@ int map_press_load(struct map_press *press, double pressure, struct press_row *r
     return measure_load(press, &pressed, row->value, err);
 }
 
+/* What is made of all loads together: its values by measure and load, or point of the path. */
+struct back_values {
+    struct contact_case one_case; /* of all loads */
+    size_t loads, stride;
+    double *of; /* owned: [measure * stride + load] of all measures, and the loads behind */
+};
+
+static int take_values(struct back_values *values, const struct press_row *rows,
+                       struct error *err) {
+    const size_t stride = contact_case_slots(&values->one_case);
+    const size_t count = (MEASURE_PAIRED + 1) * stride;
+    values->stride = stride;
+    values->of = array_create(count, sizeof *values->of);
+    if (values->of == NULL)
+        return error_memory(err, count * sizeof *values->of, "slip");
+    values->one_case.loads = values->of + MEASURE_PAIRED * stride;
+    for (size_t a = 0; a < count; a++)
+        values->of[a] = NAN;
+    for (size_t l = 0; l < values->loads; l++) {
+        values->one_case.loads[l] = rows[l].value[PRESS_LOAD];
+        for (size_t v = 0; v < MEASURE_PAIRED; v++)
+            values->of[v * stride + l] = rows[l].value[v];
+    }
+    return 0;
+}
+
+/* Returns them to the rows of the loads, and those by sliding to those of the path. */
+static void give_values(const struct back_values *values, struct press_series *series) {
+    const struct press_row *last = &series->rows[values->loads - 1];
+    for (size_t v = 0; v < MEASURE_PAIRED; v++) {
+        bool slides = press_measure(v)->by == BY_SLIDING;
+        for (size_t l = 0; l < values->loads; l++)
+            series->rows[l].value[v] = slides ? NAN : values->of[v * values->stride + l];
+        for (size_t i = 0; slides && series->slides != NULL && i < values->one_case.slide_count;
+             i++)
+            series->slides[i].value[v] = values->of[v * values->stride + i];
+    }
+    for (size_t i = 0; series->slides != NULL && i < values->one_case.slide_count; i++) {
+        series->slides[i].value[PRESS_CONTACT_NODES] = last->value[PRESS_CONTACT_NODES];
+        series->slides[i].value[MEASURE_PATCHES] = last->value[MEASURE_PATCHES];
+    }
+}
+
+static int complete_loads(struct map_press *press, const double *z, size_t loads,
+                          struct press_series *series, struct error *err) {
+    struct measure_context context = context_of(press);
+    struct back_values values = {.one_case = press->one_case, .loads = loads};
+    values.one_case.load_count = loads;
+    values.one_case.slip_load = loads - 1;
+    int status = take_values(&values, series->rows, err);
+    if (status != 0)
+        return status;
+    context.one_case = &values.one_case;
+    context.stop = is_over;
+    context.stop_context = press;
+    status =
+        contact_quantities_complete(&press->quantities, &context, z, values.stride, values.of, err);
+    give_values(&values, series);
+    free(values.of);
+    return status;
+}
+
 /* Lets the loads fall again, and fills what is made of all loads together. */
 static int press_back(struct map_press *press, const double *z, size_t loads,
-                      const double *pressures, struct press_row *rows, struct error *err) {
-    struct contact_case one_case = press->one_case;
-    struct measure_context context = context_of(press);
+                      const double *pressures, struct press_series *series, struct error *err) {
+    const struct measure_context context = context_of(press);
     int status = 0;
-    for (size_t l = loads - 1; one_case.unloads && l-- > 0 && status == 0;) {
+    for (size_t l = loads - 1; press->one_case.unloads && l-- > 0 && status == 0;) {
         struct contact_pressed pressed = contact_not_pressed();
         status = model_of(press)->press(press->solver, pressures[l], &pressed, err);
         if (status == 0)
-            contact_quantities_measure_falling(&one_case, &context, &pressed.state, 1,
-                                               rows[l].value);
+            contact_quantities_measure_falling(&press->one_case, &context, &pressed.state, 1,
+                                               series->rows[l].value);
     }
-    if (status != 0 || !(one_case.friction > 0))
-        return status;
-    double *values = array_create((MEASURE_PAIRED + 1) * loads, sizeof *values);
-    if (values == NULL)
-        return error_memory(err, (MEASURE_PAIRED + 1) * loads * sizeof *values, "slip");
-    one_case.load_count = loads;
-    one_case.slip_load = loads - 1;
-    one_case.loads = values + MEASURE_PAIRED * loads;
-    for (size_t l = 0; l < loads; l++) {
-        one_case.loads[l] = rows[l].value[PRESS_LOAD];
-        for (size_t v = 0; v < MEASURE_PAIRED; v++)
-            values[v * loads + l] = rows[l].value[v];
-    }
-    context.one_case = &one_case;
-    status = contact_quantities_complete(&press->quantities, &context, z, loads, values, err);
-    for (size_t l = 0; l < loads; l++)
-        for (size_t v = 0; v < MEASURE_PAIRED; v++)
-            rows[l].value[v] = values[v * loads + l];
-    free(values);
-    return status;
+    return status != 0 || !(press->one_case.friction > 0)
+               ? status
+               : complete_loads(press, z, loads, series, err);
+}
+
+static struct press_mesh mesh_of(const struct map_press *press) {
+    if (model_of(press)->block_of == NULL || press->solver == NULL)
+        return (struct press_mesh){0};
+    const struct mesh *mesh = model_of(press)->block_of(press->solver).mesh;
+    return (struct press_mesh){.nodes = mesh->nodes,
+                               .elements = mesh->elements,
+                               .layers = mesh->layers,
+                               .slope = mesh->slope,
+                               .quality = mesh->quality};
 }
 
 int map_press_loads(struct map_press *press, const double *z, size_t loads, const double *pressures,
@@ -381,6 +478,10 @@ int map_press_loads(struct map_press *press, const double *z, size_t loads, cons
     series->height = press->one_case.blocks[0].height;
     series->tolerance = press->one_case.tolerance;
     series->full_contact = press->full_contact;
+    if (status == 0)
+        series->mesh = mesh_of(press);
+    for (size_t i = 0; series->slides != NULL && i < series->block.slide_count; i++)
+        empty_row(press, pressures[loads - 1], &series->slides[i]);
     for (size_t l = 0; l < loads; l++) {
         if (status == 0)
             status = map_press_load(press, pressures[l], &series->rows[l], err);
@@ -389,7 +490,12 @@ int map_press_loads(struct map_press *press, const double *z, size_t loads, cons
         if (status != 0)
             empty_row(press, pressures[l], &series->rows[l]);
     }
-    return status == 0 ? press_back(press, z, loads, pressures, series->rows, err) : status;
+    if (status == 0)
+        status = press_back(press, z, loads, pressures, series, err);
+    return status == ERROR_STOPPED
+               ? error_set(err, ERROR_STOPPED, "it took more than %g s of CPU time",
+                           press->seconds_most)
+               : status;
 }
 
 int map_press_step(const struct map_press *press, const double *z, double load, double modulus,

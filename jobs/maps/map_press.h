@@ -29,6 +29,16 @@ struct press_block {
                                while pressing */
     bool two_faces;         /* the map is the sum of two (map_counter.h) */
     struct coating coating; /* thickness in the map's length */
+    /* Of elements: where the gap is taken, the law of strains, and the depth from which columns
+     * widen, in their widths, as in studies; 0: the usual one. */
+    enum gap_weighting weighting;
+    enum kinematics kinematics;
+    double transition;
+    /* With friction, where a model has it at finite strain: where the flat is, over the RMS height,
+     * at so many points, so many to each turn, all of it at the last load. Borrowed; NULL: nothing
+     * slides, and friction is that of lighter loads. */
+    double *slide;
+    size_t slide_count, slide_steps;
 };
 
 /* Values of a load have the numbers of the measures of studies and of the model's own; these
@@ -69,10 +79,16 @@ struct press_row {
 /* All loads of one model. */
 struct press_series {
     struct press_block block;
-    double height;          /* of the block, in the map's length */
-    double tolerance;       /* of the solutions */
-    double full_contact;    /* least mean pressure of full contact, E*; NaN: not known */
-    struct press_row *rows; /* borrowed: room for all loads */
+    double height;       /* of the block, in the map's length */
+    double tolerance;    /* of the solutions */
+    double full_contact; /* least mean pressure of full contact, E*; NaN: not known */
+    struct press_mesh {
+        size_t nodes, elements, layers; /* 0: the model has no mesh */
+        double slope, quality;          /* as of struct mesh */
+    } mesh;
+    struct press_row *rows;   /* borrowed: room for all loads */
+    struct press_row *slides; /* likewise, for the points of the path; NULL: nothing slides */
+    char note[400];           /* why loads, or points of the path, have no values; "": all have */
 };
 
 struct map_press;
@@ -89,6 +105,8 @@ struct map_press {
     double slope, height; /* RMS, of the map */
     enum press_boundary boundary;
     struct team *team;            /* threads that work along; borrowed; NULL: the caller alone */
+    double seconds_most;          /* CPU seconds that each block over the map may take; 0: any */
+    double began;                 /* when the block was lifted, CPU seconds of the process */
     double full_contact;          /* as of a series, of the model that was lifted last */
     struct contact_state state;   /* under the last load, on the grid as it is pressed */
     struct contact_case one_case; /* of the one model, as its functions need it */
@@ -101,6 +119,10 @@ struct map_press {
     struct counted_asperities *asperities; /* of the map as it is pressed; NULL: a profile */
 };
 
+/* Returns the case of a block over a grid that stands for the map as it is pressed: one load after
+ * the other, on one mesh. The map's slopes are known. */
+struct contact_case map_press_case(const struct map_press *press, const struct grid *grid,
+                                   const struct press_block *block);
 /* Returns ERROR_INPUT where the model does not press a map with this boundary. */
 int map_press_check(enum press_boundary boundary, const struct contact_model *model,
                     struct error *err);
@@ -118,8 +140,9 @@ void map_press_release(struct map_press *press);
 /* Presses to a mean pressure in E*. Errors of the row are NaN. */
 int map_press_load(struct map_press *press, double pressure, struct press_row *row,
                    struct error *err);
-/* Lifts the block of a series and presses it to all loads. On failure the rows from that load on
- * have no values. */
+/* Lifts the block of a series and presses it to all loads; then the flat slides, where it is to. On
+ * failure the rows from that load on have no values, or the points of the path from there on.
+ * ERROR_STOPPED: the CPU seconds were used up. */
 int map_press_loads(struct map_press *press, const double *z, size_t loads, const double *pressures,
                     struct press_series *series, struct error *err);
 

@@ -79,21 +79,25 @@ struct sides {
     double wider; /* area of this map over that of the map */
     size_t loads;
     double *pressures; /* owned */
+    double *slide;     /* owned: the path of the flat over the RMS height of this map; NULL: none */
     size_t count;
-    struct press_series of[SIDES_MOST]; /* whose rows are owned */
+    struct press_series of[SIDES_MOST]; /* whose rows are owned, as their slides */
 };
 
 static void sides_clear(struct sides *sides) {
-    for (size_t s = 0; s < sides->count; s++)
+    for (size_t s = 0; s < sides->count; s++) {
         free(sides->of[s].rows);
+        free(sides->of[s].slides);
+    }
     free(sides->pressures);
+    free(sides->slide);
     map_press_clear(&sides->side);
     height_map_clear(&sides->map);
 }
 
 /* A map that has no contact leaves errors unknown, which is no failure. */
 static int forgive(int status) {
-    return status == ERROR_INPUT || status == ERROR_NUMERIC ? 0 : status;
+    return status == ERROR_INPUT || status == ERROR_NUMERIC || status == ERROR_STOPPED ? 0 : status;
 }
 
 /* Takes the map, or with a step of 2 every second point of it. */
@@ -128,18 +132,47 @@ static void convert(const struct sides *sides, struct press_row *row) {
         row->value[v] *= factors[press_measure(v)->over];
 }
 
+/* Return how many rows a series has, and one of them: of loads, then of points of its path. */
+static size_t rows_of(const struct press_series *series, size_t loads) {
+    return loads + (series->slides != NULL ? series->block.slide_count : 0);
+}
+
+static struct press_row *row_at(const struct press_series *series, size_t loads, size_t row) {
+    return row < loads ? &series->rows[row] : &series->slides[row - loads];
+}
+
+/* Lets a side slide along the path of a block, in lengths that are the same. */
+static int take_slide(struct sides *sides, struct press_series *side, struct error *err) {
+    struct press_block *block = &side->block;
+    const size_t count = block->slide_count;
+    const double *path = block->slide;
+    if (path == NULL)
+        return 0;
+    if (sides->slide == NULL)
+        sides->slide = array_create(count, sizeof *sides->slide);
+    side->slides = array_create(count, sizeof *side->slides);
+    if (sides->slide == NULL || side->slides == NULL)
+        return error_memory(err, count * sizeof *side->slides, "errors of sliding");
+    for (size_t i = 0; i < count; i++)
+        sides->slide[i] = path[i] * (sides->press->height / sides->side.height);
+    block->slide = sides->slide;
+    return 0;
+}
+
 static int press_side(struct sides *sides, struct press_series *side, struct error *err) {
+    /* as the loads themselves: other models take as long as they do */
+    sides->side.seconds_most = side->block.model->may_fail ? sides->press->seconds_most : 0;
     int status =
         map_press_loads(&sides->side, sides->map.z, sides->loads, sides->pressures, side, err);
     map_press_release(&sides->side);
-    for (size_t l = 0; l < sides->loads; l++)
-        convert(sides, &side->rows[l]);
+    for (size_t l = 0; l < rows_of(side, sides->loads); l++)
+        convert(sides, row_at(side, sides->loads, l));
     return forgive(status);
 }
 
 /* Finds the side solve of a block, or makes it. The values of loads without a solution are NaN. */
 static int side_of(struct sides *sides, const struct press_block *block,
-                   const struct press_row **out, struct error *err) {
+                   const struct press_series **out, struct error *err) {
     size_t s = 0;
     while (s < sides->count && (sides->of[s].block.model != block->model ||
                                 sides->of[s].block.lengths != block->lengths))
@@ -149,11 +182,13 @@ static int side_of(struct sides *sides, const struct press_block *block,
         if (rows == NULL)
             return error_memory(err, sides->loads * sizeof *rows, "errors of contact");
         sides->of[sides->count++] = (struct press_series){.block = *block, .rows = rows};
-        int status = press_side(sides, &sides->of[s], err);
+        int status = take_slide(sides, &sides->of[s], err);
+        if (status == 0)
+            status = press_side(sides, &sides->of[s], err);
         if (status != 0)
             return status;
     }
-    *out = sides->of[s].rows;
+    *out = &sides->of[s];
     return 0;
 }
 
@@ -166,7 +201,7 @@ struct errors {
     size_t count, loads;
     const struct press_series *series;
     const double *pressures;
-    const struct press_row *coarse[CONTACT_MODELS_MOST]; /* by series; NULL: not known */
+    const struct press_series *coarse[CONTACT_MODELS_MOST]; /* by series; NULL: not known */
 };
 
 static bool applies(const struct errors *errors, size_t m, size_t value, enum error_source source) {
@@ -181,28 +216,44 @@ static void put(struct press_row *row, enum error_source source, size_t value, d
 
 static void solver_errors(const struct errors *errors, size_t m) {
     const struct press_series *series = &errors->series[m];
-    for (size_t l = 0; l < errors->loads; l++)
+    for (size_t l = 0; l < rows_of(series, errors->loads); l++)
         for (size_t v = 0; v < PRESS_VALUES; v++)
             if (applies(errors, m, v, ERROR_SOLVER)) {
-                const double *value = series->rows[l].value;
+                struct press_row *row = row_at(series, errors->loads, l);
+                const double *value = row->value;
                 double nodes = value[PRESS_CONTACT_NODES];
                 const struct solver_counts of = {.tolerance = series->tolerance,
                                                  .nodes = nodes,
                                                  .open = (double)grid_points(&errors->press->map) -
                                                          nodes,
                                                  .patches = value[MEASURE_PATCHES]};
-                put(&series->rows[l], ERROR_SOLVER, v, 0,
+                put(row, ERROR_SOLVER, v, 0,
                     contact_errors_solver(press_measure(v)->solver, &of, value[v]));
             }
 }
 
+/* Returns the share of a value that no finer mesh takes away. */
+static double floor_of(const struct errors *errors, size_t m, size_t value) {
+    const struct contact_model *model = errors->series[m].block.model;
+    return model->mesh_floor == NULL
+               ? 0
+               : model->mesh_floor(grid_is_profile(&errors->press->map) ? 1 : 2,
+                                   press_measure(value)->field,
+                                   errors->press->one_case.transition_depth);
+}
+
 static void points_error(const struct errors *errors, size_t m) {
     const struct press_series *series = &errors->series[m];
-    for (size_t l = 0; l < errors->loads; l++)
+    const size_t loads = errors->loads;
+    for (size_t l = 0; l < rows_of(series, loads); l++) {
+        const struct press_row *coarse = row_at(errors->coarse[m], loads, l);
+        struct press_row *row = row_at(series, loads, l);
         for (size_t v = 0; v < PRESS_VALUES; v++)
             if (applies(errors, m, v, ERROR_DISCRETISATION))
-                put(&series->rows[l], ERROR_DISCRETISATION, v, 0,
-                    fabs(errors->coarse[m][l].value[v] - series->rows[l].value[v]));
+                put(row, ERROR_DISCRETISATION, v, 0,
+                    fabs(coarse->value[v] - row->value[v]) +
+                        floor_of(errors, m, v) * fabs(row->value[v]));
+    }
 }
 
 /* Fills the errors of a load; layer, half-space: NULL for a block that is practically infinite. */
@@ -235,12 +286,12 @@ static double bound_of(const struct errors *errors, size_t m) {
 
 /* Finds the contact of a block on the points of the map, which a series may have already. */
 static int own_points(const struct errors *errors, struct sides *sides,
-                      const struct press_block *block, const struct press_row **out,
+                      const struct press_block *block, const struct press_series **out,
                       struct error *err) {
     for (size_t m = 0; m < errors->count; m++)
         if (errors->series[m].block.model == block->model &&
             errors->series[m].height == block->lengths * errors->press->grid.lx) {
-            *out = errors->series[m].rows;
+            *out = &errors->series[m];
             return 0;
         }
     return side_of(sides, block, out, err);
@@ -258,10 +309,13 @@ static int block_errors(const struct errors *errors, struct sides *sides, size_t
                         struct error *err) {
     const struct press_series *series = &errors->series[m];
     double bound = bound_of(errors, m);
-    const struct press_row *layer = NULL, *half_space = NULL;
+    const struct press_series *layer = NULL, *half_space = NULL;
     bool low = block_is_low(bound);
     struct press_block exact = series->block;
     exact.model = exact_model();
+    exact.slide = NULL; /* what a low block changes of sliding is not known */
+    if (series->block.slide != NULL)
+        exact.friction = 0;
     exact.lengths = exact.lengths > 0 ? exact.lengths : series->block.model->default_height;
     if (low && exact.model == NULL)
         return 0;
@@ -270,8 +324,10 @@ static int block_errors(const struct errors *errors, struct sides *sides, size_t
     if (status == 0 && low)
         status = own_points(errors, sides, &exact, &half_space, err);
     for (size_t l = 0; l < errors->loads && status == 0; l++)
-        block_errors_at(errors, m, bound, low ? &layer[l] : NULL, low ? &half_space[l] : NULL,
-                        &series->rows[l]);
+        block_errors_at(errors, m, bound, low ? &layer->rows[l] : NULL,
+                        low ? &half_space->rows[l] : NULL, &series->rows[l]);
+    for (size_t i = errors->loads; i < rows_of(series, errors->loads) && !low && status == 0; i++)
+        block_errors_at(errors, m, bound, NULL, NULL, row_at(series, errors->loads, i));
     return status;
 }
 
@@ -290,28 +346,22 @@ static void strain_errors(const struct errors *errors, size_t m) {
     }
 }
 
-static double floor_of(const struct errors *errors, size_t m, size_t value) {
-    const struct contact_model *model = errors->series[m].block.model;
-    return model->mesh_floor == NULL
-               ? 0
-               : model->mesh_floor(grid_is_profile(&errors->press->map) ? 1 : 2,
-                                   press_measure(value)->field,
-                                   errors->press->one_case.transition_depth);
-}
-
 /* The difference to the most complete model in the limit of two meshes, as in studies. */
 static void difference_errors(const struct errors *errors, size_t m, size_t complete) {
-    const struct press_row *coarse = errors->coarse[m], *other = errors->coarse[complete];
-    if (coarse == NULL || other == NULL)
+    const struct press_series *series = &errors->series[m];
+    const size_t loads = errors->loads;
+    if (errors->coarse[m] == NULL || errors->coarse[complete] == NULL)
         return;
-    for (size_t l = 0; l < errors->loads; l++)
+    for (size_t l = 0; l < rows_of(series, loads); l++)
         for (size_t v = 0; v < PRESS_VALUES; v++) {
             if (!applies(errors, m, v, ERROR_MODEL))
                 continue;
-            struct press_row *row = &errors->series[m].rows[l];
-            double fine = row->value[v] - errors->series[complete].rows[l].value[v];
-            const struct mesh_changes changes = {fine - (coarse[l].value[v] - other[l].value[v]),
-                                                 NAN, 2, NAN};
+            struct press_row *row = row_at(series, loads, l);
+            const struct press_row *coarse = row_at(errors->coarse[m], loads, l),
+                                   *other = row_at(errors->coarse[complete], loads, l);
+            double fine = row->value[v] - row_at(&errors->series[complete], loads, l)->value[v];
+            const struct mesh_changes changes = {fine - (coarse->value[v] - other->value[v]), NAN,
+                                                 2, NAN};
             struct mesh_error error = mesh_error(&changes, press_measure(v)->order);
             double floors = floor_of(errors, m, v) + floor_of(errors, complete, v);
             put(row, ERROR_MODEL, v, fine - error.error,

@@ -126,19 +126,25 @@ static double rate_of(const struct reading *reading, int64_t case_number, double
     return fallback;
 }
 
-/* Sets the loads of the workers, and *done to the seconds that their jobs took so far. */
-static void load_workers(const struct reading *reading, double *loads, double *done) {
-    double rate = 0;
+/* Sets the loads of the workers, and *done to the seconds that their jobs took so far. A job that
+ * should have ended needs as long again as it is late: nothing else is known of a realisation that
+ * takes many times its estimate. These seconds are returned; the share that is done leaves them
+ * out, as it would fall. */
+static double load_workers(const struct reading *reading, double *loads, double *done) {
+    double rate = 0, all_late = 0;
     for (size_t j = 0; j < reading->job_count; j++) {
         const struct running_job *job = &reading->jobs[j];
         if (job->leads)
             rate = case_rate(reading, j);
         double since = job->elapsed - (job->reported > 0 ? job->reported_after : 0);
         double whole = job->count * rate, most = fmax(0, whole - LEAST_LEFT * rate);
-        double now = fmin(most, job->reported * rate + fmax(0, since));
-        loads[j] = whole - now;
+        double took = job->reported * rate + fmax(0, since), now = fmin(most, took);
+        double late = took - now;
+        loads[j] = whole - now + late;
         *done += now;
+        all_late += late;
     }
+    return all_late;
 }
 
 /* Reads the seconds of one worker that wait. */
@@ -212,11 +218,11 @@ static int make_left(const struct reading *reading, double *loads, size_t n, str
         status = read_last(reading, last, &count, err);
     if (status != 0)
         return status;
-    load_workers(reading, loads, &done);
+    const double late = load_workers(reading, loads, &done);
     out->work = waiting;
     for (size_t j = 0; j < reading->job_count; j++)
         out->work += loads[j];
-    out->share = done + out->work > 0 ? done / (done + out->work) : 0;
+    out->share = done + out->work > 0 ? done / (done + out->work - late) : 0;
     double bulk = waiting;
     for (size_t job = 0; job < count; job++)
         bulk -= last[job];

@@ -99,6 +99,10 @@ struct contact_model {
      * none. */
     int (*check)(struct contact_case *one_case, size_t model, struct values *values,
                  struct error *err);
+    /* Returns ERROR_INPUT for a face that is too steep or too high for the block of one map, by its
+     * RMS slope and height. NULL: the model takes all. */
+    int (*face_fits)(const struct block *block, double rms_slope, double rms_height,
+                     struct error *err);
     /* Returns a bound of the mesh error that finer levels do not reduce, as a share of a measure
      * that is read from this field. NULL: none. */
     double (*mesh_floor)(int dimension, enum measure_field field, double transition_depth);

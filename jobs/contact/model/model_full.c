@@ -98,6 +98,22 @@ static int check(struct contact_case *one_case, size_t model, struct values *val
     return 0;
 }
 
+static int face_fits(const struct block *block, double rms_slope, double rms_height,
+                     struct error *err) {
+    double height = block->height / rms_height;
+    if (rms_slope > SLOPE_MOST)
+        return error_set(err, ERROR_INPUT,
+                         "RMS slope %.4g: the model full can mesh surfaces up to about %g; "
+                         "--filter S=LENGTH takes short waves out, which are the steepest",
+                         rms_slope, SLOPE_MOST);
+    if (height < HEIGHT_LEAST * (1 - ROUNDING))
+        return error_set(err, ERROR_INPUT,
+                         "the block is %.4g RMS heights high: the model full needs %g or more, as "
+                         "layers of lower blocks fold over valleys; take a larger --height",
+                         height, HEIGHT_LEAST);
+    return 0;
+}
+
 /* --- errors --- */
 
 static double mesh_floor(int dimension, enum measure_field field, double transition_depth) {
@@ -120,7 +136,8 @@ static double seconds(const struct contact_case *one_case, size_t model, const s
     struct full_options options = contact_case_full_options(one_case, grid);
     struct full_size size =
         cost_full_size(grid, &one_case->blocks[model], &options, one_case->rms_slope);
-    return cost_full_contact(grid, &size, one_case->load_count);
+    double expected = cost_full_contact(grid, &size, one_case->load_count);
+    return one_case->time_limit > 0 ? fmin(expected, one_case->time_limit) : expected;
 }
 
 /* --- solving --- */
@@ -141,7 +158,8 @@ static void destroy(struct contact_solver **solver) {
 static int create(struct contact_solver **out, const struct contact_case *one_case, size_t model,
                   const struct compliance *compliance, struct error *err) {
     const struct grid *grid = &compliance->grid;
-    struct full_options options = contact_case_full_options(one_case, grid);
+    struct full_options options =
+        contact_case_limited_options(one_case, grid, &one_case->blocks[model]);
     struct contact_solver *solver = array_create(1, sizeof *solver);
     if (solver == NULL)
         return error_memory(err, sizeof *solver, "a contact solver");
@@ -231,6 +249,7 @@ const struct contact_model FULL_MODEL = {
     .scalars = SCALARS,
     .kinematics = kinematics_name,
     .check = check,
+    .face_fits = face_fits,
     .mesh_floor = mesh_floor,
     .bytes = bytes,
     .seconds = seconds,

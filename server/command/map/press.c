@@ -1,7 +1,5 @@
 /* rugo press FILE: the contact of a height map in a file with a rigid flat, or with a second map.
  */
-#include "core/file.h"
-#include "core/nodal/step_folder.h"
 #include "jobs/allotment.h"
 #include "jobs/maps/map_counter.h"
 #include "jobs/maps/map_noise.h"
@@ -12,147 +10,32 @@
 #include "schema/study/parameter.h"
 #include "server/command/command.h"
 #include "server/command/map/map_file.h"
-#include "server/command/map/map_output.h"
 #include "server/command/map/press_coating.h"
+#include "server/command/map/press_files.h"
 #include "server/command/map/press_loads.h"
-#include "server/command/output_file.h"
-#include "server/show/map/map_png.h"
+#include "server/command/map/press_path.h"
+#include "server/command/map/press_room.h"
 #include "server/show/map/press_print.h"
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 
-/* Paths; NULL: not wanted. By their endings maps are npy, csv, xyz, or pictures (png, svg); without
- * one npy. */
-struct press_paths {
-    const char *pressures, *gap, *contact;
-    const char *mesh;  /* VTU of the surface with all three */
-    const char *steps; /* folder of all loads */
-    const char *nodes; /* table of all loads */
-};
-
-/* Before anything is computed: ERROR_INPUT for another ending, ERROR_SYSTEM where nothing can be
- * written. */
-static int press_files_check(const struct press_paths *paths, struct error *err) {
-    const char *const maps[] = {paths->pressures, paths->gap, paths->contact};
-    int status = paths->mesh != NULL ? output_file_check(paths->mesh, err) : 0;
-    if (status == 0 && paths->nodes != NULL)
-        status = output_file_check(paths->nodes, err);
-    for (size_t f = 0; f < sizeof maps / sizeof *maps && status == 0; f++)
-        if (maps[f] != NULL)
-            status = map_output_check(maps[f], err);
-    return status;
-}
-
-/* What the maps of a load are in. */
-struct press_units {
-    const char *length, *height; /* of the map */
-    bool modulus;                /* pressures are in Pa, else over E* h' */
-};
-
-enum press_map { MAP_PRESSURE, MAP_GAP, MAP_CONTACT, MAP_COUNT };
-
-/* Draws pressures blank where there is no contact, and gaps without what the solver leaves below
- * zero in contact. */
-static int draw_values(const char *path, enum press_map which, const struct map_picture *labels,
-                       const struct grid *grid, const double *values, struct error *err) {
-    size_t points = grid_points(grid);
-    double *drawn = array_create(points, sizeof *drawn);
-    if (drawn == NULL)
-        return error_memory(err, points * sizeof *drawn, "a picture");
-    for (size_t n = 0; n < points; n++)
-        drawn[n] = values[n] < 0 ? 0 : values[n];
-    if (which == MAP_PRESSURE)
-        map_blank_open(grid, drawn);
-    int status = map_output_write(path, labels, grid, drawn, err);
-    free(drawn);
-    return status;
-}
-
-static int write_map(const char *path, enum press_map which, const struct press_units *units,
-                     const struct grid *grid, const double *values, struct error *err) {
-    static const char *const SUBJECTS[MAP_COUNT] = {"pressure", "gap", "contact"};
-    const char *const names[MAP_COUNT] = {units->modulus ? "pressure p" : "pressure p/(E* h')",
-                                          "gap", "contact (1) or none (0)"};
-    const char *const z_units[MAP_COUNT] = {units->modulus ? "Pa" : "", units->height, ""};
-    const struct map_picture labels = {.name = SUBJECTS[which],
-                                       .subject = "last load",
-                                       .x_label = "x",
-                                       .y_label = "y",
-                                       .z_label = names[which],
-                                       .xy_unit = units->length,
-                                       .z_unit = z_units[which],
-                                       .note = which == MAP_PRESSURE ? "blank: no contact" : NULL};
-    return map_output_is_picture(path) ? draw_values(path, which, &labels, grid, values, err)
-                                       : map_output_write(path, &labels, grid, values, err);
-}
-
-static int write_mesh(const char *path, const struct nodal_step *step, struct error *err) {
-    struct nodal_step face = *step;
-    FILE *file;
-    int status = file_open(&file, path, err);
-    if (status != 0)
-        return status;
-    face.mesh = NULL; /* the surface, whatever the model */
-    status = step_vtu(file, &face, err);
-    return file_close(file, path, status, err);
-}
-
-/* Writes the files of the last load. */
-static int write_last(const struct press_paths *paths, const struct nodal_step *step,
-                      const struct press_units *units, struct error *err) {
-    const char *const list[MAP_COUNT] = {paths->pressures, paths->gap, paths->contact};
-    const double *const values[MAP_COUNT] = {step->p, step->gap, step->contact};
-    int status = 0;
-    for (enum press_map f = 0; f < MAP_COUNT && status == 0; f++)
-        if (list[f] != NULL)
-            status = write_map(list[f], f, units, &step->grid, values[f], err);
-    if (status == 0 && paths->mesh != NULL)
-        status = write_mesh(paths->mesh, step, err);
-    return status;
-}
-
-/* The files of the first model, which are written load by load. */
-struct press_files {
-    const struct press_paths *paths;
-    const struct press_loads *loads;
-    const double *z; /* heights as they are pressed */
-    struct press_units units;
-    struct step_folder folder;
-    struct contact_step step;
-};
-
-/* Writes the part of the map that was measured: pressures are over E* h', with a modulus in Pa,
- * gaps in the map's length, contact is 1 or 0. */
-static int write_load(void *context, const struct map_press *press, size_t load,
-                      struct error *err) {
-    struct press_files *files = context;
-    const struct press_loads *loads = files->loads;
-    bool last = load + 1 == loads->count;
-    int status =
-        map_press_step(press, files->z, loads->value[load], loads->modulus, &files->step, err);
-    if (status == 0)
-        status = step_folder_put(&files->folder, &files->step.step, err);
-    if (status == 0 && last)
-        status = write_last(files->paths, &files->step.step, &files->units, err);
-    return status;
-}
-
-static bool are_asked(const struct press_paths *paths) {
-    return paths->pressures != NULL || paths->gap != NULL || paths->contact != NULL ||
-           paths->mesh != NULL || paths->steps != NULL || paths->nodes != NULL;
-}
-
 enum asked { ASKED_AUTO, ASKED_OPEN, ASKED_MIRRORED, ASKED_PERIODIC };
 #define BOUNDARIES "auto|open|mirrored|periodic" /* in this order */
 enum coupling { COUPLING_NONE, COUPLING_FRICTIONLESS, COUPLING_FRICTIONAL };
-#define COUPLINGS "none|frictionless|frictional" /* in this order */
+#define COUPLINGS "none|frictionless|frictional"      /* in this order */
+#define KINEMATICS "hencky|st_venant_kirchhoff|small" /* as KINEMATICS_CHOICES */
 
 /* From so many points on threads share the work. */
 enum { POINTS_SHARED = 1 << 15 };
 
 /* With fewer nodes in contact, areas and pressures are rough. */
 enum { CONTACT_NODES_FEW = 50 };
+
+/* From so many seconds on, as estimated, each load is named on standard error. */
+static const double SECONDS_WATCHED = 10;
+/* The most that the model full slides with. */
+static const double SLIDING_FRICTION_MOST = 1;
 
 struct press_options {
     const char *model;
@@ -162,7 +45,11 @@ struct press_options {
     double tolerance;    /* likewise */
     int boundary, format, without_error, along_y;
     int coupling; /* enum coupling */
-    bool leak;
+    int kinematics, weighting;
+    double transition, seconds_most;
+    bool leak, estimate;
+    const char *slide_to;
+    unsigned slide_steps;
     unsigned threads; /* 0: as many processors as are allotted */
     struct press_words words;
     struct press_paths paths;
@@ -173,7 +60,7 @@ static const struct option_row OPTIONS[] = {
     MAP_OPTION_ROWS(struct press_options, map),
     {"boundary", 0, OPTION_CHOICE, 0, 0, AT(boundary), BOUNDARIES, "auto",
      "open: in free space; mirrored: with its mirror images; auto: periodic where its seam is no "
-     "rougher than its inside, else open"},
+     "rougher than its inside, else open, or mirrored for a model that needs a map that repeats"},
     {"loads", 0, OPTION_TEXT, 0, 0, AT(words.loads), "LIST", NULL,
      "rising loads p/(E* h') (0.01,0.02,0.05,0.1,0.2,0.3)"},
     {"pressure", 0, OPTION_TEXT, 0, 0, AT(words.pressure), "LIST", NULL,
@@ -188,12 +75,18 @@ static const struct option_row OPTIONS[] = {
      "pressure at which the block yields, such as 2GPa; without it, it is elastic"},
     {"friction", 0, OPTION_NUMBER, 1e-3, 10, AT(words.friction), "MU", NULL,
      "coefficient of friction: what sticks, and how far the face gives, as a tangential load rises "
-     "under the highest load; loads below it are added"},
+     "under the highest load (loads below it are added); the model full drags the flat over "
+     "profiles (--slide-to), with up to 1"},
     {"direction", 0, OPTION_CHOICE, 0, 0, AT(along_y), "x|y", "x", "of the tangential load"},
     {"coupling", 0, OPTION_CHOICE, 0, 0, AT(coupling), COUPLINGS, "none",
      "with --friction: also solve slip with pressures and tractions coupled, after pressing the "
-     "map "
-     "without friction or with it"},
+     "map without friction or with it; the model full always does, and presses without it unless "
+     "frictional"},
+    {"slide-to", 0, OPTION_TEXT, 0, 0, AT(slide_to), "LIST", NULL,
+     "with --friction and the model full: how far the flat slides over the face, over the RMS "
+     "height (4 MU); several values are points at which it turns"},
+    {"slide-steps", 0, OPTION_COUNT, 1, 999, AT(slide_steps), "N", NULL,
+     "points of its curves from one turn to the next (30)"},
     {"resistivity", 0, OPTION_TEXT, 0, 0, AT(words.resistivity), "RHO[,RHO]", NULL,
      "electric resistivity of both bodies, or of each, in ohm m: the conductance of the contact"},
     {"conductivity", 0, OPTION_TEXT, 0, 0, AT(words.conductivity), "K[,K]", NULL,
@@ -214,6 +107,19 @@ static const struct option_row OPTIONS[] = {
      "layered); --effective-modulus for two elastic bodies"},
     {"height", 0, OPTION_NUMBER, 1e-3, 1e3, AT(lengths), "LENGTHS", NULL,
      "height of the block in lengths of the map (infinite; of meshes 1.5)"},
+    {"kinematics", 0, OPTION_CHOICE, 0, 0, AT(kinematics), KINEMATICS, "hencky",
+     "of the model full: finite strain by Hencky's law or St. Venant and Kirchhoff's, or small "
+     "strain on the rough geometry"},
+    {"gap-weighting", 0, OPTION_CHOICE, 0, 0, AT(weighting), "standard|dual", "standard",
+     "of meshes: the gap of a node is that over its neighbours, too, or at it alone"},
+    {"transition-depth", 0, OPTION_NUMBER, 1, 1e9, AT(transition), "WIDTHS", "8",
+     "of the model full: depth from which columns of elements are twice as wide, and twice again; "
+     "1e9: all as wide as those of the face"},
+    {"estimate", 0, OPTION_FLAG, 0, 0, AT(estimate), NULL, NULL,
+     "print what the model full would take, and press nothing"},
+    {"limit", 0, OPTION_NUMBER, 0, 1e9, AT(seconds_most), "SECONDS", "3600",
+     "of CPU time for the model full: a map that is estimated to take more is refused, and where "
+     "it takes more in the end the loads so far are kept; 0: none"},
     {"tolerance", 0, OPTION_NUMBER, 1e-12, 1e-2, AT(tolerance), "T", NULL,
      "of the solutions (of linear models 1e-8, as the pressures of one map are its result; 1e-4 "
      "takes two thirds of the time)"},
@@ -230,8 +136,11 @@ static const struct option_row OPTIONS[] = {
     {"gap", 0, OPTION_TEXT, 0, 0, AT(paths.gap), "FILE", NULL, "the gaps, likewise"},
     {"contact", 0, OPTION_TEXT, 0, 0, AT(paths.contact), "FILE", NULL,
      "where there is contact (1, else 0), likewise"},
-    {"vtu", 0, OPTION_TEXT, 0, 0, AT(paths.mesh), "FILE.vtu", NULL,
+    {"vtu", 0, OPTION_TEXT, 0, 0, AT(paths.face), "FILE.vtu", NULL,
      "the surface with all three on it, for ParaView"},
+    {"mesh", 0, OPTION_TEXT, 0, 0, AT(paths.mesh), "FILE", NULL,
+     "the block of the model full under the last load: .vtu with displacements and stresses, .msh "
+     "for Gmsh, .inp for CalculiX and Abaqus with a step a load; the model is named first"},
     {"steps", 0, OPTION_TEXT, 0, 0, AT(paths.steps), "DIR", NULL,
      "all loads of the first model: step-1.vtu ..., the surface or the meshed block, and "
      "steps.pvd"},
@@ -248,16 +157,35 @@ struct press_order {
     enum press_boundary boundary;
     size_t model_count;
     struct press_block blocks[CONTACT_MODELS_MOST]; /* one a model */
+    bool slides;                                    /* a model has friction at finite strain */
+    struct press_path slide;                        /* owned; of the flat, where one does */
     struct press_loads loads;
     struct preparation_record record;
 };
 
 /* --- the map --- */
 
+static bool needs_periodic(const struct press_order *order) {
+    bool needs = false;
+    for (size_t m = 0; m < order->model_count; m++)
+        needs = needs || !order->blocks[m].model->free_space;
+    return needs;
+}
+
+/* A map that was found to be open is mirrored for models that need one that repeats. */
 static enum press_boundary boundary_of(const struct press_order *order) {
-    if (order->options->boundary == ASKED_MIRRORED)
+    const int asked = order->options->boundary;
+    if (asked == ASKED_MIRRORED)
         return PRESS_MIRRORED;
-    return order->record.boundary == BOUNDARY_OPEN ? PRESS_OPEN : PRESS_PERIODIC;
+    if (order->record.boundary != BOUNDARY_OPEN)
+        return PRESS_PERIODIC;
+    return asked == ASKED_AUTO && needs_periodic(order) ? PRESS_MIRRORED : PRESS_OPEN;
+}
+
+static const char *boundary_by(const struct press_order *order) {
+    if (order->options->boundary != ASKED_AUTO)
+        return "option";
+    return order->boundary == PRESS_MIRRORED ? "model" : order->record.boundary_by;
 }
 
 /* A map is taken as periodic where the option says so; this warns of the jumps at its seam. */
@@ -380,6 +308,10 @@ static int read_map(struct height_map *map, struct press_order *order, struct er
     status = take_coating(order, map, err);
     for (size_t m = 0; m < order->model_count && status == 0; m++)
         status = map_press_check(order->boundary, order->blocks[m].model, err);
+    if (status == 0 && order->slide.at != NULL && !grid_is_profile(&map->grid))
+        status = error_set(err, ERROR_INPUT,
+                           "--friction: the model full has that of profiles alone, and this is a "
+                           "surface; --model halfspace has that of surfaces");
     return status == 0 ? 0 : error_context(err, "%s", order->path);
 }
 
@@ -420,9 +352,11 @@ static double map_area(const struct map_press *press) {
 /* The map under all loads, by each model. */
 struct pressed {
     struct map_press press;
-    double *pressures;      /* mean, in E*; owned, as the rows */
-    struct press_row *rows; /* all loads of the first model, then those of the next */
+    double *pressures;        /* mean, in E*; owned, as the rows */
+    struct press_row *rows;   /* all loads of the first model, then those of the next */
+    struct press_row *slides; /* likewise, of the path; NULL: none */
     struct press_series series[CONTACT_MODELS_MOST];
+    double seconds[CONTACT_MODELS_MOST]; /* of models with a mesh, as estimated; 0: not known */
 };
 
 static void pressed_clear(struct pressed *pressed) {
@@ -431,46 +365,94 @@ static void pressed_clear(struct pressed *pressed) {
     team_destroy(&team);
     free(pressed->pressures);
     free(pressed->rows);
+    free(pressed->slides);
 }
 
-/* Loads without a solution are no failure where another model has them, and no file needs them. */
-static int keep_others(const struct press_order *order, size_t m, int status, struct error *err) {
+/* Returns how many loads of a series have values, which come first. */
+static size_t solved_of(const struct press_series *series, size_t loads) {
+    size_t solved = 0;
+    while (solved < loads && !isnan(series->rows[solved].value[MEASURE_NODES]))
+        solved++;
+    return solved;
+}
+
+/* Loads without a solution are no failure where the model, or another one, has some: a note has
+ * the reason. Files are those of the loads before. */
+static int keep_loads(const struct press_order *order, struct press_series *series, size_t m,
+                      int status, struct error *err) {
     const struct contact_model *model = order->blocks[m].model;
-    bool files = m == 0 && are_asked(&order->options->paths);
-    if (status != ERROR_NUMERIC || order->model_count == 1 || !model->may_fail || files)
+    const size_t loads = order->loads.count, solved = solved_of(series, loads);
+    bool needed = order->model_count == 1 || (m == 0 && press_paths_ask(&order->options->paths));
+    bool ended = status == ERROR_NUMERIC || status == ERROR_STOPPED;
+    if (!ended || !model->may_fail || (solved == 0 && needed))
         return error_context(err, "%s", order->path);
-    fprintf(stderr, "rugo press: warning: %s: model %s has no values from a load on: %s\n",
-            order->path, contact_model_name(model), err->text);
+    if (solved == loads)
+        snprintf(series->note, sizeof series->note, "the path of the flat ends: %.300s", err->text);
+    else
+        snprintf(series->note, sizeof series->note, "no values from p/(E* h') = %.4g on: %.300s",
+                 series->rows[solved].value[PRESS_LOAD], err->text);
+    fprintf(stderr, "rugo press: warning: %s: model %s: %s\n", order->path,
+            contact_model_name(model), series->note);
     *err = (struct error){0};
     return 0;
 }
 
+static double seconds_of(const struct rusage *usage) {
+    const struct timeval *user = &usage->ru_utime, *system = &usage->ru_stime;
+    return (double)(user->tv_sec + system->tv_sec) +
+           1e-6 * (double)(user->tv_usec + system->tv_usec);
+}
+
+/* What happens after each load of a model. */
+struct press_follow {
+    const struct press_order *order;
+    struct press_files *files; /* of the first model; NULL: none */
+    size_t m;
+    bool shown; /* on standard error */
+};
+
+static int follow_load(void *context, const struct map_press *press, size_t load,
+                       struct error *err) {
+    const struct press_follow *follow = context;
+    const struct press_order *order = follow->order;
+    struct rusage usage = {0};
+    getrusage(RUSAGE_SELF, &usage);
+    if (follow->shown)
+        fprintf(stderr, "rugo press: %s: model %s: load %zu of %zu, %.3g s of CPU time so far\n",
+                order->path, contact_model_name(order->blocks[follow->m].model), load + 1,
+                order->loads.count, seconds_of(&usage));
+    return follow->files != NULL ? press_files_write(follow->files, press, load, err) : 0;
+}
+
 static int press_loads(const struct press_order *order, struct pressed *pressed,
-                       const struct height_map *map, size_t m, struct error *err) {
+                       const struct height_map *map, size_t m, struct press_files *files,
+                       struct error *err) {
+    struct map_press *press = &pressed->press;
     struct press_series *series = &pressed->series[m];
-    size_t loads = order->loads.count;
-    *series = (struct press_series){.block = order->blocks[m], .rows = pressed->rows + m * loads};
-    int status = map_press_loads(&pressed->press, map->z, loads, pressed->pressures, series, err);
-    return status != 0 ? keep_others(order, m, status, err) : 0;
+    const size_t loads = order->loads.count, points = order->slide.count;
+    struct press_follow follow = {order, files, m, pressed->seconds[m] > SECONDS_WATCHED};
+    const struct press_watch watch = {follow_load, &follow};
+    *series = (struct press_series){.block = order->blocks[m],
+                                    .rows = pressed->rows + m * loads,
+                                    .slides = points > 0 ? pressed->slides + m * points : NULL};
+    press->watch = &watch;
+    press->seconds_most = order->blocks[m].model->may_fail ? order->options->seconds_most : 0;
+    int status = map_press_loads(press, map->z, loads, pressed->pressures, series, err);
+    press->watch = NULL;
+    return status != 0 ? keep_loads(order, series, m, status, err) : 0;
 }
 
 /* Presses by the first model, and writes its files. */
 static int press_first(const struct press_order *order, struct pressed *pressed,
                        const struct height_map *map, struct error *err) {
-    const struct press_paths *paths = &order->options->paths;
-    struct press_files files = {.paths = paths,
+    struct press_files files = {.paths = &order->options->paths,
                                 .loads = &order->loads,
                                 .z = map->z,
                                 .units = {map->xy_unit, map->z_unit, order->loads.modulus > 0}};
-    const struct press_watch watch = {write_load, &files};
-    int status = step_folder_open(&files.folder, paths->steps, paths->nodes, err);
-    if (status == 0) {
-        pressed->press.watch = are_asked(paths) ? &watch : NULL;
-        status = press_loads(order, pressed, map, 0, err);
-        pressed->press.watch = NULL;
-    }
-    status = step_folder_close(&files.folder, status, err);
-    contact_step_clear(&files.step);
+    int status = press_files_open(&files, err);
+    if (status == 0)
+        status = press_loads(order, pressed, map, 0, &files, err);
+    status = press_files_close(&files, status, err);
     if (status == 0)
         warn_of_few_nodes(order, &pressed->series[0].rows[0]);
     return status;
@@ -502,12 +484,6 @@ static int print(const struct press_report *report, int format, struct error *er
     return output_flush(err);
 }
 
-static double seconds_of(const struct rusage *usage) {
-    const struct timeval *user = &usage->ru_utime, *system = &usage->ru_stime;
-    return (double)(user->tv_sec + system->tv_sec) +
-           1e-6 * (double)(user->tv_usec + system->tv_usec);
-}
-
 static int report(const struct press_order *order, const struct pressed *pressed,
                   const struct height_map *map, struct error *err) {
     static const char *const BOUNDARY_NAMES[] = {"open", "mirrored", "periodic"};
@@ -518,9 +494,7 @@ static int report(const struct press_order *order, const struct pressed *pressed
     const struct press_report report = {.press = press,
                                         .record = &order->record,
                                         .boundary = BOUNDARY_NAMES[order->boundary],
-                                        .boundary_by = order->options->boundary != ASKED_AUTO
-                                                           ? "option"
-                                                           : order->record.boundary_by,
+                                        .boundary_by = boundary_by(order),
                                         .model_count = order->model_count,
                                         .series = pressed->series,
                                         .modulus = order->loads.modulus,
@@ -566,28 +540,63 @@ static int press_models(const struct press_order *order, struct pressed *pressed
     int status = find_pressures(order, pressed, err);
     for (size_t m = 0; m < order->model_count && status == 0; m++)
         status = m == 0 ? press_first(order, pressed, map, err)
-                        : press_loads(order, pressed, map, m, err);
+                        : press_loads(order, pressed, map, m, NULL, err);
     map_press_release(&pressed->press);
+    pressed->press.seconds_most = order->options->seconds_most;
     if (status == 0 && order->options->without_error == 0)
         status = map_press_error(press, map, order->model_count, pressed->series, loads,
                                  pressed->pressures, err);
     return status == 0 ? report(order, pressed, map, err) : status;
 }
 
+/* Prints what it would take, or presses. */
+static int press_or_estimate(const struct press_order *order, struct pressed *pressed,
+                             const struct height_map *map, struct error *err) {
+    const struct press_options *options = order->options;
+    const struct press_room_order room = {.press = &pressed->press,
+                                          .blocks = order->blocks,
+                                          .model_count = order->model_count,
+                                          .loads = order->loads.count,
+                                          .seconds_most = options->seconds_most,
+                                          .with_errors = options->without_error == 0};
+    if (options->estimate) {
+        press_room_print(stdout, &room);
+        return output_flush(err);
+    }
+    int status = press_room_check(&room, err);
+    for (size_t m = 0; m < order->model_count; m++)
+        pressed->seconds[m] = press_room_seconds(&room, m);
+    return status != 0 ? error_context(err, "%s", order->path)
+                       : press_models(order, pressed, map, err);
+}
+
+/* Makes room for all values. */
+static int pressed_create(struct pressed *pressed, const struct press_order *order,
+                          struct error *err) {
+    const size_t loads = order->loads.count, points = order->slide.count;
+    const size_t count = order->model_count * (loads + points);
+    pressed->pressures = array_create(loads, sizeof *pressed->pressures);
+    pressed->rows = array_create(order->model_count * loads, sizeof *pressed->rows);
+    if (points > 0)
+        pressed->slides = array_create(order->model_count * points, sizeof *pressed->slides);
+    return pressed->pressures != NULL && pressed->rows != NULL &&
+                   (points == 0 || pressed->slides != NULL)
+               ? 0
+               : error_memory(err, count * sizeof *pressed->rows, "the loads");
+}
+
 static int press_map(const struct press_order *order, struct height_map *map, struct error *err) {
-    size_t loads = order->loads.count, count = order->model_count * loads;
-    struct pressed pressed = {.pressures = array_create(loads, sizeof *pressed.pressures),
-                              .rows = array_create(count, sizeof *pressed.rows)};
+    struct pressed pressed = {.pressures = NULL};
     unsigned threads = order->options->threads;
-    int status = pressed.pressures == NULL || pressed.rows == NULL
-                     ? error_memory(err, count * sizeof *pressed.rows, "the loads")
-                     : map_press_begin(&pressed.press, map, order->boundary, err);
+    int status = pressed_create(&pressed, order, err);
+    if (status == 0)
+        status = map_press_begin(&pressed.press, map, order->boundary, err);
     if (status != 0)
         error_context(err, "%s", order->path);
     else if (grid_points(&map->grid) >= POINTS_SHARED)
         status = team_create(&pressed.press.team, threads > 0 ? threads : allotment_threads(), err);
     if (status == 0)
-        status = press_models(order, &pressed, map, err);
+        status = press_or_estimate(order, &pressed, map, err);
     pressed_clear(&pressed);
     return status;
 }
@@ -603,7 +612,7 @@ static int check_coupling(const struct press_order *order, struct error *err) {
         const struct contact_model *model = order->blocks[m].model;
         const double height =
             order->blocks[m].lengths > 0 ? order->blocks[m].lengths : model->default_height;
-        if (model->elements || isfinite(height))
+        if (!order->slides && (model->elements || isfinite(height)))
             return error_set(err, ERROR_INPUT,
                              "--coupling: it is that of an infinite half-space, and the block of "
                              "the model %s has a height; leave one of them out",
@@ -612,15 +621,69 @@ static int check_coupling(const struct press_order *order, struct error *err) {
     return 0;
 }
 
-/* Sets the models and their blocks. */
-static int order_models(struct press_order *order, struct error *err) {
+/* Checks friction, and reads the path of the flat where a model slides. */
+static int order_friction(struct press_order *order, struct error *err) {
     const struct press_options *options = order->options;
+    const double friction = options->words.friction;
+    if (!order->slides && (options->slide_to != NULL || options->slide_steps > 0))
+        return error_set(err, ERROR_INPUT,
+                         "--%s belongs to --friction with a model that slides at finite strain, "
+                         "such as --model full",
+                         options->slide_to != NULL ? "slide-to" : "slide-steps");
+    if (options->coupling != COUPLING_NONE && check_coupling(order, err) != 0)
+        return ERROR_INPUT;
+    if (friction > 0 && options->coating != NULL)
+        return error_set(err, ERROR_INPUT,
+                         "--friction and --coating: how a coating gives tangentially is not known "
+                         "from its contact");
+    if (!order->slides)
+        return 0;
+    if (friction > SLIDING_FRICTION_MOST)
+        return error_set(err, ERROR_INPUT, "--friction %g; allowed with the model full: (0, %g]",
+                         friction, SLIDING_FRICTION_MOST);
+    int status =
+        press_path_parse(&order->slide, options->slide_to, options->slide_steps, friction, err);
+    for (size_t m = 0; m < order->model_count && status == 0; m++) {
+        order->blocks[m].slide = order->slide.at;
+        order->blocks[m].slide_count = order->slide.count;
+        order->blocks[m].slide_steps = order->slide.steps;
+    }
+    return status;
+}
+
+/* Finds the models, and reads the loads, to which friction by lighter ones adds some. */
+static int order_loads(struct press_order *order, struct error *err) {
+    const struct press_options *options = order->options;
+    struct press_words words = options->words;
     int positions[CONTACT_MODELS_MOST];
     if (!models_find(options->model, positions, &order->model_count))
         return error_set(err, ERROR_INPUT, "there is no model %.40s", options->model);
+    for (size_t m = 0; m < order->model_count; m++) {
+        order->blocks[m].model = CONTACT_MODELS[positions[m]];
+        order->slides = order->slides || (words.friction > 0 && order->blocks[m].model->slides);
+    }
+    if (order->slides)
+        words.friction = 0;
+    return press_loads_parse(&order->loads, &words, err);
+}
+
+/* Checks what the files of a mesh need. */
+static int check_mesh(const struct press_order *order, struct error *err) {
+    const struct press_options *options = order->options;
+    const struct contact_model *first = order->blocks[0].model;
+    if (options->paths.mesh != NULL && first->block_of == NULL)
+        return error_set(err, ERROR_INPUT,
+                         "--mesh: the model %s, the first, has no mesh; --model full has",
+                         contact_model_name(first));
+    return 0;
+}
+
+/* Sets the models and their blocks. */
+static int order_models(struct press_order *order, struct error *err) {
+    const struct press_options *options = order->options;
     for (size_t m = 0; m < order->model_count; m++)
         order->blocks[m] =
-            (struct press_block){.model = CONTACT_MODELS[positions[m]],
+            (struct press_block){.model = order->blocks[m].model,
                                  .poisson = options->words.poisson,
                                  .lengths = options->lengths,
                                  .tolerance = options->tolerance,
@@ -630,28 +693,22 @@ static int order_models(struct press_order *order, struct error *err) {
                                  .angle = options->along_y ? M_PI / 2 : 0,
                                  .coupled = options->coupling != COUPLING_NONE,
                                  .pressing = options->coupling == COUPLING_FRICTIONAL,
+                                 .kinematics = (enum kinematics)options->kinematics,
+                                 .weighting = (enum gap_weighting)options->weighting,
+                                 .transition = options->transition,
                                  .leaks = options->leak};
-    if (options->coupling != COUPLING_NONE && check_coupling(order, err) != 0)
-        return ERROR_INPUT;
+    if (order_friction(order, err) != 0)
+        return err->code;
     if (order->loads.resistivity > 0 && options->coating != NULL)
         return error_set(err, ERROR_INPUT,
                          "--%s and --coating: what passes a coating is not known from its contact",
                          order->loads.heat ? "conductivity" : "resistivity");
-    if (options->words.friction > 0 && options->coating != NULL)
-        return error_set(err, ERROR_INPUT,
-                         "--friction and --coating: how a coating gives tangentially is not known "
-                         "from its contact");
-    for (size_t m = 0; m < order->model_count && options->words.friction > 0; m++)
-        if (order->blocks[m].model->block_of != NULL)
-            return error_set(err, ERROR_INPUT,
-                             "--friction: the model %s has none; leave one of them out",
-                             contact_model_name(order->blocks[m].model));
     for (size_t m = 0; m < order->model_count && order->loads.hardness > 0; m++)
         if (!order->blocks[m].model->yields)
             return error_set(err, ERROR_INPUT,
                              "--hardness: the model %s does not yield; leave one of them out",
                              contact_model_name(order->blocks[m].model));
-    return 0;
+    return check_mesh(order, err);
 }
 
 static int run(const void *values, const char *const *arguments) {
@@ -663,7 +720,7 @@ static int run(const void *values, const char *const *arguments) {
     if (status == 0) {
         order->path = arguments[0];
         order->options = options;
-        status = press_loads_parse(&order->loads, &options->words, &err);
+        status = order_loads(order, &err);
     }
     if (status == 0)
         status = order_models(order, &err);
@@ -676,6 +733,8 @@ static int run(const void *values, const char *const *arguments) {
     if (status == 0)
         status = press_map(order, &map, &err);
     height_map_clear(&map);
+    if (order != NULL)
+        press_path_clear(&order->slide);
     free(order);
     return status == 0 ? EXIT_DONE : command_fail("press", &err);
 }

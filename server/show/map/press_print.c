@@ -2,6 +2,7 @@
 #include "core/map/length_unit.h"
 #include "jobs/maps/map_press_curves.h"
 #include "schema/json/json.h"
+#include "server/show/map/press_slip.h"
 #include "server/show/quantity.h"
 #include "server/show/table/text_table.h"
 #include <math.h>
@@ -46,6 +47,22 @@ static bool has_column(const struct press_report *report, const struct press_col
 /* Returns whether its errors stand in tables. */
 static bool is_uncertain(const struct press_report *report, const struct press_column *column) {
     return column->uncertain && has_column(report, column);
+}
+
+/* Return whether tables for people show a column of this model, and its errors: where some load has
+ * a value, or none has any. */
+static bool is_printed(const struct part *part, const struct press_column *column) {
+    const struct press_row *rows = part->series->rows;
+    bool some = false, solved = false;
+    for (size_t l = 0; l < part->report->loads; l++) {
+        some = some || !isnan(value_of(part, l, column));
+        solved = solved || !isnan(rows[l].value[PRESS_CONTACT_NODES]);
+    }
+    return has_column(part->report, column) && (some || !solved);
+}
+
+static bool is_error_printed(const struct part *part, const struct press_column *column) {
+    return column->uncertain && is_printed(part, column);
 }
 
 static const struct press_column *column_of(size_t value) {
@@ -131,6 +148,9 @@ static void print_physical(FILE *file, const struct part *part) {
     struct text_table table = {0};
     fill_physical(report, columns);
     for (size_t c = 0; c < PHYSICAL_COLUMNS; c++)
+        if (!is_printed(part, column_of(columns[c].value)))
+            columns[c].scale = 0;
+    for (size_t c = 0; c < PHYSICAL_COLUMNS; c++)
         table.columns += columns[c].scale > 0;
     if (table.columns == 0)
         return;
@@ -169,12 +189,35 @@ static void print_preparation(FILE *file, const struct press_report *report) {
         fprintf(file, "%s: %s\n", record->steps[step].name, record->steps[step].text);
 }
 
+/* Returns NULL of models that have no choice of strains. */
+static const char *kinematics_of(const struct part *part) {
+    const struct contact_model *model = part->series->block.model;
+    return model->kinematics != NULL ? model->kinematics(&part->report->press->one_case) : NULL;
+}
+
+static void print_mesh(FILE *file, const struct part *part) {
+    const struct press_mesh *mesh = &part->series->mesh;
+    const struct grid *grid = &part->report->press->grid;
+    if (mesh->nodes == 0)
+        return;
+    print_length(file, "block: height", part->series->height, part->report->metres);
+    fprintf(file,
+            ", %zu by %zu columns, %zu layers, %zu nodes; steepest slope %.3g, worst element "
+            "%.2g\n",
+            grid->nx, grid->ny, mesh->layers, mesh->nodes, mesh->slope, mesh->quality);
+}
+
 static void print_heading(FILE *file, const struct part *part) {
     const struct press_report *report = part->report;
     const struct map_press *press = report->press;
     double full_contact = part->series->full_contact;
-    fprintf(file, "boundary: %s (by %s)\nmodel: %s\nRMS slope %.4g, ", report->boundary,
-            report->boundary_by, part->model, press->slope);
+    fprintf(file, "boundary: %s (by %s)\nmodel: %s", report->boundary, report->boundary_by,
+            part->model);
+    if (kinematics_of(part) != NULL)
+        fprintf(file, " (%s)", kinematics_of(part));
+    fprintf(file, "\n");
+    print_mesh(file, part);
+    fprintf(file, "RMS slope %.4g, ", press->slope);
     print_length(file, "RMS height", press->height, report->metres);
     if (!isnan(full_contact))
         fprintf(file, "; full contact at p/(E* h') = %.4g", full_contact / press->slope);
@@ -190,7 +233,30 @@ static void print_heading(FILE *file, const struct part *part) {
         fprintf(file, ", modulus %.4g of the block's, Poisson's ratio %.4g", coating->modulus,
                 coating->poisson);
     }
-    fprintf(file, "\n\n");
+    fprintf(file, "\n");
+    if (part->series->note[0] != '\0')
+        fprintf(file, "note: %s\n", part->series->note);
+    fprintf(file, "\n");
+}
+
+/* Prints what the model alone has, by load. */
+static void print_own(FILE *file, const struct part *part) {
+    const struct contact_model *model = part->series->block.model;
+    struct text_table table = {.columns = 1 + model->curve_count};
+    if (model->curve_count == 0)
+        return;
+    table_cell(&table, "%s", column_of(PRESS_LOAD)->heading);
+    for (size_t c = 0; c < model->curve_count; c++)
+        table_cell(&table, "%s", model->curves[c].quantity);
+    for (size_t l = 0; l < part->report->loads; l++) {
+        const double *value = part->series->rows[l].value;
+        table_number(&table, value[PRESS_LOAD]);
+        for (size_t c = 0; c < model->curve_count; c++)
+            table_number(&table, value[MEASURE_OWN + model->curves[c].measure]);
+    }
+    fprintf(file, "\nof this model alone\n\n");
+    table_print(&table, file);
+    table_clear(&table);
 }
 
 /* What tables for people say of a source; the others do not exist for one map. */
@@ -213,7 +279,7 @@ static void print_errors(FILE *file, const struct part *part, enum error_source 
     struct text_table table = {.columns = 1};
     bool known = source == ERROR_DISCRETISATION;
     for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++) {
-        bool shown = is_uncertain(part->report, &PRESS_COLUMNS[c]);
+        bool shown = is_error_printed(part, &PRESS_COLUMNS[c]);
         table.columns += shown;
         known = known || (shown && error_of(part, &PRESS_COLUMNS[c], source).value != NULL);
     }
@@ -221,12 +287,12 @@ static void print_errors(FILE *file, const struct part *part, enum error_source 
         return;
     table_cell(&table, "%s", column_of(PRESS_LOAD)->heading);
     for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++)
-        if (is_uncertain(part->report, &PRESS_COLUMNS[c]))
+        if (is_error_printed(part, &PRESS_COLUMNS[c]))
             table_cell(&table, "%s", PRESS_COLUMNS[c].heading);
     for (size_t l = 0; l < part->report->loads; l++) {
         table_number(&table, value_of(part, l, column_of(PRESS_LOAD)));
         for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++)
-            if (is_uncertain(part->report, &PRESS_COLUMNS[c])) {
+            if (is_error_printed(part, &PRESS_COLUMNS[c])) {
                 struct curve_error error = error_of(part, &PRESS_COLUMNS[c], source);
                 put_error(&table, &error, l);
             }
@@ -236,156 +302,13 @@ static void print_errors(FILE *file, const struct part *part, enum error_source 
     table_clear(&table);
 }
 
-/* --- what slips under the highest load --- */
-
-/* Columns by the share of the load of full slip, Q/(mu P). */
-static const struct slip_column {
-    const char *heading, *key, *quantity, *series;
-    enum { SLIP_SHARE, SLIP_LENGTH, SLIP_WORK_DONE } kind;
-} SLIP_COLUMNS[] = {
-    {"stick edges", "stick_edges", "stick_area", "edges", SLIP_SHARE},
-    {"stick nodes", "stick_nodes", "stick_area", "nodes", SLIP_SHARE},
-    {"coupled", "stick_coupled", "stick_area", "coupled", SLIP_SHARE},
-    {"displacement", "tangential_displacement", "tangential_displacement", "", SLIP_LENGTH},
-    {"coupled", "tangential_displacement_coupled", "tangential_displacement", "coupled",
-     SLIP_LENGTH},
-    {"contact coupled", "slip_contact_area", "slip_contact_area", "coupled", SLIP_SHARE},
-    {"work a cycle", "slip_work", "slip_work", "", SLIP_WORK_DONE}};
-enum { SLIP_COLUMN_COUNT = sizeof SLIP_COLUMNS / sizeof *SLIP_COLUMNS };
-
-/* Returns NULL where the model has no such curve. */
-static const struct curve *slip_curve(const struct part *part, const struct slip_column *column) {
-    const struct case_result *result = part->report->result;
-    for (size_t c = 0; c < result->curve_count; c++)
-        if (same_text(result->curves[c].quantity, column->quantity) &&
-            same_text(result->curves[c].series, column->series) &&
-            same_text(result->curves[c].model, part->model))
-            return &result->curves[c];
-    return NULL;
-}
-
-/* Returns the sum of the bounds of a value by all sources that are known; NaN: none is. */
-static double bound_at(const struct curve *curve, size_t point) {
-    double sum = NAN;
-    for (size_t s = 0; s < ERROR_SOURCES; s++) {
-        double own = fabs(number_at(curve->errors[s].value, point)) +
-                     number_at(curve->errors[s].bound, point);
-        if (!isnan(own))
-            sum = isnan(sum) ? own : sum + own;
-    }
-    return sum;
-}
-
-/* Returns whether an error of some point is known. */
-static bool has_bounds(const struct curve *curve) {
-    for (size_t i = 0; i < curve->n; i++)
-        if (!isnan(bound_at(curve, i)))
-            return true;
-    return false;
-}
-
-/* Returns the scale to SI units; 0: not known. */
-static double slip_scale(const struct press_report *report, const struct slip_column *column) {
-    const struct map_press *press = report->press;
-    double length = report->metres ? press->height : 0;
-    double work = length * report->map_area * press->slope * report->modulus;
-    return column->kind == SLIP_LENGTH ? length : column->kind == SLIP_WORK_DONE ? work : 0;
-}
-
-/* Heads a column, with its unit where it is known; returns what its values are multiplied by. */
-static double head_slip(struct text_table *table, const struct part *part,
-                        const struct slip_column *column, const struct curve *curve) {
-    bool profile = grid_is_profile(&part->report->press->map);
-    const char *si = column->kind == SLIP_LENGTH ? "m" : profile ? "J/m" : "J";
-    double scale = slip_scale(part->report, column), most = 0;
-    char unit[24];
-    if (!(scale > 0)) {
-        table_cell(table, "%s%s", column->heading,
-                   column->kind == SLIP_LENGTH      ? "/rms"
-                   : column->kind == SLIP_WORK_DONE ? "/(E* h' rms)"
-                                                    : "");
-        return 1;
-    }
-    for (size_t i = 0; i < curve->n; i++)
-        most = fmax(most, curve->y[i]); /* NaN: a point without a solution */
-    scale /= unit_readable(si, scale * most, unit, sizeof unit);
-    table_cell(table, "%s, %s", column->heading, unit);
-    return scale;
-}
-
-/* The curves of what slips that a model has, NULL where it has none, with the scales of their
- * values, and whether errors of each are known. */
-struct slip_curves {
-    const struct curve *of[SLIP_COLUMN_COUNT], *first;
-    double scales[SLIP_COLUMN_COUNT];
-    bool bounded[SLIP_COLUMN_COUNT], some;
-};
-
-static struct slip_curves slip_curves_of(const struct part *part) {
-    struct slip_curves curves = {0};
-    for (size_t c = 0; c < SLIP_COLUMN_COUNT; c++) {
-        curves.of[c] = slip_curve(part, &SLIP_COLUMNS[c]);
-        curves.bounded[c] = curves.of[c] != NULL && has_bounds(curves.of[c]);
-        curves.some = curves.some || curves.bounded[c];
-        curves.first = curves.first != NULL ? curves.first : curves.of[c];
-    }
-    return curves;
-}
-
-static void head_slips(struct text_table *table, const struct part *part,
-                       struct slip_curves *curves) {
-    table->columns = 1;
-    for (size_t c = 0; c < SLIP_COLUMN_COUNT; c++)
-        table->columns += curves->of[c] != NULL ? 1 + curves->bounded[c] : 0;
-    table_cell(table, "Q/(mu P)");
-    for (size_t c = 0; c < SLIP_COLUMN_COUNT; c++) {
-        if (curves->of[c] != NULL)
-            curves->scales[c] = head_slip(table, part, &SLIP_COLUMNS[c], curves->of[c]);
-        if (curves->bounded[c])
-            table_cell(table, "+-");
-    }
-}
-
-static void fill_slips(struct text_table *table, const struct slip_curves *curves, size_t point) {
-    table_number(table, curves->first->x[point]);
-    for (size_t c = 0; c < SLIP_COLUMN_COUNT; c++) {
-        if (curves->of[c] != NULL)
-            table_number(table, curves->of[c]->y[point] * curves->scales[c]);
-        if (curves->bounded[c])
-            table_cell(table, "%.2g", bound_at(curves->of[c], point) * curves->scales[c]);
-    }
-}
-
-/* Prints what slips, with the sums of the bounds of its errors, where friction is asked for. */
-static void print_slip(FILE *file, const struct part *part) {
-    const struct map_press *press = part->report->press;
-    const struct press_block *block = &part->series->block;
-    struct slip_curves curves = slip_curves_of(part);
-    struct text_table table = {0};
-    if (curves.first == NULL || curves.first->n == 0)
-        return;
-    head_slips(&table, part, &curves);
-    for (size_t i = 0; i < curves.first->n; i++)
-        fill_slips(&table, &curves, i);
-    fprintf(file, "\ntangential load Q along %s under p/(E* h') = %.4g, friction %.4g%s\n\n",
-            block->angle > 0 ? "y" : "x", curves.first->pressure, block->friction,
-            curves.some ? "; +- errors that are known" : "");
-    if (press->boundary == PRESS_OPEN && !grid_is_profile(&press->map))
-        fprintf(file,
-                "stiffness along the face over that across: %.4g, as where no direction has longer "
-                "waves; else between %.4g and 1\n\n",
-                (1 - block->poisson) / (1 - block->poisson / 2), 1 - block->poisson);
-    table_print(&table, file);
-    table_clear(&table);
-}
-
 static void print_part(FILE *file, const struct part *part) {
     struct text_table table = {0};
     print_heading(file, part);
     for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++)
-        table.columns += has_column(part->report, &PRESS_COLUMNS[c]);
+        table.columns += is_printed(part, &PRESS_COLUMNS[c]);
     for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++) {
-        if (!has_column(part->report, &PRESS_COLUMNS[c]))
+        if (!is_printed(part, &PRESS_COLUMNS[c]))
             continue;
         if (PRESS_COLUMNS[c].fold)
             table_fold(&table);
@@ -393,12 +316,13 @@ static void print_part(FILE *file, const struct part *part) {
     }
     for (size_t l = 0; l < part->report->loads; l++)
         for (size_t c = 0; c < PRESS_COLUMN_COUNT; c++)
-            if (has_column(part->report, &PRESS_COLUMNS[c]))
+            if (is_printed(part, &PRESS_COLUMNS[c]))
                 table_number(&table, value_of(part, l, &PRESS_COLUMNS[c]));
     table_print(&table, file);
     table_clear(&table);
     print_physical(file, part);
-    print_slip(file, part);
+    print_own(file, part);
+    press_slip_print(file, part->report, part->series);
     for (size_t s = 0; s < ERROR_SOURCES && part->report->with_errors; s++)
         print_errors(file, part, (enum error_source)s);
 }
@@ -525,45 +449,39 @@ static bool add_scales(cJSON *document, const struct press_report *report) {
            cJSON_AddItemToObject(document, "rms_height", json_number(press->height));
 }
 
-/* Adds what slips, and its errors by source, where friction is asked for. */
-static bool add_slip(cJSON *document, const struct part *part) {
-    const struct press_block *block = &part->series->block;
-    bool complete = true;
-    if (!(block->friction > 0))
+/* Adds what a mesh is like; nothing of models without one. */
+static bool add_mesh(cJSON *document, const struct part *part) {
+    const struct press_mesh *mesh = &part->series->mesh;
+    const char *kinematics = kinematics_of(part);
+    if (kinematics != NULL && cJSON_AddStringToObject(document, "kinematics", kinematics) == NULL)
+        return false;
+    if (mesh->nodes == 0)
         return true;
-    cJSON *slip = cJSON_AddObjectToObject(document, "slip");
-    complete = cJSON_AddNumberToObject(slip, "friction", block->friction) != NULL &&
-               cJSON_AddStringToObject(slip, "direction", block->angle > 0 ? "y" : "x") != NULL;
-    for (size_t c = 0; c < SLIP_COLUMN_COUNT && complete; c++) {
-        const struct curve *curve = slip_curve(part, &SLIP_COLUMNS[c]);
-        char key[48];
-        if (curve == NULL)
-            continue;
-        if (!cJSON_HasObjectItem(slip, "load"))
-            complete = cJSON_AddItemToObject(slip, "load", json_number(curve->pressure)) &&
-                       cJSON_AddItemToObject(slip, "share", json_numbers(curve->x, curve->n));
-        complete = complete && cJSON_AddItemToObject(slip, SLIP_COLUMNS[c].key,
-                                                     json_numbers(curve->y, curve->n));
-        double *bounds = complete ? array_create(curve->n, sizeof *bounds) : NULL;
-        for (size_t i = 0; i < curve->n && bounds != NULL; i++)
-            bounds[i] = bound_at(curve, i);
-        snprintf(key, sizeof key, "%s_error", SLIP_COLUMNS[c].key);
-        complete =
-            bounds != NULL && cJSON_AddItemToObject(slip, key, json_numbers(bounds, curve->n));
-        free(bounds);
-    }
-    return complete;
+    cJSON *out = cJSON_AddObjectToObject(document, "mesh");
+    return out != NULL && cJSON_AddItemToObject(out, "height", json_number(part->series->height)) &&
+           cJSON_AddNumberToObject(out, "layers", (double)mesh->layers) != NULL &&
+           cJSON_AddNumberToObject(out, "nodes", (double)mesh->nodes) != NULL &&
+           cJSON_AddNumberToObject(out, "elements", (double)mesh->elements) != NULL &&
+           cJSON_AddItemToObject(out, "steepest_slope", json_number(mesh->slope)) &&
+           cJSON_AddItemToObject(out, "quality", json_number(mesh->quality));
+}
+
+/* Adds why loads have no values, where some have none. */
+static bool add_note(cJSON *document, const struct part *part) {
+    const char *note = part->series->note;
+    return note[0] == '\0' || cJSON_AddStringToObject(document, "note", note) != NULL;
 }
 
 static bool add_part(cJSON *document, const struct part *part, double *column) {
     double full_contact = part->series->full_contact / part->report->press->slope;
-    bool complete = cJSON_AddItemToObject(document, "full_contact", json_number(full_contact));
+    bool complete = cJSON_AddItemToObject(document, "full_contact", json_number(full_contact)) &&
+                    add_mesh(document, part) && add_note(document, part);
     for (size_t c = 0; c < PRESS_COLUMN_COUNT && complete; c++)
         if (has_column(part->report, &PRESS_COLUMNS[c]))
             complete =
                 add_column(document, PRESS_COLUMNS[c].key, part, &PRESS_COLUMNS[c], 1, column);
     return complete && add_errors(document, part, column) && add_physical(document, part, column) &&
-           add_slip(document, part);
+           press_slip_add(document, part->report, part->series);
 }
 
 static bool add_model(cJSON *document, const struct part *part) {

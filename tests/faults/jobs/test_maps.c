@@ -19,6 +19,7 @@ struct work {
     enum boundary boundary;
     enum press_boundary pressed;
     const char *model;
+    bool slides;
     double expected; /* NaN: not known yet */
 };
 
@@ -84,7 +85,8 @@ static int press_series(struct map_press *press, struct height_map *map,
 static int press_map(void *context, struct error *err) {
     struct work *work = context;
     const struct choice *choice = choice_find(CONTACT_MODEL_CHOICES, work->model);
-    struct press_row rows[2];
+    double path[] = {0, 0.5};
+    struct press_row rows[2], slides[2];
     struct press_series series[] = {
         {.block = {.model = CONTACT_MODELS[choice->value], .poisson = 0.3}, .rows = &rows[0]},
         {.block = {.model = CONTACT_MODELS[0], .lengths = work->pressed == PRESS_OPEN ? 0 : 0.2},
@@ -92,6 +94,13 @@ static int press_map(void *context, struct error *err) {
     struct map_press press = {.copies = 0};
     struct height_map map = {.grid = {SIDE, 1, 10, 1}, .z = array_create(SIDE, sizeof *map.z)};
     int status = map.z == NULL ? error_memory(err, SIDE * sizeof *map.z, "a map") : 0;
+    if (work->slides) {
+        series[0].slides = slides;
+        series[0].block.friction = 0.2;
+        series[0].block.slide = path;
+        series[0].block.slide_count = 2;
+        series[0].block.slide_steps = 1;
+    }
     for (size_t i = 0; i < SIDE && status == 0; i++)
         map.z[i] = 0.05 * cos(2 * M_PI * (double)i / SIDE);
     if (status == 0)
@@ -142,6 +151,10 @@ static void maps_are_pressed(void **state) {
     check("open", press_map, (struct work){.pressed = PRESS_OPEN, .model = "halfspace"});
     check("mirrored", press_map, (struct work){.pressed = PRESS_MIRRORED, .model = "layered"});
     check("full", press_map, (struct work){.pressed = PRESS_PERIODIC, .model = "full"});
+    /* A path takes seconds of itself: only where all allocations fail. */
+    if (getenv("RUGO_FAULTS") != NULL)
+        check("slides", press_map,
+              (struct work){.pressed = PRESS_PERIODIC, .model = "full", .slides = true});
 }
 
 int main(void) {

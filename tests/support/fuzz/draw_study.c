@@ -313,6 +313,8 @@ static void give_partners(cJSON *document) {
         {"/contact/pressures/unit", "/surface/rms_slope", "0.1"},
         {"/contact/pressures/unit", "/contact/pressures/values", "[0.05, 0.2]"},
         {"/contact/pressures/unit", "/contact/pressure_pdf", "{}"},
+        {"/contact/time_limit", "/surface/rms_slope", "0.1"},
+        {"/contact/time_limit", "/contact/model", "\"full\""},
         {"/contact/block_fine_height", "/surface/rms_slope", "0.1"},
         {"/contact/block_fine_height", "/contact/model", "\"full\""},
         {"/contact/block_fine_height", "/contact/block_height", "{\"lengths\": 1}"},

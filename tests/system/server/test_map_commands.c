@@ -377,7 +377,7 @@ static void a_measured_map_is_pressed_in_units(void **state) {
     assert_true(cJSON_GetObjectItem(document, "peak_bytes")->valuedouble > 1e6);
     cJSON_Delete(document);
     free(text);
-    assert_int_equal(run_shell("$RUGO press sphere.csv --model layered"), 2);
+    assert_int_equal(run_shell("$RUGO press sphere.csv --boundary open --model layered"), 2);
     assert_true(contains("shell.err", "sphere.csv: the map does not repeat, and --model layered"));
     /* Files that could not be written are refused before anything is computed. */
     assert_int_equal(run_shell("$RUGO press sphere.csv --loads 0.1 -o p.pdf > told"), 2);

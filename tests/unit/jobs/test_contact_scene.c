@@ -1,6 +1,7 @@
 /* What the scene reports of the model full is of the block as it is pressed: areas stretched, and
  * pressures on these areas, which together carry the load; of small strains nothing is
- * stretched. */
+ * stretched. A limit of time ends the loads of a realisation, with a note, and changes none before
+ * it. */
 #include "core/contact/area.h"
 #include "core/contact/patches.h"
 #include "jobs/contact/contact_case_read.h"
@@ -10,13 +11,16 @@
 #include "tests/support/effort.h"
 #include "tests/support/unstopped.h"
 #include <stdlib.h>
+#include <string.h>
 
 /* No cells of other lengths, which this file does not look at. Fine bins, so that their centres
  * give the mean pressure. */
-#define PRESSED(dimension, kinematics)                                                             \
+#define PRESSED(dimension, kinematics) PRESSED_WITHIN(dimension, kinematics, "")
+#define PRESSED_WITHIN(dimension, kinematics, limit)                                               \
     "{\"surface\": {\"dimension\": " dimension ", \"hurst\": 0.8, \"wavelength_ratio\": 2,"        \
     " \"length_ratio\": 2, \"points_per_wavelength\": 4, \"rms_slope\": 0.2}, \"contact\": {"      \
-    "\"model\": [\"layered\", \"full\"], \"kinematics\": \"" kinematics "\", \"block_height\":"    \
+    "\"model\": [\"layered\", \"full\"], " limit "\"kinematics\": \"" kinematics "\", "            \
+    "\"block_height\":"                                                                            \
     " {\"lengths\": 1}, \"cell_error\": \"none\", \"pressures\": {\"values\": [0.1, 0.3]}, "       \
     "\"pressure_pdf\": {\"at\":"                                                                   \
     " [0.1, 0.3], \"bins\": [0, 10, 10000]}}}"
@@ -220,11 +224,34 @@ static void stretched_edges_need_a_slope(void **state) {
     }
 }
 
+/* The limit is looked at between load steps: the first load takes one, and is solved. */
+static void a_limit_ends_loads(void **state) {
+    (void)state;
+    struct scene_fixture free_of_it, within;
+    fixture_open(&free_of_it, PRESSED("1", "hencky"));
+    fixture_open(&within, PRESSED_WITHIN("1", "hencky", "\"time_limit\": 1e-9, "));
+    assert_int_equal(free_of_it.tally.notes.count, 0);
+    assert_int_equal(within.tally.notes.count, 1);
+    assert_non_null(strstr(within.tally.notes.kept[0].text, "load 0.3, reached 0.1: "));
+    assert_non_null(
+        strstr(within.tally.notes.kept[0].text, "the time limit of 1e-09 s was used up"));
+    for (size_t m = 0; m < MODELS; m++)
+        for (size_t k = 0; k < 2; k++) {
+            size_t cell = contact_case_cell(&within.one_case, m, 0, k);
+            double before = contact_tally_values(&free_of_it.tally, MEASURE_EDGES)[cell];
+            double now = contact_tally_values(&within.tally, MEASURE_EDGES)[cell];
+            assert_true(m == FULL && k == 1 ? isnan(now) : now == before);
+        }
+    fixture_close(&free_of_it);
+    fixture_close(&within);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(areas_are_those_now),
         cmocka_unit_test(pressures_carry_the_load),
         cmocka_unit_test(stretched_edges_need_a_slope),
+        cmocka_unit_test(a_limit_ends_loads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

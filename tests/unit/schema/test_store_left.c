@@ -168,6 +168,24 @@ static void near_the_truth(void **state) {
     }
 }
 
+/* A realisation that takes many times its estimate is not about to end: it is said to need as long
+ * again as it is late. The share that is done does not fall. */
+static void late_realisations_are_not_about_to_end(void **state) {
+    (void)state;
+    static double told[SECONDS_MOST], share[SECONDS_MOST];
+    const double rates[] = {400};
+    char id[STUDY_ID_SIZE];
+    struct store *store = open_store("late.db");
+    submit(store, 1, 1, 2, id);
+    int end = work_off(store, id, 1, rates, told, share);
+    assert_int_equal(end, 400);
+    for (int now = 3; now < end; now++) {
+        check_close(told[now], now - 1.8, 1e-9); /* of 2 s a twentieth is always left */
+        assert_true(share[now] >= share[now - 1] - 1e-9 && share[now] < 1);
+    }
+    store_close(&store);
+}
+
 /* --- a study that waits --- */
 
 static double left_of(struct store *store, const char *id) {
@@ -219,6 +237,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_last_jobs_fall_to_whom_they_do),
         cmocka_unit_test(near_the_truth),
+        cmocka_unit_test(late_realisations_are_not_about_to_end),
         cmocka_unit_test(behind_others),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

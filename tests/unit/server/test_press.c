@@ -1,7 +1,8 @@
 /* Protects: quantities with units are read and printed as people write them; the loads of `press`
- * in each of their forms, and what is refused. */
+ * in each of their forms, the path of the flat, and what is refused. */
 #include "server/command/map/press_coating.h"
 #include "server/command/map/press_loads.h"
+#include "server/command/map/press_path.h"
 #include "server/show/quantity.h"
 #include "tests/support/check.h"
 #include <math.h>
@@ -174,12 +175,36 @@ static void coatings_are_refused(void **state) {
     }
 }
 
+static void paths_are_read(void **state) {
+    (void)state;
+    struct press_path path = {.at = NULL};
+    struct error err = {0};
+    assert_int_equal(press_path_parse(&path, "1,-0.5,0", 2, 0.3, &err), 0);
+    const double expected[] = {0, 0.5, 1, 0.25, -0.5, -0.25, 0};
+    assert_int_equal(path.count, 7);
+    for (size_t i = 0; i < 7; i++)
+        check_close(path.at[i], expected[i], 1e-15);
+    press_path_clear(&path);
+    assert_int_equal(press_path_parse(&path, NULL, 0, 0.3, &err), 0);
+    assert_int_equal(path.count, 31);
+    check_relative(path.at[30], 1.2, 1e-15);
+    press_path_clear(&path);
+    static const char *const WRONG[] = {"", "0", "1,1", "1,", "1;2", "x", "nan", "2000", ",1"};
+    for (size_t n = 0; n < sizeof WRONG / sizeof *WRONG; n++) {
+        assert_int_equal(press_path_parse(&path, WRONG[n], 2, 0.3, &err), ERROR_INPUT);
+        assert_non_null(strstr(err.text, "not up to 100 numbers"));
+        assert_null(path.at);
+    }
+    assert_int_equal(press_path_parse(&path, "1,2", 500, 0.3, &err), ERROR_INPUT);
+    assert_non_null(strstr(err.text, "--slide-steps 500 to each of 2 turning points"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(quantities_are_read),  cmocka_unit_test(values_have_readable_prefixes),
         cmocka_unit_test(units_are_readable),   cmocka_unit_test(loads_are_read),
         cmocka_unit_test(loads_are_refused),    cmocka_unit_test(coatings_are_read),
-        cmocka_unit_test(coatings_are_refused),
+        cmocka_unit_test(coatings_are_refused), cmocka_unit_test(paths_are_read),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

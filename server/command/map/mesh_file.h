@@ -1,0 +1,24 @@
+/* A meshed block as one file, by the ending of its name: .msh for Gmsh, .inp for CalculiX and
+ * Abaqus with a step for each load, else .vtu for ParaView.
+ *
+ * Life: {0} with a path -> put (a step) ... -> clear. */
+#ifndef RUGO_SERVER_COMMAND_MAP_MESH_FILE_H
+#define RUGO_SERVER_COMMAND_MAP_MESH_FILE_H
+
+#include "core/full/file/mesh_inp.h"
+#include "core/nodal/nodal_step.h"
+
+struct mesh_file {
+    const char *path;         /* borrowed; NULL: none is written */
+    struct inp_step *history; /* owned: of the loads so far */
+    size_t count;
+};
+/* Notes a step of so many at most, which has a mesh; nothing without a path. ERROR_MEMORY. */
+int mesh_file_note(struct mesh_file *mesh, const struct nodal_step *step, size_t most,
+                   struct error *err);
+/* Writes the block as it is in this step, with all that were noted, over what was there. No file is
+ * left after a failure. */
+int mesh_file_write(const struct mesh_file *mesh, const struct nodal_step *step, struct error *err);
+void mesh_file_clear(struct mesh_file *mesh);
+
+#endif
