@@ -165,8 +165,12 @@ static int measure_common(struct map_characterisation *out, struct common *commo
     measure_chance(out, common);
     count_heights(&out->histogram, map);
     map_scales_measure(&out->scales, map, common->chance, &common->nearest);
-    return map_spectra_measure(&out->spectra, map, common->spectrum, &out->directions, under_window,
-                               trusted, err);
+    int status = map_spectra_measure(&out->spectra, map, common->spectrum, &out->directions,
+                                     under_window, trusted, err);
+    bool taken = out->spectra.has_fit && out->spectra.fit.to_end == SPECTRUM_END_LOW_PASS;
+    if (status == 0 && taken && out->height_fits.best != HEIGHTS_GAUSSIAN)
+        status = map_spectra_measure_scores(&out->spectra, map, &out->directions, trusted, err);
+    return status;
 }
 
 static int measure(struct map_characterisation *out, const struct measured_map *map,

@@ -1,4 +1,5 @@
 #include "jobs/maps/map_spectra.h"
+#include "core/statistics/heights/normal_scores.h"
 #include "core/statistics/heights/roughness.h"
 #include <math.h>
 #include <stdlib.h>
@@ -117,5 +118,42 @@ int map_spectra_measure(struct map_spectra *out, const struct measured_map *map,
     for (int axis = 0; axis < 2 && status == 0; axis++)
         status = measure_line(&out->line[axis], spectrum, axis, err);
     out->has_fit = status == 0;
+    return status;
+}
+
+/* The end itself is left out: scores of a patch, whose order is not that of all heights, have a
+ * tail beyond it. */
+static int scores_fit(struct map_spectra *out, const struct measured_map *scored,
+                      const struct map_spectrum *spectrum, const struct map_directions *directions,
+                      const struct spectrum_fit_request *request, struct error *err) {
+    enum { BLURRED = 3 };
+    struct spectrum_range range;
+    int status = spectrum_range_find(spectrum, request, &range, err);
+    if (status != 0 || range.edge <= BLURRED)
+        return status;
+    struct spectrum_fit_request before = *request;
+    before.shortest = spectrum->side / ((double)range.edge - BLURRED);
+    status = law_fit(scored, spectrum, directions, &before, &out->scores, err);
+    out->has_scores = status == 0 && out->scores.fitted;
+    out->scores_end = spectrum->side / (double)range.edge;
+    return status;
+}
+
+int map_spectra_measure_scores(struct map_spectra *out, const struct measured_map *map,
+                               const struct map_directions *directions,
+                               const struct spectrum_fit_request *request, struct error *err) {
+    const size_t points = grid_points(map->grid);
+    struct map_spectrum *spectrum = NULL;
+    double *z = array_create(points, sizeof *z);
+    if (z == NULL)
+        return error_memory(err, points * sizeof *z, "normal scores of a map");
+    const struct measured_map scored = {map->grid, z, map->boundary};
+    int status = normal_scores_fill(map, z, err);
+    if (status == 0)
+        status = map_spectrum_create(&spectrum, &scored, err);
+    if (status == 0)
+        status = scores_fit(out, &scored, spectrum, directions, request, err);
+    map_spectrum_destroy(&spectrum);
+    free(z);
     return status;
 }

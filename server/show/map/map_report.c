@@ -291,8 +291,7 @@ static void add_trusted(struct named_values *out, const struct spectrum_fit *fit
     }
 }
 
-static void add_fit(struct named_values *out, const struct spectrum_fit *fit) {
-    static const char GROUP[] = "spectrum_fit";
+static void add_fit(struct named_values *out, const char *group, const struct spectrum_fit *fit) {
     const int power = fit->profile ? 3 : 4;
     const struct {
         const char *name, *low, *high;
@@ -310,30 +309,30 @@ static void add_fit(struct named_values *out, const struct spectrum_fit *fit) {
         {"rms_height", "rms_height_low", "rms_height_high", &fit->rms_height, 1},
         {"rms_slope", "rms_slope_low", "rms_slope_high", &fit->rms_slope, 0},
     };
-    named_values_add_length(out, GROUP, "trusted_from", fit->trusted_from, 1);
-    named_values_add_text(out, GROUP, "trusted_from_by", SPECTRUM_END_NAMES[fit->from_end]);
-    named_values_add_length(out, GROUP, "trusted_to", fit->trusted_to, 1);
-    named_values_add_text(out, GROUP, "trusted_to_by", SPECTRUM_END_NAMES[fit->to_end]);
-    named_values_add_length(out, GROUP, "noise", fit->noise, power);
+    named_values_add_length(out, group, "trusted_from", fit->trusted_from, 1);
+    named_values_add_text(out, group, "trusted_from_by", SPECTRUM_END_NAMES[fit->from_end]);
+    named_values_add_length(out, group, "trusted_to", fit->trusted_to, 1);
+    named_values_add_text(out, group, "trusted_to_by", SPECTRUM_END_NAMES[fit->to_end]);
+    named_values_add_length(out, group, "noise", fit->noise, power);
     for (size_t n = 0; n < sizeof rows / sizeof *rows && fit->fitted; n++) {
-        named_values_add_length(out, GROUP, rows[n].name, rows[n].interval->value, rows[n].power);
-        named_values_add_length(out, GROUP, rows[n].low, rows[n].interval->low, rows[n].power);
-        named_values_add_length(out, GROUP, rows[n].high, rows[n].interval->high, rows[n].power);
+        named_values_add_length(out, group, rows[n].name, rows[n].interval->value, rows[n].power);
+        named_values_add_length(out, group, rows[n].low, rows[n].interval->low, rows[n].power);
+        named_values_add_length(out, group, rows[n].high, rows[n].interval->high, rows[n].power);
     }
     if (!fit->fitted)
         return;
-    named_values_add_length(out, GROUP, "amplitude_at", fit->reference_wavelength, 1);
-    named_values_add(out, GROUP, "deviance", fit->deviance);
-    named_values_add(out, GROUP, "deviance_limit", fit->deviance_limit);
-    named_values_add(out, GROUP, "freedom", fit->freedom);
+    named_values_add_length(out, group, "amplitude_at", fit->reference_wavelength, 1);
+    named_values_add(out, group, "deviance", fit->deviance);
+    named_values_add(out, group, "deviance_limit", fit->deviance_limit);
+    named_values_add(out, group, "freedom", fit->freedom);
     if (fit->lay_ratio.value == 1)
         return;
-    named_values_add(out, GROUP, "lay_ratio", fit->lay_ratio.value);
-    named_values_add(out, GROUP, "lay_ratio_low", fit->lay_ratio.low);
-    named_values_add(out, GROUP, "lay_ratio_high", fit->lay_ratio.high);
-    named_values_add(out, GROUP, "lay_angle", fit->lay_angle.value / DEGREE);
-    named_values_add(out, GROUP, "lay_angle_low", fit->lay_angle.low / DEGREE);
-    named_values_add(out, GROUP, "lay_angle_high", fit->lay_angle.high / DEGREE);
+    named_values_add(out, group, "lay_ratio", fit->lay_ratio.value);
+    named_values_add(out, group, "lay_ratio_low", fit->lay_ratio.low);
+    named_values_add(out, group, "lay_ratio_high", fit->lay_ratio.high);
+    named_values_add(out, group, "lay_angle", fit->lay_angle.value / DEGREE);
+    named_values_add(out, group, "lay_angle_low", fit->lay_angle.low / DEGREE);
+    named_values_add(out, group, "lay_angle_high", fit->lay_angle.high / DEGREE);
 }
 
 /* --- columns --- */
@@ -458,7 +457,12 @@ int map_report_fill(struct named_values *out, const struct map_characterisation 
         add_isotropy(out, &found->directions);
     add_stationarity(out, found);
     if (found->spectra.has_fit)
-        add_fit(out, &found->spectra.fit);
+        add_fit(out, "spectrum_fit", &found->spectra.fit);
+    if (found->spectra.has_scores) {
+        named_values_add_length(out, "spectrum_fit_scores", "sharp_end", found->spectra.scores_end,
+                                1);
+        add_fit(out, "spectrum_fit_scores", &found->spectra.scores);
+    }
     if (found->spectra.has_fit && found->spectra.fit.fitted)
         add_trusted(out, &found->spectra.fit, &found->parameters);
     return add_tables(out, found, err);

@@ -70,6 +70,26 @@ static void judge_noise(struct verdicts *verdicts, const struct named_values *fo
             measured, trusted);
 }
 
+/* Skewed heights make short waves fall off that their normal scores have, up to a sharp end; true
+ * where these have one. */
+static bool judge_scores(struct verdicts *verdicts, const struct map_figure *figure,
+                         double length) {
+    static const char GROUP[] = "spectrum_fit_scores";
+    const struct figure_units units = figure_units_of(figure);
+    const char *gap = *units.x_name != '\0' ? " " : "";
+    const double end = named_number(figure->found, GROUP, "sharp_end") / units.x;
+    if (!isfinite(end))
+        return false;
+    say(verdicts,
+        "Short waves: they fall off below %.3g%s%s, as skewed heights make them: in normal scores "
+        "the spectrum ends at %.3g%s%s, with H = %.2g [%.2g, %.2g] (group %s).",
+        length, gap, units.x_name, end, gap, units.x_name,
+        named_number(figure->found, GROUP, "hurst"),
+        named_number(figure->found, GROUP, "hurst_low"),
+        named_number(figure->found, GROUP, "hurst_high"), GROUP);
+    return true;
+}
+
 static void judge_short_waves(struct verdicts *verdicts, const struct map_figure *figure) {
     static const char GROUP[] = "spectrum_fit";
     const struct figure_units units = figure_units_of(figure);
@@ -80,7 +100,8 @@ static void judge_short_waves(struct verdicts *verdicts, const struct map_figure
         return;
     if (strcmp(by, SPECTRUM_END_NAMES[SPECTRUM_END_NOISE]) == 0)
         say(verdicts, "Short waves: below %.3g%s%s they are noise.", length, gap, units.x_name);
-    else if (strcmp(by, SPECTRUM_END_NAMES[SPECTRUM_END_LOW_PASS]) == 0)
+    else if (strcmp(by, SPECTRUM_END_NAMES[SPECTRUM_END_LOW_PASS]) == 0 &&
+             !judge_scores(verdicts, figure, length))
         say(verdicts,
             "Short waves: below %.3g%s%s they fall off as in an instrument that does not transmit "
             "them; slopes, curvatures and summits lack them.",
