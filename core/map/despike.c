@@ -141,8 +141,10 @@ static double deviation_along(const struct grid *grid, const double *z, int line
         return 0;
     for (size_t n = 0; n < count; n++)
         sum_add(&squares, room[n] * room[n]);
+    static const double ROUNDING = 1e-9;
     const double deviation = DEVIATION * gsl_stats_median(room, 1, count);
-    return deviation > 0 ? deviation : sqrt(sum_value(&squares) / (double)count);
+    const double rms = sqrt(sum_value(&squares) / (double)count);
+    return deviation > ROUNDING * rms ? deviation : rms;
 }
 
 /* The root mean square of those along both axes. */
@@ -179,6 +181,7 @@ int despike(const struct grid *grid, double *z, double most, struct despike_resu
         if (distance[point] > most) {
             z[point] = (double)NAN;
             out->spikes++;
+            out->largest = fmax(out->largest, distance[point]);
         }
     free(distance);
     return 0;

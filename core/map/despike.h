@@ -9,6 +9,7 @@ struct despike_result {
     size_t spikes;
     double deviation; /* robust standard deviation of heights from what two on either side of them
                          along an axis predict; 0: of none */
+    double largest;   /* of a spike, in these from what its neighbours predict; 0: there is none */
 };
 
 /* Replaces by NaN each height that lies more than `most` robust deviations from what its neighbours

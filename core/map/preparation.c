@@ -1,5 +1,6 @@
 #include "core/map/preparation.h"
 #include "core/error.h"
+#include "core/map/denoise.h"
 #include "core/map/despike.h"
 #include "core/map/gaussian_filter.h"
 #include "core/map/height_map.h"
@@ -320,6 +321,34 @@ static int crop(struct preparation_record *record, struct height_map *map,
     return 0;
 }
 
+/* Columns and rows between those that stay hold nothing of their own, where an instrument did not
+ * measure them. */
+static int stride(struct preparation_record *record, struct height_map *map,
+                  const struct preparation *asked, struct error *err) {
+    struct grid *grid = &map->grid;
+    const struct grid before = *grid;
+    const size_t x = asked->stride_x, y = grid_is_profile(grid) ? 1 : asked->stride_y;
+    if (x == 0)
+        return 0;
+    const size_t nx = (before.nx - 1) / x + 1, ny = (before.ny - 1) / y + 1;
+    if (nx < 2 || (ny < 2 && !grid_is_profile(&before)))
+        return error_set(
+            err, ERROR_INPUT,
+            "--stride %zu,%zu leaves %zu by %zu of %zu by %zu points; allowed: 2 along "
+            "each axis",
+            x, y, nx, ny, before.nx, before.ny);
+    for (size_t j = 0; j < ny; j++)
+        for (size_t i = 0; i < nx; i++)
+            map->z[j * nx + i] = map->z[j * y * before.nx + i * x];
+    double *less = realloc(map->z, nx * ny * sizeof *map->z);
+    map->z = less != NULL ? less : map->z;
+    *grid = (struct grid){nx, ny, grid_dx(&before) * (double)(x * nx),
+                          grid_dy(&before) * (double)(y * ny)};
+    preparation_note(record, "stride", "1 of %zu columns and 1 of %zu rows, %zu by %zu points", x,
+                     y, nx, ny);
+    return 0;
+}
+
 /* --- what can be computed with --- */
 
 /* Within these the fourth powers of slopes, and products of such of curvatures, are numbers, and
@@ -434,6 +463,23 @@ static int remove_tip(struct preparation_record *record, struct height_map *map,
     return 0;
 }
 
+/* --- what the instrument left --- */
+
+static int find_stored(struct preparation_record *record, const struct height_map *map,
+                       const struct preparation *asked, struct error *err) {
+    if (!asked->artefacts)
+        return 0;
+    return map_artefacts_find_stored(&map->grid, map->z, &record->artefacts, err);
+}
+
+static int find_left(struct preparation_record *record, const struct height_map *map,
+                     const struct preparation *asked, struct error *err) {
+    if (!asked->artefacts)
+        return 0;
+    record->artefacts.smoothed = asked->short_waves.value > 0 || asked->denoise;
+    return map_artefacts_find_left(&map->grid, map->z, &record->artefacts, err);
+}
+
 /* --- turns --- */
 
 static int transpose(struct preparation_record *record, struct height_map *map, bool asked,
@@ -536,6 +582,27 @@ static int fill(struct preparation_record *record, struct height_map *map, struc
     return 0;
 }
 
+static int denoise(struct preparation_record *record, struct height_map *map, struct error *err) {
+    struct denoise_result done;
+    char noise[40], shortest[40];
+    int status = height_map_check_whole(map, err);
+    if (status != 0)
+        return error_context(err, "--denoise, before which --fill fills holes");
+    status = map_denoise(&map->grid, map->z, record->boundary, &done, err);
+    if (status != 0)
+        return error_context(err, "--denoise");
+    if (!done.found)
+        preparation_note(record, "denoise", "no noise governs the slopes; heights stay");
+    else
+        preparation_note(record, "denoise",
+                         "noise of RMS %s, out of waves down to %s with the law's power, and all "
+                         "shorter waves; RMS slope %.4g to %.4g",
+                         height_text(map, done.noise, noise),
+                         preparation_length_text(map, done.shortest, shortest), done.slope_before,
+                         done.slope_after);
+    return 0;
+}
+
 static int filter_one(struct preparation_record *record, struct height_map *map,
                       const struct asked_length *asked, bool keeps_long_waves, bool robust,
                       struct error *err) {
@@ -595,13 +662,19 @@ int preparation_run(struct preparation_record *record, struct height_map *map,
     if (status == 0)
         status = crop(record, map, asked, err);
     if (status == 0)
+        status = stride(record, map, asked, err);
+    if (status == 0)
         status = check_range(map, err);
+    if (status == 0)
+        status = find_stored(record, map, asked, err);
     if (status == 0)
         status = level_lines(record, map, asked, err);
     if (status == 0)
         status = remove_spikes(record, map, asked, err);
     if (status == 0)
         status = remove_tip(record, map, asked, err);
+    if (status == 0)
+        status = find_left(record, map, asked, err);
     if (status == 0)
         status = transpose(record, map, asked->transpose, err);
     if (status == 0)
@@ -610,6 +683,8 @@ int preparation_run(struct preparation_record *record, struct height_map *map,
         status = level(record, map, asked, err);
     if (status == 0 && asked->fill)
         status = fill(record, map, err);
+    if (status == 0 && asked->denoise)
+        status = denoise(record, map, err);
     if (status == 0)
         status = filter(record, map, asked, err);
     if (status == 0)

@@ -3,6 +3,7 @@
  *
  *   units     spacing, and units of lengths that the file does not have; lengths become metres
  *   crop      keeps a rectangle of the points
+ *   stride    keeps every so manieth column and row, from the first on
  *   lines     subtracts from each scan line its own mean, median or polynomial
  *   despike   makes holes of points that stand out of their neighbourhood
  *   deconvolve  erodes the image by the tip that took it
@@ -10,6 +11,7 @@
  *   rotate    turns the map, in the largest rectangle inside
  *   detrend   subtracts a polynomial of least squares through the heights that are there
  *   fill      fills holes with the smoothest membrane through their rims
+ *   denoise   takes out noise by the law of the spectrum
  *   filter    S-filter, which keeps long waves, then L-filter, which removes long waves
  *   resample  other points of the same surface
  *   window    lets heights about their mean fall to 0 towards the sides
@@ -23,6 +25,7 @@
 #ifndef RUGO_CORE_MAP_PREPARATION_H
 #define RUGO_CORE_MAP_PREPARATION_H
 
+#include "core/map/artefacts/map_artefacts.h"
 #include "core/map/detrend.h"
 #include "core/map/height_map.h"
 #include "core/map/scan_lines.h"
@@ -65,6 +68,7 @@ struct preparation {
     double unit, z_unit;        /* metres in one unit of the file's lengths; 0: not requested */
     struct asked_length
         crop[4]; /* first x and y, width and height; not requested where the width is 0 */
+    size_t stride_x, stride_y; /* 0: not requested */
     enum scan_lines lines;
     enum scan_axis lines_along;
     double despike;          /* robust deviations; 0: not requested */
@@ -74,13 +78,14 @@ struct preparation {
     double turn; /* degrees, counter-clockwise */
     enum asked_boundary boundary;
     enum asked_detrend detrend;
-    bool fill;
+    bool fill, denoise;
     struct asked_length short_waves; /* cut-off wavelength of the S-filter; 0: not requested */
     struct asked_length long_waves;  /* of the L-filter, likewise */
     bool robust;                     /* both filters */
     size_t resample_x, resample_y;   /* points; 0: not requested, resample_y 0: by the spacing */
     struct asked_length resample_dx; /* spacing; 0: not requested */
     enum map_window window;
+    bool artefacts; /* what the instrument left is sought */
 };
 
 enum { PREPARATION_STEPS_MOST = 28, PREPARATION_TEXT = 160 };
@@ -92,8 +97,9 @@ struct preparation_record {
     struct seam seam;        /* when the boundary was decided */
     double holes;            /* as a share of the points, before any were filled */
     enum detrend detrend;
-    struct trend trend;  /* what was subtracted */
-    double window_power; /* mean square of the window over the points; 1: none */
+    struct trend trend;             /* what was subtracted */
+    double window_power;            /* mean square of the window over the points; 1: none */
+    struct map_artefacts artefacts; /* of the map as it was scanned; where they are sought */
     size_t count;
     struct preparation_step {
         const char *name; /* "crop", "fill", ...; static; each at most once */

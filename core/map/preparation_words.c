@@ -128,6 +128,24 @@ static bool parse_points(size_t *out, const char **at) {
     return points > 0 && points <= 1ULL << 31;
 }
 
+static int parse_stride(struct preparation *out, const char *text, struct error *err) {
+    const char *at = text;
+    if (text == NULL)
+        return 0;
+    bool read = parse_points(&out->stride_x, &at);
+    out->stride_y = out->stride_x;
+    if (read && *at == ',') {
+        at++;
+        read = parse_points(&out->stride_y, &at);
+    }
+    if (read && *at == '\0')
+        return 0;
+    return error_set(err, ERROR_INPUT,
+                     "--stride %.60s: allowed are one or two whole numbers above 0, such as 2 or "
+                     "2,1 for every second column",
+                     text);
+}
+
 static int parse_resample(struct preparation *out, const char *text, struct error *err) {
     struct asked_length *spacing = &out->resample_dx;
     const char *at = text;
@@ -197,12 +215,15 @@ int preparation_parse(struct preparation *out, const struct preparation_words *w
                                 .detrend = (enum asked_detrend)words->detrend,
                                 .window = (enum map_window)words->window,
                                 .fill = words->fill,
+                                .denoise = words->denoise,
                                 .lines = (enum scan_lines)words->lines,
                                 .lines_along = (enum scan_axis)words->lines_along,
                                 .transpose = words->transpose};
     int status = parse_units(&asked, words, err);
     if (status == 0)
         status = parse_crop(&asked, words->crop, err);
+    if (status == 0)
+        status = parse_stride(&asked, words->stride, err);
     if (status == 0)
         status = parse_despike(&asked, words->despike, err);
     if (status == 0)

@@ -20,13 +20,14 @@ struct preparation_words {
     const char *unit;     /* "um": of x and y */
     const char *z_unit;   /* "nm", "25nm": of z, or the length of one of the file's units */
     const char *crop;     /* "X0,Y0,WIDTH,HEIGHT", points or lengths with units */
+    const char *stride;   /* "2", "2,1" */
     const char *resample; /* "512", "512,256", "0.5um", "dx=0.5" */
     const char *filter;   /* "S=2.5um,L=0.8mm,robust", each part at most once */
     const char *despike;  /* "8": robust deviations */
     const char *tip;      /* "tip=10nm", "tip=10nm,holes" */
     const char *rotate;   /* "30": degrees */
     int boundary, detrend, window, lines, lines_along; /* the enums of preparation.h */
-    bool fill, transpose;
+    bool fill, denoise, transpose;
 };
 
 /* ERROR_INPUT names the option, its value and what is allowed. */

@@ -4,6 +4,7 @@
 #include "jobs/kind.h"
 #include "jobs/like/like_fit.h"
 #include "jobs/like/like_parameters.h"
+#include "jobs/maps/map_artefact_words.h"
 #include "schema/json/field.h"
 #include "schema/json/json.h"
 #include "schema/study/override.h"
@@ -214,10 +215,21 @@ static char *place_of(const char *study, const char *file) {
 }
 
 /* Returns the origin of the map, beside the fit; borrows from the record and from steps. */
+/* What was done to the map, and what the instrument left in it. */
+static void write_steps(const struct preparation_record *record, char *steps) {
+    char names[ARTEFACT_NAMES_SIZE];
+    preparation_steps_text(record, steps, PREPARATION_STEPS_TEXT);
+    map_artefact_names(names, &record->artefacts);
+    const size_t used = strlen(steps);
+    if (*names != '\0')
+        snprintf(steps + used, PREPARATION_STEPS_TEXT - used, "%sleft in the map: %s",
+                 used > 0 ? "; " : "", names);
+}
+
 static struct like_source source_of(const struct preparation_record *record, char *steps) {
     const char *bytes = preparation_text(record, "bytes");
     const char *format = preparation_text(record, "format");
-    preparation_steps_text(record, steps, PREPARATION_STEPS_TEXT);
+    write_steps(record, steps);
     return (struct like_source){.file = preparation_text(record, "file"),
                                 .sha256 = preparation_text(record, "sha256"),
                                 .format = format != NULL ? format : "unknown",

@@ -110,11 +110,13 @@ int map_file_read(struct height_map *out, const char *path, struct error *err) {
     return read_layer(out, path, &(struct map_options){0}, NULL, err);
 }
 
-int map_options_read_any(struct height_map *map, struct preparation_record *record,
-                         const char *path, const struct map_options *options, struct error *err) {
+static int read_prepared(struct height_map *map, struct preparation_record *record,
+                         const char *path, const struct map_options *options, bool artefacts,
+                         struct error *err) {
     struct preparation asked;
     struct height_map read = {0};
     int status = preparation_parse(&asked, &options->words, err);
+    asked.artefacts = artefacts;
     if (status == 0)
         status = read_layer(&read, path, options, record, err);
     if (status == 0)
@@ -124,9 +126,14 @@ int map_options_read_any(struct height_map *map, struct preparation_record *reco
     return status;
 }
 
+int map_options_read_any(struct height_map *map, struct preparation_record *record,
+                         const char *path, const struct map_options *options, struct error *err) {
+    return read_prepared(map, record, path, options, false, err);
+}
+
 int map_options_read(struct height_map *map, struct preparation_record *record, const char *path,
                      const struct map_options *options, struct error *err) {
-    int status = map_options_read_any(map, record, path, options, err);
+    int status = read_prepared(map, record, path, options, true, err);
     if (status != 0)
         return status;
     status = height_map_check_units(map, err);

@@ -48,6 +48,8 @@ struct map_options {
                 "of heights, such as nm, where the file tells none"),                              \
         MAP_ROW(type, member, "crop", OPTION_TEXT, words.crop, "X0,Y0,WIDTH,HEIGHT", NULL,         \
                 "the part to take, in points or in lengths such as 10um"),                         \
+        MAP_ROW(type, member, "stride", OPTION_TEXT, words.stride, "NX[,NY]", NULL,                \
+                "keep every NX-th column and every NY-th row, from the first on"),                 \
         MAP_ROW(type, member, "lines", OPTION_CHOICE, words.lines, MAP_LINES, "none",              \
                 "take out of each scan line its mean, median or polynomial"),                      \
         MAP_ROW(type, member, "lines-along", OPTION_CHOICE, words.lines_along, MAP_LINES_ALONG,    \
@@ -64,6 +66,8 @@ struct map_options {
                 "trend taken out first; auto: a plane, of an open map"),                           \
         MAP_ROW(type, member, "fill", OPTION_FLAG, words.fill, NULL, NULL,                         \
                 "fill holes with the smoothest membrane"),                                         \
+        MAP_ROW(type, member, "denoise", OPTION_FLAG, words.denoise, NULL, NULL,                   \
+                "take out noise that governs the slopes, by the law of the spectrum"),             \
         MAP_ROW(type, member, "filter", OPTION_TEXT, words.filter, "S=LENGTH,L=LENGTH,robust",     \
                 NULL, "Gaussian filters: S keeps waves longer than this, L takes them out"),       \
         MAP_ROW(type, member, "resample", OPTION_TEXT, words.resample, "NX[,NY]|SPACING", NULL,    \
@@ -72,11 +76,11 @@ struct map_options {
                 "let heights fall towards the sides, so that the map repeats")
 
 /* Reads the file and prepares the map; *record, {0} at first, gets the name of the file and the
- * steps of the preparation. Errors name the file. A map whose units give slopes no meaning is
- * refused (height_map_check_units). */
+ * steps of the preparation, and what the instrument left. Errors name the file. A map whose units
+ * give slopes no meaning is refused (height_map_check_units). */
 int map_options_read(struct height_map *map, struct preparation_record *record, const char *path,
                      const struct map_options *options, struct error *err);
-/* Does the same whatever the units. */
+/* Does the same whatever the units, and looks for nothing that was left. */
 int map_options_read_any(struct height_map *map, struct preparation_record *record,
                          const char *path, const struct map_options *options, struct error *err);
 

@@ -1,6 +1,7 @@
 /* rugo press FILE: the contact of a height map in a file with a rigid flat, or with a second map.
  */
 #include "jobs/allotment.h"
+#include "jobs/maps/map_artefact_words.h"
 #include "jobs/maps/map_counter.h"
 #include "jobs/maps/map_noise.h"
 #include "jobs/maps/map_press_curves.h"
@@ -339,9 +340,18 @@ static int warn_of_noise(const struct press_order *order, const struct height_ma
     if (status == 0 && noise.governs)
         fprintf(stderr,
                 "rugo press: warning: %s: noise governs the slopes, whose RMS is %.3g with it and "
-                "%.3g without; --filter S=LENGTH takes it out (`rugo characterise` shows it)\n",
+                "%.3g without; --denoise takes it out (`rugo characterise` shows it)\n",
                 order->path, noise.slope, noise.without);
     return status;
+}
+
+/* So are those that hold what the instrument left. */
+static void warn_of_artefacts(const struct press_order *order, const struct height_map *map) {
+    char sentences[ARTEFACT_SENTENCES_MOST][ARTEFACT_SENTENCE_SIZE];
+    const size_t count =
+        map_artefact_sentences(sentences, &order->record.artefacts, &map->grid, map->z_unit, true);
+    for (size_t n = 0; n < count; n++)
+        fprintf(stderr, "rugo press: warning: %s: %s\n", order->path, sentences[n]);
 }
 
 static double map_area(const struct map_press *press) {
@@ -728,6 +738,8 @@ static int run(const void *values, const char *const *arguments) {
         status = press_files_check(&options->paths, &err);
     if (status == 0)
         status = read_map(&map, order, &err);
+    if (status == 0)
+        warn_of_artefacts(order, &map);
     if (status == 0)
         status = warn_of_noise(order, &map, &err);
     if (status == 0)

@@ -5,7 +5,7 @@
 
 #include "server/http/exchange.h"
 
-enum { SEGMENT_SIZE = 256, QUERY_NAMES_MOST = 24 };
+enum { SEGMENT_SIZE = 256, QUERY_NAMES_MOST = 32 };
 typedef void route_handler(struct exchange *exchange, const char *id);
 
 struct route {

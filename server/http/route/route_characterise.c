@@ -22,16 +22,28 @@ enum {
 static const struct {
     const char *name, *option;
     bool flag; /* true or false */
-} OPTIONS[] = {{"name", "name", false},          {"layer", "layer", false},
-               {"columns", "columns", false},    {"dx", "dx", false},
-               {"unit", "unit", false},          {"z_unit", "z-unit", false},
-               {"crop", "crop", false},          {"detrend", "detrend", false},
-               {"lines", "lines", false},        {"lines_along", "lines-along", false},
-               {"despike", "despike", false},    {"deconvolve", "deconvolve", false},
-               {"transpose", "transpose", true}, {"rotate", "rotate", false},
-               {"fill", "fill", true},           {"filter", "filter", false},
-               {"resample", "resample", false},  {"window", "window", false},
-               {"boundary", "boundary", false},  {"trust_from", "trust-from", false},
+} OPTIONS[] = {{"name", "name", false},
+               {"layer", "layer", false},
+               {"columns", "columns", false},
+               {"dx", "dx", false},
+               {"unit", "unit", false},
+               {"z_unit", "z-unit", false},
+               {"crop", "crop", false},
+               {"stride", "stride", false},
+               {"detrend", "detrend", false},
+               {"lines", "lines", false},
+               {"lines_along", "lines-along", false},
+               {"despike", "despike", false},
+               {"deconvolve", "deconvolve", false},
+               {"transpose", "transpose", true},
+               {"rotate", "rotate", false},
+               {"fill", "fill", true},
+               {"denoise", "denoise", true},
+               {"filter", "filter", false},
+               {"resample", "resample", false},
+               {"window", "window", false},
+               {"boundary", "boundary", false},
+               {"trust_from", "trust-from", false},
                {"trust_to", "trust-to", false}};
 enum { OPTION_COUNT = sizeof OPTIONS / sizeof *OPTIONS };
 

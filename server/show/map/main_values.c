@@ -5,6 +5,8 @@
 
 /* Values without noise, which are shown where there is some. */
 static const char NOISELESS[] = "trusted";
+/* What an instrument left, and slopes without it. */
+static const char ARTEFACTS[] = "artefacts";
 
 /* The rows in their order; those without a value are left out. Of rows with one label the first
  * that has a value is shown. */
@@ -21,6 +23,7 @@ static const struct table_row {
     {"kurtosis", "heights", "kurtosis", 0, 0, NULL},
     {"RMS slope", "finite_difference", "rms_slope", 0, 0, NULL},
     {"  without noise", NOISELESS, "rms_slope", 0, 0, NULL},
+    {"  without artefacts, about", ARTEFACTS, "slope_without", 0, 0, NULL},
     {"RMS curvature", "finite_difference", "rms_curvature", -1, 0, NULL},
     {"  without noise", NOISELESS, "rms_curvature", -1, 0, NULL},
     {"correlation length Sal", "areal", "Sal", 1, 0, NULL},
@@ -133,6 +136,23 @@ bool main_values_have_noise(const struct named_values *found) {
     return named_number(found, NOISELESS, "noise_share") > NOISE_SHARE_MOST;
 }
 
+/* What is measured by short waves holds what the instrument left; so does what follows from the
+ * spectrum, unless it is noise there. */
+static bool is_untrusted(const struct table_row *row, const struct map_artefacts *artefacts,
+                         bool has_noise) {
+    static const char *const SHORT_WAVES[] = {"rms_slope", "rms_curvature", "nayak_alpha", "Sdr",
+                                              "density"};
+    static const char *const OF_SPECTRUM[] = {"hurst", "rolloff_wavelength", "short_wavelength"};
+    const bool noiseless = strcmp(row->group, NOISELESS) == 0;
+    bool measured = false, follows = noiseless;
+    for (size_t n = 0; n < sizeof SHORT_WAVES / sizeof *SHORT_WAVES && !noiseless; n++)
+        measured = measured || strcmp(row->name, SHORT_WAVES[n]) == 0;
+    for (size_t n = 0; n < sizeof OF_SPECTRUM / sizeof *OF_SPECTRUM; n++)
+        follows = follows || strcmp(row->name, OF_SPECTRUM[n]) == 0;
+    return (measured && map_artefacts_count(artefacts)) ||
+           (follows && map_artefacts_bend(artefacts, has_noise));
+}
+
 size_t main_values_list(struct main_value out[MAIN_VALUES_MOST], const struct map_figure *figure,
                         const char *plus_minus) {
     const struct list list = {figure->found, figure_units_of(figure), plus_minus};
@@ -145,6 +165,7 @@ size_t main_values_list(struct main_value out[MAIN_VALUES_MOST], const struct ma
             !write_value(&list, &ROWS[n], out[count].text))
             continue;
         out[count].label = ROWS[n].label;
+        out[count].untrusted = is_untrusted(&ROWS[n], &figure->record->artefacts, has_noise);
         figure_unit_text(&list.units, ROWS[n].x_power, ROWS[n].z_power, out[count].unit);
         count++;
     }

@@ -10,6 +10,7 @@ enum { MAIN_VALUES_MOST = 32, MAIN_VALUE_SIZE = 96 };
 
 struct main_value {
     const char *label;          /* "RMS slope"; static */
+    bool untrusted;             /* it holds what the instrument left, or follows from that */
     char text[MAIN_VALUE_SIZE]; /* rounded to its error */
     char unit[UNIT_TEXT_SIZE];  /* for svg_label; "" where none is known */
 };

@@ -437,6 +437,49 @@ static int add_tables(struct named_values *out, const struct map_characterisatio
                        : status;
 }
 
+/* What the instrument left, and RMS slopes without it. */
+static void add_artefacts(struct named_values *out, const struct map_artefacts *artefacts,
+                          const struct map_characterisation *found, bool profile) {
+    static const char GROUP[] = "artefacts";
+    const struct roughness *roughness = &found->parameters.roughness;
+    const bool has_noise = found->spectra.has_fit && found->spectra.fit.fitted &&
+                           spectrum_fit_noise_share(&found->spectra.fit, &found->parameters.grid,
+                                                    roughness->rms_curvature) > NOISE_SHARE_MOST;
+    const struct repeated_lines *columns = artefacts->columns;
+    const struct map_spikes *spikes = &artefacts->spikes;
+    const struct line_offsets *lines = &artefacts->lines;
+    const bool spiky = map_spikes_found(artefacts);
+    const double none = (double)NAN;
+    named_values_add_length(out, GROUP, "step",
+                            artefacts->steps.step > 0 ? artefacts->steps.step : none, 1);
+    named_values_add(out, GROUP, "step_curvature_share", artefacts->steps.curvature);
+    named_values_add(out, GROUP, "spikes", spiky ? (double)spikes->count : 0);
+    named_values_add(out, GROUP, "spike_deviations", spiky ? spikes->largest : none);
+    named_values_add(out, GROUP, "spike_curvature_share", spiky ? spikes->curvature : 0);
+    if (!profile) {
+        named_values_add_text(out, GROUP, "lines_along",
+                              artefacts->lines_along == SCAN_ALONG_X ? "x" : "y");
+        named_values_add(out, GROUP, "line_p_value", lines->p_value);
+        named_values_add_length(out, GROUP, "line_offset", lines->found ? lines->rms : none, 1);
+        named_values_add(out, GROUP, "line_curvature_share", lines->curvature);
+    }
+    named_values_add(out, GROUP, profile ? "points_repeated" : "columns_repeated",
+                     (double)columns[0].copies);
+    named_values_add(out, GROUP, profile ? "points_between" : "columns_between",
+                     (double)columns[0].between);
+    if (!profile) {
+        named_values_add(out, GROUP, "rows_repeated", (double)columns[1].copies);
+        named_values_add(out, GROUP, "rows_between", (double)columns[1].between);
+    }
+    named_values_add(out, GROUP, "slope_without",
+                     map_artefacts_count(artefacts) && map_artefacts_slope(artefacts) < 1
+                         ? map_artefacts_slope(artefacts) * roughness->rms_slope
+                         : none);
+    named_values_add(out, GROUP, "slopes_trusted", map_artefacts_count(artefacts) ? 0 : 1);
+    named_values_add(out, GROUP, "spectrum_trusted",
+                     map_artefacts_bend(artefacts, has_noise) ? 0 : 1);
+}
+
 int map_report_fill(struct named_values *out, const struct map_characterisation *found,
                     const struct height_map *map, const struct preparation_record *record,
                     struct error *err) {
@@ -465,5 +508,7 @@ int map_report_fill(struct named_values *out, const struct map_characterisation 
     }
     if (found->spectra.has_fit && found->spectra.fit.fitted)
         add_trusted(out, &found->spectra.fit, &found->parameters);
+    if (record->artefacts.sought)
+        add_artefacts(out, &record->artefacts, found, profile);
     return add_tables(out, found, err);
 }

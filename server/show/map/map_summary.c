@@ -67,8 +67,8 @@ static void print_values(FILE *file, const struct map_figure *figure) {
     const size_t count = main_values_list(rows, figure, "+-");
     for (size_t n = 0; n < count; n++)
         if (strncmp(rows[n].label, P_VALUE, strlen(P_VALUE)) != 0)
-            fprintf(file, "  %-*s %s%s%s\n", LABEL_WIDTH, rows[n].label, rows[n].text,
-                    *rows[n].unit != '\0' ? " " : "", rows[n].unit);
+            fprintf(file, "%c %-*s %s%s%s\n", rows[n].untrusted ? '*' : ' ', LABEL_WIDTH,
+                    rows[n].label, rows[n].text, *rows[n].unit != '\0' ? " " : "", rows[n].unit);
 }
 
 static void print_verdicts(FILE *file, const struct map_figure *figure) {

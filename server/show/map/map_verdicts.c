@@ -1,4 +1,5 @@
 #include "server/show/map/map_verdicts.h"
+#include "jobs/maps/map_artefact_words.h"
 #include "server/show/map/main_values.h"
 #include "server/show/map/map_figure_internal.h"
 #include "server/show/plot/plot_words.h"
@@ -59,14 +60,21 @@ static void judge_law(struct verdicts *verdicts, const struct named_values *foun
             deviance);
 }
 
-static void judge_noise(struct verdicts *verdicts, const struct named_values *found) {
+static void judge_noise(struct verdicts *verdicts, const struct named_values *found,
+                        const struct map_artefacts *artefacts) {
     const double measured = named_number(found, "finite_difference", "rms_slope");
     const double trusted = named_number(found, "trusted", "rms_slope");
-    if (main_values_have_noise(found))
+    if (!main_values_have_noise(found))
+        return;
+    if (map_artefacts_count(artefacts)) /* there is more to be said */
+        say(verdicts,
+            "Noise: the RMS slope is %.3g with it and %.3g without, by the law of the spectrum.",
+            measured, trusted);
+    else
         say(verdicts,
             "Noise: the RMS slope is %.3g with it and %.3g without. Values without noise are of "
             "the "
-            "law of the spectrum, for Gaussian heights; --filter S=LENGTH takes it out of the map.",
+            "law of the spectrum, for Gaussian heights; --denoise takes it out of the map.",
             measured, trusted);
 }
 
@@ -110,17 +118,18 @@ static void judge_short_waves(struct verdicts *verdicts, const struct map_figure
         say(verdicts, "Short waves: the spectrum ends at %.3g%s%s.", length, gap, units.x_name);
 }
 
-static void judge_heights(struct verdicts *verdicts, const struct named_values *found) {
+static void judge_heights(struct verdicts *verdicts, const struct map_figure *figure) {
+    const struct named_values *found = figure->found;
+    const struct map_artefacts *artefacts = &figure->record->artefacts;
     static const char GROUP[] = "height_fit";
     const char *law = named_text(found, GROUP, "distribution");
     const double p_value = named_number(found, GROUP, "p_value");
     const double kurtosis = named_number(found, "heights", "kurtosis");
     char name[64];
-    if (kurtosis > SPIKY)
-        say(verdicts,
-            "Heights: kurtosis %.3g, 3 of Gaussian ones: single points lie far from the rest, as "
-            "spikes do.",
-            kurtosis);
+    if (kurtosis > SPIKY && !map_spikes_found(artefacts))
+        say(verdicts, "Heights: kurtosis %.3g, 3 of Gaussian ones: %s.", kurtosis,
+            artefacts->sought ? "some parts lie far from the rest, and no single points"
+                              : "single points lie far from the rest, as spikes do");
     if (law == NULL)
         return;
     plot_in_words(law, name, sizeof name);
@@ -167,13 +176,26 @@ static void judge_parts(struct verdicts *verdicts, const struct named_values *fo
             p_value);
 }
 
+static void judge_artefacts(struct verdicts *verdicts, const struct map_figure *figure) {
+    const struct map_artefacts *artefacts = &figure->record->artefacts;
+    char sentences[ARTEFACT_SENTENCES_MOST][ARTEFACT_SENTENCE_SIZE];
+    const size_t count = map_artefact_sentences(sentences, artefacts, &figure->map->grid,
+                                                figure->map->z_unit, false);
+    for (size_t n = 0; n < count; n++)
+        say(verdicts, "%s", sentences[n]);
+    if (artefacts->sought && map_artefacts_count(artefacts))
+        say(verdicts, "Rows marked * hold these artefacts, or follow from them: trust them when "
+                      "these are out.");
+}
+
 size_t map_verdicts_list(char out[VERDICTS_MOST][VERDICT_SIZE], const struct map_figure *figure) {
     struct verdicts verdicts = {out, 0};
     judge_errors(&verdicts, figure->found);
     judge_law(&verdicts, figure->found);
     judge_short_waves(&verdicts, figure);
-    judge_noise(&verdicts, figure->found);
-    judge_heights(&verdicts, figure->found);
+    judge_noise(&verdicts, figure->found, &figure->record->artefacts);
+    judge_artefacts(&verdicts, figure);
+    judge_heights(&verdicts, figure);
     judge_directions(&verdicts, figure->found);
     judge_parts(&verdicts, figure->found);
     return verdicts.count;

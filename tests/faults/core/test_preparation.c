@@ -13,6 +13,7 @@ static int prepare(void *context, struct error *err) {
     struct preparation_record record = {0};
     struct preparation asked;
     assert_int_equal(preparation_parse(&asked, context, NULL), 0);
+    asked.artefacts = asked.stride_x > 0;
     map.z = array_create((size_t)NX * NY, sizeof *map.z);
     if (map.z == NULL)
         return error_memory(err, (size_t)NX * NY * sizeof *map.z, "a map");
@@ -34,11 +35,12 @@ static void all_steps(void **state) {
                                      .filter = "S=3um,L=15um,robust",
                                      .resample = "60",
                                      .window = MAP_WINDOW_TUKEY};
-    struct preparation_words coarser = {.fill = true, .resample = "36,32"};
+    struct preparation_words coarser = {.fill = true, .denoise = true, .resample = "36,32"};
     struct preparation_words periodic = {
         .fill = true, .filter = "S=6", .resample = "60", .boundary = ASK_BOUNDARY_PERIODIC};
     each_allocation(&(struct failing_call){.name = "open", prepare, &open, .may_succeed = 1});
     struct preparation_words turned = {.lines = SCAN_LINES_MEDIAN,
+                                       .stride = "1",
                                        .despike = MAP_DESPIKE,
                                        .tip = "tip=3,holes",
                                        .transpose = true,

@@ -59,6 +59,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     words.lines = letter % 5;
     words.lines_along = letter / 5 % 2;
     words.transpose = letter / 10 % 2 == 1;
+    words.denoise = letter / 40 % 2 == 1;
+    words.stride = letter / 20 % 2 == 1 ? "2,1" : NULL;
     int status = preparation_parse(&asked, &words, &err);
     MUST(status == 0 || (status == ERROR_INPUT && *err.text != 0));
     /* New points by their number are as many as asked for, which takes time and nothing else. */

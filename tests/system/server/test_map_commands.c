@@ -279,6 +279,13 @@ static void what_instruments_leave_is_removed(void **state) {
     assert_int_equal(run_shell("$RUGO characterise --despike 5 scanned.csv --lines mean "
                                "--deconvolve tip=20nm --dx 0.5um --z-unit nm"),
                      0);
+    assert_int_equal(run_shell("$RUGO press scanned.csv --dx 0.5um --z-unit nm --error none"), 0);
+    assert_true(
+        contains("shell.err", "rugo press: warning: scanned.csv: Lines: along x, offsets "));
+    assert_int_equal(run_shell("$RUGO press scanned.csv --dx 0.5um --z-unit nm --error none "
+                               "--lines median --despike --fill"),
+                     0);
+    assert_false(contains("shell.err", "Lines:"));
     assert_int_equal(run_shell("$RUGO convert --despike scanned.csv --rotate 400 turned.npy"), 2);
     assert_true(contains("shell.err", "--rotate 400: allowed are degrees"));
 }

@@ -62,6 +62,12 @@ static void words_are_read_or_refused(void **state) {
         {{.crop = "0,0,0,10"}, "--crop 0,0,0"},
         {{.crop = "0.5,0,10,10"}, "--crop 0.5"},
         {{.crop = "0,0,1e999,10"}, "--crop 0,0,1e999"},
+        {{.stride = "2"}, NULL},
+        {{.stride = "2,1"}, NULL},
+        {{.stride = "0"}, "--stride 0"},
+        {{.stride = "2,"}, "--stride 2,"},
+        {{.stride = "2,1,1"}, "--stride 2,1,1"},
+        {{.stride = "x"}, "--stride x"},
         {{.filter = "S=2.5um,L=0.8mm,robust"}, NULL},
         {{.filter = "L=8"}, NULL},
         {{.filter = "robust"}, "--filter robust"},
@@ -313,6 +319,68 @@ static void a_window_is_told(void **state) {
     }
 }
 
+/* Every so manieth point stays as it is; a profile has columns alone. */
+static void strides_keep_points(void **state) {
+    (void)state;
+    static const struct {
+        const char *stride;
+        size_t x, y, nx, ny;
+    } CASES[] = {
+        {"2", 2, 2, 20, 12}, {"3,1", 3, 1, 14, 24}, {"1,5", 1, 5, 40, 5}, {"1", 1, 1, 40, 24}};
+    struct height_map map;
+    struct preparation_record record;
+    struct error err;
+    for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
+        const struct preparation_words words = {.stride = CASES[c].stride,
+                                                .detrend = ASK_DETREND_NONE};
+        make(&map);
+        assert_int_equal(prepare(&map, &words, &record, NULL), 0);
+        assert_true(map.grid.nx == CASES[c].nx && map.grid.ny == CASES[c].ny);
+        check_relative(grid_dx(&map.grid), (double)CASES[c].x, 1e-14);
+        check_relative(grid_dy(&map.grid), (double)CASES[c].y, 1e-14);
+        for (size_t j = 0; j < CASES[c].ny; j++)
+            for (size_t i = 0; i < CASES[c].nx; i++)
+                assert_true(map.z[j * CASES[c].nx + i] ==
+                            height_at(i * CASES[c].x, j * CASES[c].y));
+        height_map_clear(&map);
+    }
+    make(&map);
+    assert_int_equal(prepare(&map, &(struct preparation_words){.stride = "2,24"}, &record, &err),
+                     ERROR_INPUT);
+    assert_non_null(strstr(err.text, "--stride 2,24 leaves 20 by 1 of 40 by 24 points"));
+    height_map_clear(&map);
+    make(&map);
+    map.grid = (struct grid){NX, 1, NX, 1};
+    assert_int_equal(prepare(&map, &(struct preparation_words){.stride = "4"}, &record, NULL), 0);
+    assert_true(map.grid.nx == NX / 4 && map.grid.ny == 1);
+    height_map_clear(&map);
+}
+
+/* What an instrument left is sought where it is asked for: steps in the heights as they were read,
+ * lines in those that were levelled. */
+static void artefacts_are_sought_where_they_are_asked_for(void **state) {
+    (void)state;
+    for (int asked = 0; asked < 2; asked++)
+        for (int levelled = 0; levelled < 2; levelled++) {
+            struct preparation how = {.lines = levelled == 1 ? SCAN_LINES_MEAN : SCAN_LINES_NONE,
+                                      .artefacts = asked == 1};
+            struct preparation_record record = {0};
+            struct height_map map;
+            make(&map);
+            map.grid = (struct grid){NY, NX, NY, NX}; /* so many lines as the test needs */
+            for (size_t p = 0; p < (size_t)NX * NY; p++) {
+                const size_t i = p % NY, j = p / NY;
+                map.z[p] = round(20 * sin(0.9 * (double)i) * cos(0.3 * (double)j)) +
+                           4 * (double)(j * 7 % 5);
+            }
+            assert_int_equal(preparation_run(&record, &map, &how, NULL), 0);
+            assert_int_equal(record.artefacts.sought, asked == 1);
+            check_close(record.artefacts.steps.step, asked, 1e-9);
+            assert_int_equal(record.artefacts.lines.found, asked == 1 && levelled == 0);
+            height_map_clear(&map);
+        }
+}
+
 /* Points of an open map lie in the middle of the old ones; those of a periodic one share out the
  * cell. Asked for as they are they stay bit for bit. */
 static void other_points_are_told(void **state) {
@@ -503,6 +571,8 @@ int main(void) {
         cmocka_unit_test(a_window_is_told),
         cmocka_unit_test(other_points_are_told),
         cmocka_unit_test(what_instruments_leave_is_removed_in_order),
+        cmocka_unit_test(strides_keep_points),
+        cmocka_unit_test(artefacts_are_sought_where_they_are_asked_for),
         cmocka_unit_test(turns_are_stated_or_refused),
         cmocka_unit_test(what_cannot_be_computed_with_is_refused),
         cmocka_unit_test(too_many_new_points_are_refused),

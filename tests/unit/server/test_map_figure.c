@@ -89,6 +89,23 @@ static void lengths_are_in_readable_units(void **state) {
     clear(&page);
 }
 
+/* Heights in steps make slopes that are not to be trusted: marked in the table, with the reason. */
+static void what_is_not_trusted_is_marked(void **state) {
+    (void)state;
+    for (int stepped = 0; stepped < 2; stepped++) {
+        struct page page;
+        make(&page, 48, 48, 30e-9, "m");
+        page.asked.artefacts = true;
+        for (size_t p = 0; p < grid_points(&page.map.grid) && stepped == 1; p++)
+            page.map.z[p] = 20e-9 * round(page.map.z[p] / 20e-9);
+        draw(&page);
+        assert_int_equal(count_of(page.text, "RMS slope *<"), stepped);
+        assert_int_equal(count_of(page.text, "* not trusted: height steps<"), stepped);
+        assert_int_equal(count_of(page.text, "RMS height Sq<"), 1);
+        clear(&page);
+    }
+}
+
 static void without_units_there_are_none(void **state) {
     (void)state;
     struct page page;
@@ -233,6 +250,7 @@ static void intervals_leave_room_for_their_labels(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lengths_are_in_readable_units),
+        cmocka_unit_test(what_is_not_trusted_is_marked),
         cmocka_unit_test(without_units_there_are_none),
         cmocka_unit_test(the_file_holds_the_characterisation),
         cmocka_unit_test(holes_profiles_and_flat_maps_are_drawn),

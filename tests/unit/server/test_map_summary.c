@@ -1,5 +1,6 @@
 /* Protects: what `characterise` prints of a map is one screen, also where all that can be wrong
- * with a map is wrong with it; its sentences follow from the values; and it has no mean of 1e-18.
+ * with a map is wrong with it; its sentences follow from the values; what an instrument left is
+ * named and marks what holds it; and it has no mean of 1e-18.
  */
 #include "core/surface/surface.h"
 #include "server/show/map/map_report.h"
@@ -150,6 +151,46 @@ static void noise_is_named(void **state) {
     free(text);
 }
 
+/* Steps, spikes and scan lines together: a sentence each with the option that takes it out, slopes
+ * without each, marks on what holds them, and still one screen; of every second column likewise. */
+static void what_instruments_left_is_named(void **state) {
+    (void)state;
+    struct height_map map = {
+        .grid = {SIDE, SIDE, 128e-6, 128e-6}, .z = z, .xy_unit = "m", .z_unit = "m"};
+    struct error err = {0};
+    for (int columns = 0; columns < 2; columns++) {
+        struct preparation asked = {.boundary = ASK_BOUNDARY_OPEN, .artefacts = true};
+        struct preparation_record record = {0};
+        uint64_t seed = 4;
+        double offsets[SIDE];
+        noise_fill(&seed, SIDE, offsets);
+        fill_smooth(9, 1);
+        for (int n = 0; n < POINTS && columns == 0; n++)
+            z[n] = 1e-9 * round(1e9 * z[n] / 8 + 2 * offsets[n / SIDE]) * 8;
+        for (int n = 0; n < 20 && columns == 0; n++)
+            z[(2711 * n + 99) % POINTS] += 2000e-9;
+        for (int n = 0; n < POINTS && columns == 1; n++)
+            if (n % SIDE % 2 == 1 && n % SIDE + 1 < SIDE)
+                z[n] = (z[n - 1] + z[n + 1]) / 2;
+        assert_int_equal(preparation_run(&record, &map, &asked, &err), 0);
+        char *text = summary_of(&record);
+        check_screen(text);
+        if (columns == 0)
+            expect(text,
+                   (const char *const[]){
+                       "\n* RMS slope ", "\n    without artefacts, about ", "\n* Hurst exponent H ",
+                       "\nSteps: heights are multiples of 8 nm, which ", "--denoise takes",
+                       "\nSpikes: 20, up to ", "--despike --fill.", "\nLines: along x, offsets ",
+                       "--lines median.", "\nRows marked * hold these", NULL});
+        else
+            expect(text,
+                   (const char *const[]){"\n* RMS slope ", "Columns: 127 of 256 are on a line ",
+                                         "--stride 2,1 leaves them out.", NULL});
+        assert_null(strstr(text, "Heights: kurtosis"));
+        free(text);
+    }
+}
+
 /* A wave of the side of the map has no errors, which the sentences say. */
 static void what_is_unknown_is_said(void **state) {
     (void)state;
@@ -170,6 +211,7 @@ int main(void) {
         cmocka_unit_test(a_clean_map_is_one_screen),
         cmocka_unit_test(faults_fit_on_it_too),
         cmocka_unit_test(noise_is_named),
+        cmocka_unit_test(what_instruments_left_is_named),
         cmocka_unit_test(what_is_unknown_is_said),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
