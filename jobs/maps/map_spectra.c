@@ -134,7 +134,8 @@ static int scores_fit(struct map_spectra *out, const struct measured_map *scored
     struct spectrum_fit_request before = *request;
     before.shortest = spectrum->side / ((double)range.edge - BLURRED);
     status = law_fit(scored, spectrum, directions, &before, &out->scores, err);
-    out->has_scores = status == 0 && out->scores.fitted;
+    out->has_scores =
+        status == 0 && out->scores.fitted && out->scores.deviance <= out->scores.deviance_limit;
     out->scores_end = spectrum->side / (double)range.edge;
     return status;
 }
