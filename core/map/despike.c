@@ -1,5 +1,6 @@
 #include "core/map/despike.h"
 #include "core/statistics/measured_map.h"
+#include "core/vectors.h"
 #include <gsl/gsl_statistics.h>
 #include <math.h>
 #include <stdlib.h>
@@ -127,13 +128,17 @@ static double distance_at(const struct grid *grid, const double *z, size_t i, si
     return fmax(fmax(off[left_out], -off[count - 1 - left_out]), 0);
 }
 
+/* So many heights say what the deviation is: of larger maps it is that of some rows. */
+enum { SAMPLE = 1 << 18 };
+
 /* Returns the robust deviation of heights from their predictions along an axis, from one side or
  * both; of maps that are mostly level its root mean square. room: points. */
 static double deviation_along(const struct grid *grid, const double *z, int line, bool one,
                               double *room) {
     struct sum squares = {0};
     size_t count = 0;
-    for (size_t j = 0; j < grid->ny; j++)
+    const size_t sampled = grid_points(grid) / SAMPLE, every = sampled > 1 ? sampled : 1;
+    for (size_t j = every / 2; j < grid->ny; j += every)
         for (size_t i = 0; i < grid->nx; i++)
             take(fabs(one ? off_one(grid, z, i, j, line, 1) : off_both(grid, z, i, j, line)), room,
                  &count);
@@ -154,8 +159,60 @@ static double deviation_measure(const struct grid *grid, const double *z, bool o
     return sqrt((along_x * along_x + along_y * along_y) / 2);
 }
 
+/* --- which points are looked at --- */
+
+/* Of n points of a row, fills 0 where the predictions from both sides along the axes are no farther
+ * than `most`: then no distance is, as at most two others remain. A plain loop, so that the
+ * compiler makes vectors of it. */
+WIDE_VECTORS static void suspects_fill(const double *restrict row, size_t nx, size_t n, double most,
+                                       double *restrict suspect) {
+    const double *up = row - nx, *down = row + nx, *top = up - nx, *bottom = down + nx;
+    const double *left = row - 1, *right = row + 1, *first = row - 2, *last = row + 2;
+    for (size_t i = 0; i < n; i++) {
+        double x = row[i] - (4 * (left[i] + right[i]) - (first[i] + last[i])) / 6;
+        double y = row[i] - (4 * (up[i] + down[i]) - (top[i] + bottom[i])) / 6;
+        suspect[i] = (fabs(x) <= most ? 0. : 1.) + (fabs(y) <= most ? 0. : 1.);
+    }
+}
+
+enum { TOGETHER = 64, SIDE = 2 };
+
+/* Whether a point has two on all sides. */
+static bool is_inside(const struct grid *grid, size_t i, size_t j) {
+    return i >= SIDE && i + SIDE < grid->nx && j >= SIDE && j + SIDE < grid->ny;
+}
+
 /* As many deviations of the neighbours count for one of the map: theirs hold slopes, too. */
 static const double OWN = 0.5;
+
+/* Returns how many deviations a height is off, of the map or more of its neighbours. */
+static double distance_of(const struct grid *grid, const double *z, size_t i, size_t j, double most,
+                          const struct deviations *by) {
+    double found = distance_at(grid, z, i, j, by);
+    if (found > most) {
+        const double own = OWN * own_deviation(grid, z, i, j);
+        const struct deviations least = {fmax(by->both, own), fmax(by->one, own)};
+        found = distance_at(grid, z, i, j, &least);
+    }
+    return found;
+}
+
+/* Fills the distances of a row; 0 of those that are no farther than `most` at first sight. */
+static void row_measure(const struct grid *grid, const double *z, size_t j, double most,
+                        const struct deviations *by, double *distance) {
+    static const double ROUNDING = 1e-9;
+    const size_t nx = grid->nx;
+    for (size_t i = 0; i < nx;) {
+        double suspect[TOGETHER] = {1};
+        bool inside = is_inside(grid, i, j);
+        size_t n = inside ? nx - SIDE - i < TOGETHER ? nx - SIDE - i : TOGETHER : 1;
+        if (inside)
+            suspects_fill(z + j * nx + i, nx, n, (1 - ROUNDING) * most * by->both, suspect);
+        for (size_t k = 0; k < n; k++)
+            distance[i + k] = suspect[k] > 0 ? distance_of(grid, z, i + k, j, most, by) : 0;
+        i += n;
+    }
+}
 
 int despike(const struct grid *grid, double *z, double most, struct despike_result *out,
             struct error *err) {
@@ -168,15 +225,7 @@ int despike(const struct grid *grid, double *z, double most, struct despike_resu
                                   deviation_measure(grid, z, true, distance)};
     out->deviation = by.both;
     for (size_t j = 0; j < grid->ny; j++)
-        for (size_t i = 0; i < grid->nx; i++) {
-            double found = distance_at(grid, z, i, j, &by);
-            if (found > most) {
-                const double own = OWN * own_deviation(grid, z, i, j);
-                const struct deviations least = {fmax(by.both, own), fmax(by.one, own)};
-                found = distance_at(grid, z, i, j, &least);
-            }
-            distance[j * grid->nx + i] = found;
-        }
+        row_measure(grid, z, j, most, &by, distance + j * grid->nx);
     for (size_t point = 0; point < points; point++)
         if (distance[point] > most) {
             z[point] = (double)NAN;
