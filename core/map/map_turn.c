@@ -289,7 +289,7 @@ int map_turn(struct height_map *map, double angle, struct map_turn_result *out, 
         status = interpolate(&turned, whole, &SEVENTH, z, err);
     if (status == 0) {
         const double slope = slope_square(&turned.to, z, NULL);
-        out->slope_change = sqrt(slope_square(&turned.to, z, fifth) / slope);
+        out->slope_change = slope > 0 ? sqrt(slope_square(&turned.to, z, fifth) / slope) : 0;
         if (whole != map->z)
             mark_holes(&turned, map->z, z);
     }

@@ -14,7 +14,7 @@ int map_turn_right(struct height_map *map, unsigned right_angles, struct error *
 
 struct map_turn_result {
     double slope_change; /* RMS slope of what the last degree of the spline changes, over that of
-                            the turned map; NaN of a level one */
+                            the turned map; 0 of a level one */
 };
 
 /* Turns an open map by an angle (radians), counter-clockwise, about its middle. The new points lie

@@ -153,6 +153,28 @@ static void the_rectangle_is_the_largest(void **state) {
     }
 }
 
+static double level(double x, double y, double points) {
+    return 3 + 0 * (x + y + points);
+}
+
+/* Nothing changes where there is nothing: a share of no slope is none. */
+static void level_maps_stay_level(void **state) {
+    (void)state;
+    struct height_map map;
+    struct map_turn_result done;
+    make(&map, level, 0);
+    assert_int_equal(map_turn(&map, 0.3, &done, NULL), 0);
+    for (size_t n = 0; n < grid_points(&map.grid); n++)
+        check_close(map.z[n], 3, 1e-12);
+    height_map_clear(&map);
+    make(&map, level, 0);
+    for (size_t n = 0; n < grid_points(&map.grid); n++)
+        map.z[n] = 0;
+    assert_int_equal(map_turn(&map, 0.3, &done, NULL), 0);
+    check_close(done.slope_change, 0, 0);
+    height_map_clear(&map);
+}
+
 static void holes_stay_holes(void **state) {
     (void)state;
     struct height_map map, whole;
@@ -201,6 +223,7 @@ int main(void) {
         cmocka_unit_test(right_angles_are_exact),
         cmocka_unit_test(other_angles_hold_heights_and_slopes),
         cmocka_unit_test(the_rectangle_is_the_largest),
+        cmocka_unit_test(level_maps_stay_level),
         cmocka_unit_test(holes_stay_holes),
         cmocka_unit_test(what_cannot_be_turned_is_refused),
     };
