@@ -225,7 +225,7 @@ static size_t scene_count(void) {
 /* Of a question to surfaces alone the scenes of profiles are surfaces of the other Hurst exponent.
  */
 static struct scene scene_at(const struct question *question, size_t s) {
-    struct scene scene = TABLE[every_case() ? s : SHORT[s]];
+    struct scene scene = TABLE[every_case() ? s : SHORT[s % (sizeof SHORT / sizeof *SHORT)]];
     if (question->surfaces && scene.dimension == 1) {
         scene.dimension = 2;
         scene.hurst = 1.1 - scene.hurst;
