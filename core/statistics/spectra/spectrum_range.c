@@ -57,7 +57,7 @@ static double mean_density(const struct map_spectrum *s, size_t first, size_t la
  * surface; of profiles, whose rings are one wave, more. */
 static size_t block_of(const struct map_spectrum *s, size_t r) {
     static const double ENOUGH = 24;
-    return (size_t)fmax(ceil(ENOUGH / s->freedom[r]), 1);
+    return (size_t)fmin(fmax(ceil(ENOUGH / s->freedom[r]), 1), (double)s->rings); /* inf: none */
 }
 
 /* Returns by how much the logarithm of the density falls across ring r more than by the steepest
