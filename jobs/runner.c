@@ -1,8 +1,8 @@
 #include "jobs/runner.h"
+#include "jobs/clock.h"
 #include "jobs/partial.h"
 #include "jobs/surface/surface_case.h"
 #include <stdlib.h>
-#include <time.h>
 
 /* --- what runners share --- */
 
@@ -274,15 +274,6 @@ static int block_fill(struct job_runner *runner, const struct job_control *contr
         status = partial_encode(kind, runner->fingerprint, tally, &data, &result->size, err);
     result->data = data;
     return status;
-}
-
-/* CLOCK_MONOTONIC never steps; CLOCK_THREAD_CPUTIME_ID counts what this thread computes, without
- * its waits. NaN where there is no such clock. */
-static double clock_seconds(clockid_t clock) {
-    struct timespec now;
-    if (clock_gettime(clock, &now) != 0)
-        return NAN;
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
 int runner_run(struct job_runner *runner, uint64_t first, uint64_t count,

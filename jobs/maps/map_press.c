@@ -2,12 +2,12 @@
 #include "core/full/full.h"
 #include "core/statistics/heights/roughness.h"
 #include "core/statistics/summits/local_wave.h"
+#include "jobs/clock.h"
 #include "jobs/contact/model/model_linear.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #define OWN(value) [PRESS_##value - PRESS_LOAD]
 static const struct measure OWN_MEASURES[PRESS_VALUES - PRESS_LOAD] = {
@@ -260,15 +260,10 @@ int map_press_begin(struct map_press *press, struct height_map *map, enum press_
     return status == 0 && !grid_is_profile(&map->grid) ? count_summits(press, map, err) : status;
 }
 
-static double cpu_seconds(void) {
-    struct timespec now = {0};
-    (void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 static int is_over(void *context) {
     const struct map_press *press = context;
-    return press->seconds_most > 0 && cpu_seconds() - press->began > press->seconds_most;
+    return press->seconds_most > 0 &&
+           clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - press->began > press->seconds_most;
 }
 
 /* Adds what makes a face fit that cannot be meshed. */
@@ -292,7 +287,7 @@ int map_press_lift(struct map_press *press, const double *z, const struct press_
     if (status != 0)
         return status;
     map_press_release(press);
-    press->began = cpu_seconds();
+    press->began = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
     press->one_case = map_press_case(press, &press->grid, block);
     if (model->face_fits != NULL)
         status = model->face_fits(press->one_case.blocks, press->slope, press->height, err);

@@ -1,4 +1,5 @@
 /* Studies over HTTP: submission, progress. */
+#include "jobs/clock.h"
 #include "jobs/kind.h"
 #include "schema/json/field.h"
 #include "server/command/access/api.h"
@@ -8,7 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 /* --- changes, through the writer --- */
 
@@ -78,15 +78,10 @@ struct checking {
     bool too_long;
 };
 
-static double cpu_seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 static int checked_enough(void *context) {
     struct checking *checking = context;
-    checking->too_long = cpu_seconds() - checking->begin > checking->seconds;
+    checking->too_long =
+        clock_seconds(CLOCK_THREAD_CPUTIME_ID) - checking->begin > checking->seconds;
     return checking->too_long || exchange_is_lost(checking->exchange);
 }
 
@@ -113,8 +108,9 @@ static void with_study(struct exchange *exchange,
     struct error err = {0};
     if (!check_body(exchange))
         return;
-    struct checking checking = {
-        .exchange = exchange, .begin = cpu_seconds(), .seconds = CHECK_SECONDS};
+    struct checking checking = {.exchange = exchange,
+                                .begin = clock_seconds(CLOCK_THREAD_CPUTIME_ID),
+                                .seconds = CHECK_SECONDS};
     int status = kind_read_study_until(&study, exchange->body, exchange->body_size, checked_enough,
                                        &checking, &faults, &err);
     if (status == 0 && (study->owner = strdup(exchange->owner)) == NULL)
