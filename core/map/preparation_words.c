@@ -128,17 +128,22 @@ static bool parse_points(size_t *out, const char **at) {
     return points > 0 && points <= 1ULL << 31;
 }
 
+/* Reads one such number along x, or also one along y. */
+static bool parse_points_along(size_t *x, size_t *y, const char *text) {
+    bool read = parse_points(x, &text);
+    if (read && *text == ',') {
+        text++;
+        read = parse_points(y, &text);
+    }
+    return read && *text == '\0';
+}
+
 static int parse_stride(struct preparation *out, const char *text, struct error *err) {
-    const char *at = text;
     if (text == NULL)
         return 0;
-    bool read = parse_points(&out->stride_x, &at);
-    out->stride_y = out->stride_x;
-    if (read && *at == ',') {
-        at++;
-        read = parse_points(&out->stride_y, &at);
-    }
-    if (read && *at == '\0')
+    bool read = parse_points_along(&out->stride_x, &out->stride_y, text);
+    out->stride_y = out->stride_y > 0 ? out->stride_y : out->stride_x;
+    if (read)
         return 0;
     return error_set(err, ERROR_INPUT,
                      "--stride %.60s: allowed are one or two whole numbers above 0, such as 2 or "
@@ -148,7 +153,6 @@ static int parse_stride(struct preparation *out, const char *text, struct error 
 
 static int parse_resample(struct preparation *out, const char *text, struct error *err) {
     struct asked_length *spacing = &out->resample_dx;
-    const char *at = text;
     if (text == NULL)
         return 0;
     const bool named = strncmp(text, "dx=", 3) == 0;
@@ -157,12 +161,7 @@ static int parse_resample(struct preparation *out, const char *text, struct erro
         spacing->value > 0)
         return 0;
     *spacing = (struct asked_length){0};
-    bool read = parse_points(&out->resample_x, &at) && out->resample_x > 1;
-    if (read && *at == ',') {
-        at++;
-        read = parse_points(&out->resample_y, &at);
-    }
-    if (read && *at == '\0')
+    if (parse_points_along(&out->resample_x, &out->resample_y, text) && out->resample_x > 1)
         return 0;
     return error_set(err, ERROR_INPUT,
                      "--resample %.60s: allowed are a number of points along x or along both, such "
