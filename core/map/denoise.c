@@ -17,19 +17,12 @@ struct lay_law {
 static int find_lay(struct lay *lay, const struct measured_map *map,
                     const struct map_spectrum *circles, struct error *err) {
     const struct spectrum_fit_request by_the_map = {0};
-    struct map_chance *chance = NULL;
-    struct cell_differences nearest;
     struct map_directions directions;
     *lay = LAY_NONE;
     if (grid_is_profile(map->grid))
         return 0;
-    int status = map_chance_create(&chance, map, err);
-    if (status != 0)
-        return status;
-    cell_differences_measure(map, &chance->modes, 1, &nearest);
-    map_directions_measure(&directions, map, chance, circles, &nearest);
-    map_chance_destroy(&chance);
-    return map_directions_lay(lay, &directions, circles, &by_the_map, err);
+    int status = map_directions_find(&directions, map, circles, err);
+    return status == 0 ? map_directions_lay(lay, &directions, circles, &by_the_map, err) : status;
 }
 
 static int fit_law(struct lay_law *law, const struct measured_map *map, struct error *err) {
@@ -38,11 +31,8 @@ static int fit_law(struct lay_law *law, const struct measured_map *map, struct e
     int status = map_spectrum_create(&circles, map, err);
     if (status == 0)
         status = find_lay(&law->lay, map, circles, err);
-    if (status == 0 && !lay_is_plain(&law->lay))
-        status = map_spectrum_create_along(&ellipses, circles, &law->lay, err);
     if (status == 0)
-        status = spectrum_fit_measure(ellipses != NULL ? ellipses : circles, &by_the_map, &law->fit,
-                                      err);
+        status = spectrum_fit_along(circles, &law->lay, &by_the_map, &ellipses, &law->fit, err);
     map_spectrum_destroy(&ellipses);
     map_spectrum_destroy(&circles);
     if (status == 0)
@@ -118,25 +108,18 @@ static int filter(const struct lay_law *law, const struct grid *grid, double *z,
     return status;
 }
 
-static void measure(const struct measured_map *map, struct roughness *out) {
-    if (map->boundary == BOUNDARY_OPEN)
-        open_roughness_measure(map, out);
-    else
-        roughness_measure(map->grid, map->z, out);
-}
-
 int map_denoise(const struct grid *grid, double *z, enum boundary boundary,
                 struct denoise_result *out, struct error *err) {
     const struct measured_map map = {grid, z, boundary};
     const double whole = 2 * M_PI / grid_dx(grid);
-    struct lay_law law;
+    struct lay_law law = {.fit.fitted = false};
     struct roughness roughness;
     *out = (struct denoise_result){.found = false};
     int status = fit_law(&law, &map, err);
     const struct spectrum_fit *fit = &law.fit;
     if (status != 0 || !fit->fitted)
         return status;
-    measure(&map, &roughness);
+    map_roughness_measure(&map, &roughness);
     out->slope_before = out->slope_after = roughness.rms_slope;
     if (!(spectrum_fit_noise_share(fit, grid, roughness.rms_curvature) > NOISE_SHARE_MOST))
         return 0;
@@ -145,7 +128,7 @@ int map_denoise(const struct grid *grid, double *z, enum boundary boundary,
     out->shortest = fit->shortest;
     status = filter(&law, grid, z, boundary == BOUNDARY_OPEN, err);
     if (status == 0)
-        measure(&map, &roughness);
+        map_roughness_measure(&map, &roughness);
     out->slope_after = roughness.rms_slope;
     return status;
 }

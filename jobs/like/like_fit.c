@@ -84,19 +84,13 @@ static int check_map(const struct height_map *map, struct error *err) {
 static int find_lay(struct fit *fit, struct lay *lay, struct error *err) {
     static const double RATIO_MOST = 100;
     const struct spectrum_fit_request by_the_map = {0};
-    struct map_chance *chance = NULL;
-    struct cell_differences nearest;
     struct map_directions directions;
     *lay = LAY_NONE;
     if (fit->profile)
         return 0;
-    int status = map_chance_create(&chance, &fit->map, err);
-    if (status != 0)
-        return status;
-    cell_differences_measure(&fit->map, &chance->modes, 1, &nearest);
-    map_directions_measure(&directions, &fit->map, chance, fit->circles, &nearest);
-    map_chance_destroy(&chance);
-    status = map_directions_lay(lay, &directions, fit->circles, &by_the_map, err);
+    int status = map_directions_find(&directions, &fit->map, fit->circles, err);
+    if (status == 0)
+        status = map_directions_lay(lay, &directions, fit->circles, &by_the_map, err);
     if (status != 0 || !lay_is_plain(lay) || !map_directions_differ(&directions))
         return status;
     /* no one lay is most likely: that of the slopes is next */
@@ -120,11 +114,9 @@ static int measure_rings(struct fit *fit, struct error *err) {
     int status = map_spectrum_create(&fit->circles, &fit->map, err);
     if (status == 0)
         status = find_lay(fit, &lay, err);
-    if (status == 0 && !lay_is_plain(&lay))
-        status = map_spectrum_create_along(&fit->ellipses, fit->circles, &lay, err);
     if (status == 0)
-        status = spectrum_fit_measure(fit->ellipses != NULL ? fit->ellipses : fit->circles,
-                                      &(struct spectrum_fit_request){0}, &fit->law, err);
+        status = spectrum_fit_along(fit->circles, &lay, &(struct spectrum_fit_request){0},
+                                    &fit->ellipses, &fit->law, err);
     return status;
 }
 

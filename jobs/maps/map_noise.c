@@ -14,10 +14,7 @@ int map_noise_measure(struct map_noise *out, const struct measured_map *map, str
     map_spectrum_destroy(&spectrum);
     if (status != 0 || !fit.fitted)
         return status;
-    if (map->boundary == BOUNDARY_OPEN)
-        open_roughness_measure(map, &roughness);
-    else
-        roughness_measure(map->grid, map->z, &roughness);
+    map_roughness_measure(map, &roughness);
     const double share = spectrum_fit_noise_share(&fit, map->grid, roughness.rms_curvature);
     *out = (struct map_noise){share > NOISE_SHARE_MOST, roughness.rms_slope, fit.rms_slope.value};
     return 0;

@@ -92,9 +92,6 @@ int map_parameters_measure(struct map_parameters *out, const struct measured_map
                       : roughness_spectral(map->grid, map->z, &out->moments, err);
     if (status != 0)
         return status;
-    if (open)
-        open_roughness_measure(map, &out->roughness);
-    else
-        roughness_measure(map->grid, map->z, &out->roughness);
+    map_roughness_measure(map, &out->roughness);
     return find_summits(out, map, mode_x, mode_y, chance, err);
 }

@@ -80,10 +80,8 @@ static int surface_law_fit(const struct map_spectrum *spectrum,
     struct map_spectrum *ellipses = NULL;
     struct lay lay;
     int status = map_directions_lay(&lay, directions, spectrum, request, err);
-    if (status == 0 && !lay_is_plain(&lay))
-        status = map_spectrum_create_along(&ellipses, spectrum, &lay, err);
     if (status == 0)
-        status = spectrum_fit_measure(ellipses != NULL ? ellipses : spectrum, request, out, err);
+        status = spectrum_fit_along(spectrum, &lay, request, &ellipses, out, err);
     map_spectrum_destroy(&ellipses);
     return status;
 }
@@ -126,13 +124,12 @@ int map_spectra_measure(struct map_spectra *out, const struct measured_map *map,
 static int scores_fit(struct map_spectra *out, const struct measured_map *scored,
                       const struct map_spectrum *spectrum, const struct map_directions *directions,
                       const struct spectrum_fit_request *request, struct error *err) {
-    enum { BLURRED = 3 };
     struct spectrum_range range;
     int status = spectrum_range_find(spectrum, request, &range, err);
-    if (status != 0 || range.edge <= BLURRED)
+    if (status != 0 || range.edge <= SPECTRUM_BLURRED)
         return status;
     struct spectrum_fit_request before = *request;
-    before.shortest = spectrum->side / ((double)range.edge - BLURRED);
+    before.shortest = spectrum->side / ((double)range.edge - SPECTRUM_BLURRED);
     status = law_fit(scored, spectrum, directions, &before, &out->scores, err);
     out->has_scores =
         status == 0 && out->scores.fitted && out->scores.deviance <= out->scores.deviance_limit;

@@ -147,21 +147,13 @@ static inline void recovery_fit(struct spectrum_fit *fit, const struct measured_
                                 const struct map_spectrum *spectrum, bool seek) {
     const struct spectrum_fit_request request = {0};
     struct map_spectrum *ellipses = NULL;
-    struct map_chance *chance = NULL;
-    struct cell_differences differences;
     struct map_directions directions;
     struct lay lay = LAY_NONE;
     if (seek) {
-        assert_int_equal(map_chance_create(&chance, map, NULL), 0);
-        cell_differences_measure(map, &chance->modes, 1, &differences);
-        map_directions_measure(&directions, map, chance, spectrum, &differences);
-        map_chance_destroy(&chance);
+        assert_int_equal(map_directions_find(&directions, map, spectrum, NULL), 0);
         assert_int_equal(map_directions_lay(&lay, &directions, spectrum, &request, NULL), 0);
     }
-    if (!lay_is_plain(&lay))
-        assert_int_equal(map_spectrum_create_along(&ellipses, spectrum, &lay, NULL), 0);
-    assert_int_equal(
-        spectrum_fit_measure(ellipses != NULL ? ellipses : spectrum, &request, fit, NULL), 0);
+    assert_int_equal(spectrum_fit_along(spectrum, &lay, &request, &ellipses, fit, NULL), 0);
     map_spectrum_destroy(&ellipses);
 }
 

@@ -159,6 +159,13 @@ void open_roughness_measure(const struct measured_map *map, struct roughness *ou
     out->nayak_alpha = variance / out->m2 * (out->m4 / out->m2);
 }
 
+void map_roughness_measure(const struct measured_map *map, struct roughness *out) {
+    if (map->boundary == BOUNDARY_OPEN)
+        open_roughness_measure(map, out);
+    else
+        roughness_measure(map->grid, map->z, out);
+}
+
 /* Sums over points in LANES interleaved parts: short chains of rounding, and vectors for the
  * compiler. */
 enum { LANES = 8 };

@@ -19,6 +19,8 @@ void roughness_measure(const struct grid *grid, const double *z, struct roughnes
 /* Of a map that does not repeat, or that has holes. Measures as roughness_measure does, over the
  * heights and differences that are there (FORMULAS.md, F18.2); NaN where there are none. */
 void open_roughness_measure(const struct measured_map *map, struct roughness *out);
+/* Measures as one of these does, by whether the map repeats. */
+void map_roughness_measure(const struct measured_map *map, struct roughness *out);
 
 /* Spectral moments of a height map by its transform (F2.3). Works on any map, band-limited or not.
  */

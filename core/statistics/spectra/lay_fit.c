@@ -237,7 +237,6 @@ static bool climb(struct lay *lay, const struct map_spectrum *s, struct profile 
 static int range_find(double *low, double *high, const struct map_spectrum *circles,
                       const struct lay *lay, const struct spectrum_fit_request *request,
                       struct error *err) {
-    enum { BLURRED = 3 };
     struct map_spectrum *ellipses = NULL;
     struct spectrum_range range;
     int status = map_spectrum_create_along(&ellipses, circles, lay, err);
@@ -246,7 +245,8 @@ static int range_find(double *low, double *high, const struct map_spectrum *circ
     map_spectrum_destroy(&ellipses);
     if (status != 0)
         return status;
-    size_t last = range.edge > BLURRED + range.first ? range.edge - BLURRED : range.last;
+    size_t last =
+        range.edge > SPECTRUM_BLURRED + range.first ? range.edge - SPECTRUM_BLURRED : range.last;
     *low = (double)range.first - 0.5;
     *high = (double)last + 0.5;
     return 0;

@@ -467,6 +467,15 @@ int spectrum_fit_measure(const struct map_spectrum *spectrum,
     return status;
 }
 
+int spectrum_fit_along(const struct map_spectrum *circles, const struct lay *lay,
+                       const struct spectrum_fit_request *request, struct map_spectrum **ellipses,
+                       struct spectrum_fit *out, struct error *err) {
+    int status = lay_is_plain(lay) ? 0 : map_spectrum_create_along(ellipses, circles, lay, err);
+    return status == 0
+               ? spectrum_fit_measure(*ellipses != NULL ? *ellipses : circles, request, out, err)
+               : status;
+}
+
 static double density_across(const struct spectrum_fit *fit, double wave_number) {
     static const double GUARD = 1e-9;
     double length = 2 * M_PI / fmax(wave_number, 1e-300);

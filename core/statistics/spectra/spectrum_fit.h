@@ -47,6 +47,13 @@ int spectrum_fit_measure(const struct map_spectrum *spectrum,
                          const struct spectrum_fit_request *request, struct spectrum_fit *out,
                          struct error *err);
 
+/* Fits over the ellipses of a lay; over the circles where the lay is plain. *ellipses: NULL at
+ * first, their spectrum where there is one, the caller's to destroy in any case. Errors as above.
+ */
+int spectrum_fit_along(const struct map_spectrum *circles, const struct lay *lay,
+                       const struct spectrum_fit_request *request, struct map_spectrum **ellipses,
+                       struct spectrum_fit *out, struct error *err);
+
 /* Returns the density of the law at a wave number, with a lay its mean over all directions; 0
  * beyond its ends. */
 double spectrum_fit_density(const struct spectrum_fit *fit, double wave_number);

@@ -30,6 +30,8 @@ struct spectrum_range {
     double noise;        /* density of a flat tail; 0: none */
     double tail_density; /* of the shortest waves of the map: white noise has no more */
 };
+/* So many rings before a sharp end hold what the window blurs of it. */
+enum { SPECTRUM_BLURRED = 3 };
 /* ERROR_INPUT where the request leaves no ring. */
 int spectrum_range_find(const struct map_spectrum *spectrum,
                         const struct spectrum_fit_request *request, struct spectrum_range *out,

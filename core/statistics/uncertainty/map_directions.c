@@ -36,6 +36,19 @@ void map_directions_measure(struct map_directions *out, const struct measured_ma
     out->texture = angular_spectrum_peak(&out->angular);
 }
 
+int map_directions_find(struct map_directions *out, const struct measured_map *map,
+                        const struct map_spectrum *spectrum, struct error *err) {
+    struct map_chance *chance = NULL;
+    struct cell_differences nearest;
+    int status = map_chance_create(&chance, map, err);
+    if (status != 0)
+        return status;
+    cell_differences_measure(map, &chance->modes, 1, &nearest);
+    map_directions_measure(out, map, chance, spectrum, &nearest);
+    map_chance_destroy(&chance);
+    return 0;
+}
+
 static const double SIGNIFICANCE = 0.01;
 
 bool map_directions_differ(const struct map_directions *directions) {

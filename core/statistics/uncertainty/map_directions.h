@@ -17,6 +17,10 @@ struct map_directions {
 void map_directions_measure(struct map_directions *out, const struct measured_map *map,
                             const struct map_chance *chance, const struct map_spectrum *spectrum,
                             const struct cell_differences *nearest);
+/* Does so from the map alone, with what is known of its errors. ERROR_MEMORY, or what a correlation
+ * fails with. */
+int map_directions_find(struct map_directions *out, const struct measured_map *map,
+                        const struct map_spectrum *spectrum, struct error *err);
 /* Returns whether they differ, at a level of 0.01; where the map is too small for errors, whether
  * slopes do by a factor of more than 2. */
 bool map_directions_differ(const struct map_directions *directions);
