@@ -31,8 +31,10 @@ APT      = build-essential pkg-config libfftw3-dev libgsl-dev librandom123-dev l
 HEADERS  = Random123/philox.h suitesparse/cholmod.h suitesparse/umfpack.h
 
 MODE     = $(SAN)$(COV)$(DEBUG)
-LEVEL    = -O3
-CFLAGS  ?= -g $(if $(SAN),-O2,$(if $(MODE),-O0,$(LEVEL))) -fstack-protector-strong \
+# That of core, which computes; other layers and tests have theirs below.
+LEVEL    = $(if $(SAN),-O2,$(if $(MODE),-O0,-O3))
+SYMBOLS  = -g
+CFLAGS  ?= $(SYMBOLS) $(LEVEL) -fstack-protector-strong \
            $(if $(MODE),,-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3)
 LDFLAGS ?= -Wl,-z,relro,-z,now
 
@@ -100,6 +102,10 @@ $(BUILD)/commit.c: FORCE
 	    cmp -s - $@ || echo 'extern const char PROGRAM_COMMIT[]; const char PROGRAM_COMMIT[] = "$(COMMIT)";' >$@
 $(BUILD)/commit.o: $(BUILD)/commit.c $(BUILD)/flags
 	$(Q)$(COMPILE) -c $< -o $@
+
+# Layers above core are compiled in four fifths of the time, under sanitizers in a quarter; jobs computes, too.
+$(foreach layer,schema worker server,$(eval $(BUILD)/$(layer)/%.c.o: private LEVEL = $$(if $$(MODE),-O0,-O2)))
+$(BUILD)/jobs/%.c.o: private LEVEL = $(if $(MODE),-O0,-O3)
 
 # What computes reads no input: coverage of its loops guides no fuzzer, and takes a third of the time under sanitizers.
 COMPUTES = core/contact core/full core/quantity core/statistics core/surface core/theory
@@ -188,11 +194,12 @@ $(BUILD)/rugo.1: $(BUILD)/rugo
 $(BUILD)/rugo.bash: $(BUILD)/rugo
 	@$< help bash >$@
 
-# Tests: tests/<ladder>/<layer>/<name>.c is a program; tests/*.c are shared by all of them. Those that compute little
-# themselves are compiled in two thirds of the time, and all are linked by gold in half of it, where there is one. It
+# Tests: tests/<ladder>/<layer>/<name>.c is a program; tests/*.c are shared by all of them. They compute little
+# themselves, and are compiled in half of the time; all are linked by gold in half of it, where there is one. It
 # warns of hundreds of symbols of clang's sanitizers.
-QUICK = support system faults fuzz $(addprefix unit/,schema jobs worker server)
-$(foreach folder,$(QUICK),$(eval $(BUILD)/tests/$(folder)/%.c.o: private LEVEL = -O1))
+$(foreach folder,support system faults fuzz unit validation,$(eval \
+    $(BUILD)/tests/$(folder)/%.c.o: private LEVEL = $$(if $$(MODE),-O0,-O1)) \
+    $(eval $(BUILD)/tests/$(folder)/%.c.o: private SYMBOLS = -g1))
 GOLD := $(if $(SAN),,$(if $(shell command -v ld.gold),-fuse-ld=gold))
 SUPPORT = $(call objects,$(wildcard tests/support/*.c))
 # What draws whole inputs by choices: an archive, of which each test links what it uses.
@@ -216,9 +223,8 @@ all_tests = $(foreach layer,jobs worker core schema server,$(TESTS_$(1)_$(layer)
 test: deps
 	@$(MAKE) --no-print-directory -j$$(nproc) run-tests-built
 .PHONY: run-tests-built browser
-# So do the ladders.
-EVERY_TEST = $(foreach ladder,validation faults system unit fuzz,$(call all_tests,$(ladder))) \
-             $(BUILD)/tests/system/faults/kills
+# All ladders but validation, which takes as long as these together. The long ones come first, too.
+EVERY_TEST = $(foreach ladder,faults system unit fuzz,$(call all_tests,$(ladder))) $(BUILD)/tests/system/faults/kills
 # The page is tried beside them, as a browser mostly waits; what it says follows.
 run-tests-built: all $(EVERY_TEST)
 	@tests/browser/run $(abspath $(BUILD))/rugo >$(BUILD)/browser.log 2>&1 & browser=$$!; \
@@ -227,7 +233,7 @@ run-tests-built: all $(EVERY_TEST)
 browser: all
 	@tests/browser/run $(abspath $(BUILD))/rugo
 unit validation system: all
-	@$(MAKE) --no-print-directory $(call all_tests,$@)
+	@$(MAKE) --no-print-directory -j$$(nproc) $(call all_tests,$@)
 	@RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(call all_tests,$@)
 
 # Faults: every allocation of a test program, and of the program itself, fails in turn; a hook is linked in.
@@ -303,16 +309,18 @@ $(foreach target,$(call all_tests,fuzz),$(eval $(call FUZZ_TARGET,$(target))))
 run-fuzz: $(patsubst %,run-fuzz-%,$(filter-out $(WITHOUT),$(notdir $(call all_tests,fuzz))))
 .PHONY: fuzz fuzz-deps run-fuzz
 
-# Under sanitizers: all unit tests, or (for SAN=thread) those of the layers that own threads, and
-# system tests but those that count what is lost or reported within seconds, or memory, which the sanitizer takes. Left
-# out as well are those without a second thread (map_commands), and those whose study or store alone is special, while its
-# threads do what they do in test_workers and test_publishing.
-UNTIMED := $(filter-out $(addprefix %/test_,same_answer slurm supervised target target_coverage \
-	commands contact_shown python memory map_commands own_heights third_kind like names folders),$(TESTS_system_server))
+# Under sanitizers: all unit tests, or (for SAN=thread) those of the layers that own threads, and system tests but those
+# that count what is lost or reported within seconds, or memory, which the sanitizer takes. Left out as well are those
+# without a second thread (map_commands), and those whose study or store alone is special, while its threads do what they
+# do in test_workers and test_publishing. WITHOUT="a b": but for test_a and test_b.
+UNTIMED := $(filter-out $(addprefix %/test_,same_answer slurm supervised target commands contact_shown python memory \
+	map_commands own_heights third_kind like names folders),$(TESTS_system_server))
+UNIT     = $(filter-out $(addprefix %/test_,$(WITHOUT)),$(call all_tests,unit))
+THREADED = $(filter-out $(addprefix %/test_,$(WITHOUT)), \
+	$(TESTS_unit_worker) $(filter %/test_team,$(TESTS_unit_core)) $(UNTIMED))
 run-unit:
-	@$(MAKE) --no-print-directory -j$$(nproc) $(call all_tests,unit)
-	@tests/run-tests $(call all_tests,unit)
-THREADED = $(TESTS_unit_worker) $(filter %/test_team,$(TESTS_unit_core)) $(UNTIMED)
+	@$(MAKE) --no-print-directory -j$$(nproc) $(UNIT)
+	@tests/run-tests $(UNIT)
 run-threads:
 	@$(MAKE) --no-print-directory -j$$(nproc) all $(THREADED)
 	@TSAN_OPTIONS=suppressions=$(abspath tests/thread-sanitizer.txt) \

@@ -3,8 +3,6 @@
 #include <math.h>
 #include <stddef.h>
 
-#define INLINE static inline __attribute__((always_inline))
-
 /* --- shape --- */
 
 /* Fills parent[a][k] = dN_a/dxi_k at the points (+-reach, ...). */

@@ -7,10 +7,9 @@
 #define RUGO_CORE_FULL_PRINCIPAL_AXES_H
 
 #include "core/full/material.h"
+#include "core/vectors.h"
 #include <math.h>
 #include <string.h>
-
-#define INLINE static inline __attribute__((always_inline))
 
 /* --- principal values of a symmetric matrix --- */
 

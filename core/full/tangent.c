@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define INLINE static inline __attribute__((always_inline))
-
 static size_t slot_count(const struct mesh *mesh) {
     return mesh->dimension == 2 ? 6 : 18;
 }

@@ -1,7 +1,7 @@
-/* How long tests take. `make test` tries a third of each table of cases that take long; with
- * RUGO_EFFORT=n, as `make nightly` has it, all of them are tried, with n times as many
- * realisations, which makes standard errors, and with them tolerances, smaller. Tests that draw
- * problems, or let some of many allocations fail, take n times as many. */
+/* How long tests take. `make test` and `make validation` try a third of each table of cases that
+ * take long. With RUGO_EFFORT=n, as `make nightly` has it, all of them are tried, with n times as
+ * many realisations, which makes standard errors, and with them tolerances, smaller. Tests that
+ * draw problems, or let some of many allocations fail, take n times as many. */
 #ifndef RUGO_TESTS_SUPPORT_EFFORT_H
 #define RUGO_TESTS_SUPPORT_EFFORT_H
 

@@ -93,8 +93,6 @@ static void layer_stiffness_add_symbol(int dimension, double block[9][3][3],
         }
 }
 
-#define INLINE static inline __attribute__((always_inline))
-
 enum { ZONES_MOST = 32 };
 
 /* Arrays by wave hold the waves of a level, innermost, in the layout of transform.h; the levels
