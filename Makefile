@@ -196,11 +196,11 @@ $(BUILD)/rugo.bash: $(BUILD)/rugo
 
 # Tests: tests/<ladder>/<layer>/<name>.c is a program; tests/*.c are shared by all of them. They compute little
 # themselves, and are compiled in half of the time; all are linked by gold in half of it, where there is one. It
-# warns of hundreds of symbols of clang's sanitizers.
+# warns of hundreds of symbols of clang's sanitizers, with which lld takes a quarter.
 $(foreach folder,support system faults fuzz unit validation,$(eval \
     $(BUILD)/tests/$(folder)/%.c.o: private LEVEL = $$(if $$(MODE),-O0,-O1)) \
     $(eval $(BUILD)/tests/$(folder)/%.c.o: private SYMBOLS = -g1))
-GOLD := $(if $(SAN),,$(if $(shell command -v ld.gold),-fuse-ld=gold))
+LINKER := $(if $(SAN),$(if $(shell command -v ld.lld),-fuse-ld=lld),$(if $(shell command -v ld.gold),-fuse-ld=gold))
 SUPPORT = $(call objects,$(wildcard tests/support/*.c))
 # What draws whole inputs by choices: an archive, of which each test links what it uses.
 DRAWING = $(BUILD)/libdrawing.a
@@ -210,7 +210,7 @@ define TESTS
 TESTS_$(1)_$(2) = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/$(1)/$(2)/*.c))
 $$(TESTS_$(1)_$(2)): $(BUILD)/%: $(BUILD)/%.c.o $(SUPPORT) $(DRAWING) $(call archive,$(BELOW_$(2)))
 	$(say) LD $$@
-	$(Q)$(LINK) $(GOLD) -pie -o $$@ $$^ -lcmocka $(LIBS_$(2)) $(LDLIBS)
+	$(Q)$(LINK) $(LINKER) -pie -o $$@ $$^ -lcmocka $(LIBS_$(2)) $(LDLIBS)
 $(1)-$(2): $$(TESTS_$(1)_$(2))
 	tests/run-tests $$^
 .PHONY: $(1)-$(2)
@@ -255,7 +255,7 @@ WORLD   = $(call objects,$(wildcard tests/support/faults/*.c))
 TESTS_system_faults := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/system/faults/*.c))
 $(TESTS_system_faults): $(BUILD)/%: $(BUILD)/%.c.o $(WORLD) $(SUPPORT) $(call archive,$(BELOW_server))
 	$(say) LD $@
-	$(Q)$(LINK) $(GOLD) -pie -o $@ $^ -lcmocka $(LIBS_server) $(LDLIBS)
+	$(Q)$(LINK) $(LINKER) -pie -o $@ $^ -lcmocka $(LIBS_server) $(LDLIBS)
 SHIM = $(BUILD)/tests/system/faults/failing_writes.so
 $(TESTS_system_faults): | $(SHIM)
 $(SHIM): $(BUILD)/tests/support/failing/failing_writes.c.o
@@ -288,7 +288,7 @@ $(call all_tests,fuzz): $(REPLAY)
 fuzz: fuzz-deps
 	@$(MAKE) --no-print-directory -j$$(nproc) BUILD=$(BUILD)-fuzz CC=clang SAN=address,undefined,fuzzer-no-link run-fuzz
 fuzz-deps: deps
-	@tests/install-deps "" "clang libclang-rt-dev" clang
+	@tests/install-deps "" "clang libclang-rt-dev lld" clang ld.lld
 # Its threads are at work while libFuzzer looks for leaks after an input; those at the end are found.
 FUZZ_FLAGS_requests = -detect_leaks=0
 define FUZZ_TARGET

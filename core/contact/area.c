@@ -77,21 +77,21 @@ void contact_area(struct area_workspace *workspace, const struct contact_state *
     if (state->yielded > 0)
         error = (struct mesh_error){0};
     out->mean_gap = state->mean_gap - error.weighting - error.compliance;
-    out->edges_yielded = edges.yielded;
+    out->edges_unknown = edges.unknown;
     /* The pressure that the exact block would have at this mean gap, less the mesh's. */
     double pressure =
         state->tangent == NULL
             ? 0
             : -state->stiffness * (law->weighting * error.weighting + error.compliance);
     double less = edges.rate * pressure;
-    if (edges.yielded_sides > 0) /* edges between nodes have no curvature to correct for */
-        edges.patches *= fmax(0, 1 - edges.yielded_sides / edges.sides);
+    if (edges.unknown_sides > 0) /* edges between nodes have no curvature to correct for */
+        edges.patches *= fmax(0, 1 - edges.unknown_sides / edges.sides);
     out->edges = within(out, edges.straight + law->patch * edges.patches - less);
     out->perimeter = NAN;
     if (grid_is_profile(grid))
         return;
     /* A side across x is dy long, and contact by nodes reaches beyond it along x by a fraction of
      * dx; for sides across y the axes are exchanged. */
-    out->perimeter = within(out, out->nodes - law->overlap * (edges.sides - edges.yielded_sides) +
+    out->perimeter = within(out, out->nodes - law->overlap * (edges.sides - edges.unknown_sides) +
                                      law->patch_of_nodes * edges.patches - less);
 }

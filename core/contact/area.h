@@ -15,10 +15,10 @@ struct contact_area {
      * boundary of their cells (after Yastrebov, Anciaux & Molinari 2017); profiles: NaN. */
     double perimeter;
     double mean_gap; /* without the mesh's error to first order (mesh_error.h); the grid's length */
-    /* Beside yielded nodes edges, and perimeter, are half a step beyond them. By how much the edge
-     * can be off if it lies anywhere between these nodes and the open ones: edges lies within this
-     * of the true area. 0 where no edge is beside a yielded node. */
-    double edges_yielded;
+    /* Beside yielded nodes, and where the face ends in a side, edges and perimeter are half a step
+     * beyond the nodes in contact. By how much the edge can be off if it lies anywhere between
+     * these and the open ones: edges lies within this of the true area. 0 where no edge is. */
+    double edges_unknown;
 };
 
 struct area_law;

@@ -55,6 +55,9 @@ static const struct measure NO_MEASURE = {.shown = never_shown, .kept = never_ke
     ROW(NODES_UPPER, one_case->nodes, false, now * area.upper,                                     \
         "contact_area", "nodes_upper", "A/A0", AREA,                                               \
         1, COUNTED, PRESSURE, FALLS, SAME, SOME, AREA)                                             \
+    ROW(EDGES_UNKNOWN, false, false, now * area.edges_unknown,                                     \
+        "contact_area", "edges_unknown", "A/A0", NONE, 1, COUNTED, PRESSURE, FALLS, SAME, SOME,    \
+        AREA)                                                                                      \
     ROW(PERIMETER, one_case->perimeter, one_case->perimeter,                                       \
         stretch_fraction(area.perimeter, open_now),                                                \
         "contact_area", "perimeter", "A/A0", AREA, 1, COUNTED, PRESSURE, FALLS, SAME, SOME, AREA)  \

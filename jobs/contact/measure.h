@@ -17,7 +17,9 @@ enum contact_measure {
     MEASURE_GAP,             /* mean gap/sqrt(m0) */
     MEASURE_NODES_LOWER,
     MEASURE_NODES_UPPER,
-    MEASURE_STIFFNESS, /* -d(p/(E* h'))/d(gap/sqrt(m0)); none in full contact */
+    MEASURE_EDGES_UNKNOWN, /* by how much edges and perimeter may be off where the law of edges does
+                              not hold: beside yielded nodes, and where the face ends in a side */
+    MEASURE_STIFFNESS,     /* -d(p/(E* h'))/d(gap/sqrt(m0)); none in full contact */
     MEASURE_PATCHES,
     MEASURE_PATCH_MEAN, /* share of the cell; none without patches */
     MEASURE_PATCH_LARGEST,

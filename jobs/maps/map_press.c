@@ -112,6 +112,58 @@ static int measure_periodic(struct map_press *press, const struct height_map *ma
     return 0;
 }
 
+/* How far the summit rises above the highest point along an axis, and by how much more it may. */
+struct rise {
+    double by, most;
+};
+
+/* Returns the height above `here` at which the line that falls to `before` on one side meets the
+ * one through the two points on the other side. */
+static double lines_meet(double before, double here, double after, double beyond) {
+    double up = here - before, down = after - beyond;
+    double at = up + down > 0 ? (after + down - here) / (up + down) : 0;
+    return at > 0 ? up * fmin(at, 1) : 0;
+}
+
+/* z: five heights along the axis, the highest in the middle. The parabola through three of them
+ * has the summit of a smooth face, whose bend is alike at the next points; a face that bends at the
+ * top alone is a cone there, and rises to where its sides meet. */
+static struct rise rise_along(const double z[5]) {
+    double bend = 2 * z[2] - z[1] - z[3], beside = z[1] + z[3] - (z[0] + z[2] + z[4] + z[2]) / 2;
+    if (!(bend > 0))
+        return (struct rise){0, 0};
+    double sharp = fmin(fmax(1 - beside / bend, 0), 1);
+    double cone = fmax(lines_meet(z[1], z[2], z[3], z[4]), lines_meet(z[3], z[2], z[1], z[0]));
+    return (struct rise){(z[3] - z[1]) * (z[3] - z[1]) / (8 * bend), sharp * cone};
+}
+
+/* Adds what the axis says whose points are `step` apart, `count` of them; top is number `at` of
+ * these. Within two points of a side of an open map there are too few. */
+static void add_rise(const double *z, size_t top, size_t at, size_t count, size_t step, bool open,
+                     struct rise *sum) {
+    double five[5];
+    if (count == 1 || (open && (at < 2 || at + 2 >= count)))
+        return;
+    for (size_t a = 0; a < 5; a++)
+        five[a] = z[top - at * step + (at + a + count - 2) % count * step];
+    struct rise along = rise_along(five);
+    sum->by += along.by;
+    sum->most += along.most;
+}
+
+/* Finds the rise of the summit above the highest point, of which the first counts. */
+static void find_summit(struct map_press *press, const struct height_map *map, bool open) {
+    const size_t nx = map->grid.nx, ny = map->grid.ny;
+    struct rise sum = {0, 0};
+    size_t top = 0;
+    for (size_t p = 1; p < nx * ny; p++)
+        top = map->z[p] > map->z[top] ? p : top;
+    add_rise(map->z, top, top % nx, nx, 1, open, &sum);
+    add_rise(map->z, top, top / nx, ny, nx, open, &sum);
+    press->summit = sum.by;
+    press->summit_unknown = sum.by + sum.most;
+}
+
 static int measure(struct map_press *press, const struct height_map *map, bool periodic,
                    struct error *err) {
     int status = periodic ? measure_periodic(press, map, err) : measure_open(press, map, err);
@@ -257,6 +309,8 @@ int map_press_begin(struct map_press *press, struct height_map *map, enum press_
         press->copies = grid_is_profile(&map->grid) ? 2 : 4;
     }
     press->grid = map->grid;
+    if (status == 0)
+        find_summit(press, map, boundary == PRESS_OPEN);
     return status == 0 && !grid_is_profile(&map->grid) ? count_summits(press, map, err) : status;
 }
 
@@ -346,7 +400,7 @@ static int measure_load(struct map_press *press, const struct contact_pressed *p
     for (size_t m = 0; m < MODEL_MEASURES_MOST; m++)
         value[MEASURE_OWN + m] = pressed->own[m];
     value[PRESS_PEAK] = largest(grid_points(&press->grid), state->p) / press->slope;
-    value[PRESS_APPROACH] = state->approach / press->height;
+    value[PRESS_APPROACH] = (state->approach + press->summit) / press->height;
     value[PRESS_CONTACT_NODES] = (double)state->nodes / press->copies;
     if (press->asperities != NULL && !contact_case_is_coated(&press->one_case)) {
         double load = value[PRESS_LOAD];

@@ -99,10 +99,12 @@ struct press_watch {
 };
 
 struct map_press {
-    struct grid map;      /* as it was measured */
-    struct grid grid;     /* as it is pressed: mirrored 2nx x 2ny */
-    double copies;        /* of the map in that */
-    double slope, height; /* RMS, of the map */
+    struct grid map;       /* as it was measured */
+    struct grid grid;      /* as it is pressed: mirrored 2nx x 2ny */
+    double copies;         /* of the map in that */
+    double slope, height;  /* RMS, of the map */
+    double summit;         /* how far the summit rises above the highest point, by parabolas ... */
+    double summit_unknown; /* and by how much that may be off */
     enum press_boundary boundary;
     struct team *team;            /* threads that work along; borrowed; NULL: the caller alone */
     double seconds_most;          /* CPU seconds that each block over the map may take; 0: any */

@@ -3,12 +3,13 @@
  * What each source is estimated from:
  * discretisation: the change from every second point along each axis, under the same force. It is
  *     the error where that falls with the spacing, more where it falls faster. At single loads the
- *     change may vanish. Of `full` what wider columns in the depth leave is added, as in studies.
- * block: the pair of an exact layer and a half-space on the map, where the block is low
- *     (block_error.h).
- * model: the difference to the most complete of the models asked for; of this one, where it is
- *     linear, the area's first order of sideways strain (FORMULAS.md, F14.5).
- * solver: the tolerance and the number of nodes in contact (contact_errors.h).
+ *     change may vanish. Where edges are sides, or yielded, the area errs by half a step besides,
+ *     and the approach by what the summit rises above the points. Of `full` what wider columns in
+ * the depth leave is added, as in studies. block: the pair of an exact layer and a half-space on
+ * the map, where the block is low (block_error.h). model: the difference to the most complete of
+ * the models asked for; of this one, where it is linear, the area's first order of sideways strain
+ * (FORMULAS.md, F14.5). solver: the tolerance and the number of nodes in contact
+ * (contact_errors.h).
  *
  * One map has no error of sampling, and nothing is known of its cell and its generation. */
 #ifndef RUGO_JOBS_MAPS_MAP_PRESS_ERROR_H

@@ -4,15 +4,16 @@
 #include <stdlib.h>
 
 /* Adds to the sums, in cells, the area between the edge of a crossing and the cells of the nodes in
- * contact. yielded: so is the node inside. */
+ * contact. yielded: so is the node inside. Where it has, or where the face ends in a side, the edge
+ * stays on the border of its cell. */
 static void add_crossing(const struct edge_crossing *x, const struct edge_law *law,
                          const struct contact_state *state, const double *rise, bool yielded,
                          struct edge_area *sums) {
     struct edge_found f = edge_find(x, law, rise);
-    if (yielded) {
+    if (yielded || f.side) {
         double part = !isnan(f.lone) ? (x->profile ? 1 : 0.5) : f.part;
-        sums->yielded += 0.5 * part;
-        sums->yielded_sides += 1;
+        sums->unknown += 0.5 * part;
+        sums->unknown_sides += 1;
         return;
     }
     if (!isnan(f.lone)) { /* met once on each side: twice in a profile, four times in a surface */
@@ -169,8 +170,8 @@ void edge_area_measure(struct edge_scan *scan, const struct contact_state *state
         area->lower += sums->lower;
         area->upper += sums->upper;
         area->sides += sums->sides;
-        area->yielded += sums->yielded;
-        area->yielded_sides += sums->yielded_sides;
+        area->unknown += sums->unknown;
+        area->unknown_sides += sums->unknown_sides;
     }
     /* A profile has neither cells nor sides of them. */
     const bool profile = grid_is_profile(&scan->grid);
@@ -181,6 +182,6 @@ void edge_area_measure(struct edge_scan *scan, const struct contact_state *state
                               .lower = area->lower / n,
                               .upper = area->upper / n,
                               .sides = profile ? 0 : area->sides / n,
-                              .yielded = area->yielded / n,
-                              .yielded_sides = profile ? 0 : area->yielded_sides / n};
+                              .unknown = area->unknown / n,
+                              .unknown_sides = profile ? 0 : area->unknown_sides / n};
 }

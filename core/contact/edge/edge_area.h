@@ -20,10 +20,10 @@ struct edge_area {
     double lower;   /* segments (profiles) or cells with all corners in contact ... */
     double upper;   /* ... and with any */
     double sides;   /* of nodes in contact that face open ones, over the number of nodes */
-    /* Where the node in contact has yielded its pressure says nothing of the edge, which is put
-     * half a step beyond, as node counting does. */
-    double yielded;       /* the area between such edges and either node beside them */
-    double yielded_sides; /* such sides, over the number of nodes */
+    /* Where the node in contact has yielded, or the face ends in a side (edge_found.side), its
+     * pressure says nothing of the edge, which is put half a step beyond, as node counting does. */
+    double unknown;       /* the area between such edges and either node beside them */
+    double unknown_sides; /* such sides, over the number of nodes */
 };
 
 /* Measures the area of states on one grid. */

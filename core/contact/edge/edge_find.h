@@ -59,6 +59,10 @@ struct edge_found {
                      in cells, and all else is undefined */
     double part;  /* weight of the crossing: the squared cosine between line and normal */
     double share; /* t at the inside node */
+    /* The face ends in a side, as that of a punch does: beside a smooth edge the pressure falls
+     * towards it, beside a side it rises without limit (Johnson 1985, chapter 2). Seen where three
+     * nodes in contact lie on the line. Then the law holds for none of the values here. */
+    bool side;
     double slope, bend; /* inside the edge, rise = slope t (1 - bend t) */
     double next;        /* rise at the next node further inside, by the law over that found */
     double reach;       /* the largest t that an inside node can have, wherever the edge lies */

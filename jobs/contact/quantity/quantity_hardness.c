@@ -50,7 +50,7 @@ static int measure(struct quantity_state *state, const struct measure_context *c
     values[AREA] = (double)contact->yielded / context->points;
     values[LOAD] = contact->plastic_load;
     values[VOLUME] = contact->plastic_volume / context->rms_height;
-    values[EDGES] = area->edges_yielded;
+    values[EDGES] = area->edges_unknown;
     values[UNLOAD_STIFFNESS] = measure_stiffness(context, contact->unload_stiffness);
     return 0;
 }

@@ -261,7 +261,7 @@ static void stiffnesses_are_differences(void **state) {
 /* --- areas --- */
 
 /* Edges beside yielded nodes are those of node counting, half a step off at most: on a soft face
- * all are, on an elastic one none. */
+ * all are, on an elastic one those few that look like sides (F12.4). */
 static void areas_beside_yielded_nodes(void **state) {
     (void)state;
     for (size_t a = 0; a < 4; a++) {
@@ -271,15 +271,16 @@ static void areas_beside_yielded_nodes(void **state) {
         hard_scene(&plain, GRIDS[a], DEEP, 1e9, a);
         scene_press(&soft, 0.3 * hardness);
         struct contact_area area = scene_area(&soft);
-        assert_true(area.edges_yielded > 0);
+        assert_true(area.edges_unknown > 0);
         check_close(area.nodes, (double)soft.state.nodes / n, 1e-15);
         check_close(area.edges, area.nodes, 2 / n); /* but for the one elastic node */
         if (GRIDS[a].ny > 1)
             check_close(area.perimeter, area.nodes, 2 / n);
-        assert_true(area.edges_yielded <= 0.5 * (area.upper - area.lower) + 2 / n);
+        assert_true(area.edges_unknown <= 0.5 * (area.upper - area.lower) + 2 / n);
         check_relative(area.mean_gap, soft.state.mean_gap, 1e-14);
         scene_press(&plain, 0.3 * contact_full_pressure(plain.contact));
-        assert_true(scene_area(&plain).edges_yielded == 0);
+        area = scene_area(&plain);
+        assert_true(area.edges_unknown <= 0.01 * (area.upper - area.lower));
         scene_close(&soft);
         scene_close(&plain);
     }

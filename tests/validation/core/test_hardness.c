@@ -323,10 +323,10 @@ static void areas_lie_within_their_bracket(void **state) {
         double relative = HARDNESS[a % 3], part = PARTS[a / 3 % 3];
         struct contact_area coarse = area_on(draw, profile ? 256 : 72, profile, relative, part);
         struct contact_area fine = area_on(draw, profile ? 2048 : 288, profile, relative, part);
-        double bracket = coarse.edges_yielded + fine.edges_yielded;
+        double bracket = coarse.edges_unknown + fine.edges_unknown;
         worst = fmax(worst, (fabs(coarse.edges - fine.edges) - 0.03 * fine.edges) / bracket);
         mean += fabs(coarse.edges / fine.edges - 1) / 18;
-        uncertain += coarse.edges_yielded;
+        uncertain += coarse.edges_unknown;
         check_close(coarse.edges, fine.edges, bracket + 0.03 * fine.edges);
     }
     print_message("beyond 3 %%: %.2f of a bracket at most; on average %.2g of the area\n", worst,
