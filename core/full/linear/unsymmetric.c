@@ -72,10 +72,11 @@ static int arrays_create(struct unsymmetric *lu, struct error *err) {
 int unsymmetric_create(struct unsymmetric **out, const struct mesh *mesh, struct error *err) {
     *out = NULL;
     if (mesh->dimension != 2)
-        return error_set(err, ERROR_INPUT,
-                         "friction at finite strain is of profiles, not of surfaces of %zu x %zu "
-                         "nodes",
-                         mesh->level[0].nx, mesh->level[0].ny);
+        return error_set(
+            err, ERROR_INPUT,
+            "a sparse factorisation with friction is of profiles, not of surfaces of %zu "
+            "x %zu nodes",
+            mesh->level[0].nx, mesh->level[0].ny);
     if (entries_of(mesh) > INT_MAX)
         return error_set(err, ERROR_INPUT,
                          "friction at finite strain on a mesh of %zu nodes; allowed: matrices of "

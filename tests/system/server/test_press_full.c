@@ -146,8 +146,9 @@ static void what_has_no_meaning_is_refused(void **state) {
     }
     check_shell("awk 'BEGIN { for (i = 0; i < 256; i++) printf \"%.5f%c\", cos(i * 0.3), i % 16 < "
                 "15 ? 44 : 10 }' > small.csv");
-    assert_int_equal(run_shell("$RUGO press small.csv --dx 10 --model full --friction 0.2"), 2);
-    assert_true(contains("shell.err", "that of profiles alone, and this is a surface; --model"));
+    assert_int_equal(
+        run_shell("$RUGO press small.csv --dx 10 --model full --friction 0.2 --direction y"), 2);
+    assert_true(contains("shell.err", "--direction y: the model full drags the flat along x"));
 }
 
 int main(void) {
