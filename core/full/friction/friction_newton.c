@@ -255,7 +255,7 @@ static void fill_sticking(struct friction_newton *n) {
     for (size_t node = 0; node < n->mesh->face; node++) {
         if (n->node[node] == NODE_STICKS || turns(n, node) || n->conditions.drive->flat != 0)
             return;
-        for (size_t k = 0; n->node[node] != NODE_FREE && k < n->sideways; k++)
+        for (size_t k = 0; n->node[node] != NODE_FREE && k < n->sideways && k < SIDEWAYS_MOST; k++)
             excess.of[k] += sliding_share(n, node, k) * pressing(n, node);
     }
     for (size_t node = 0; node < n->mesh->face; node++) {
@@ -373,6 +373,18 @@ static int solve(struct friction_newton *n, double tolerance, double *x, struct 
     return status == 0 ? unsymmetric_solve(n->lu, tolerance, x, &end->work, err) : status;
 }
 
+/* Sets what is driven to its goal, which iterations leave by their tolerance. */
+static void meet_drives(const struct friction_newton *n, const struct friction_goal *goal,
+                        struct motion *motion) {
+    for (size_t k = 0; k < n->sideways; k++) {
+        const struct drive *drive = &n->conditions.drive[k];
+        if (drive->flat == 0)
+            motion->shear[k] = drive_left(n, goal, k) / drive->shear;
+        else if (drive->shear == 0)
+            motion->flat[k] = drive_left(n, goal, k) / drive->flat;
+    }
+}
+
 /* off: the present residual in the units of the tolerance; the next one will be about its square.
  * Replaces change by Newton's change of u. */
 static int newton_step(struct friction_newton *n, const struct friction_goal *goal, double off,
@@ -403,6 +415,8 @@ static int newton_step(struct friction_newton *n, const struct friction_goal *go
     *motion = (struct motion){0};
     memcpy(motion->shear, behind, sideways * sizeof *behind);
     memcpy(motion->flat, behind + sideways, sideways * sizeof *behind);
+    if (n->gmres != NULL)
+        meet_drives(n, goal, motion);
     return 0;
 }
 

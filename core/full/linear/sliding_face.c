@@ -128,18 +128,19 @@ static void multiply(struct sliding_face *s, const double *matrix, bool divides,
         transform_forward(s->plan[i], in + i * s->face);
         spectrum[i] = transform_spectrum(s->plan[i]);
     }
+    double complex *vertical = transform_spectrum(s->plan[d - 1]);
     for (size_t wave = 0; wave < n; wave++) {
         double complex t[AXES], sum[AXES] = {0};
         double weight = s->weight != NULL ? s->weight[wave] : 1;
         for (size_t j = 0; j + 1 < d; j++)
             t[j] = -I * spectrum[j][wave];
-        t[d - 1] = spectrum[d - 1][wave] / (divides ? weight : 1);
+        t[d - 1] = vertical[wave] / (divides ? weight : 1);
         for (size_t i = 0; i < d; i++)
             for (size_t j = 0; j < d; j++)
                 sum[i] += matrix[(i * d + j) * n + wave] * t[j];
         for (size_t i = 0; i + 1 < d; i++)
             spectrum[i][wave] = I * sum[i];
-        spectrum[d - 1][wave] = sum[d - 1] * (divides ? 1 : weight);
+        vertical[wave] = sum[d - 1] * (divides ? 1 : weight);
     }
     for (size_t i = 0; i < d; i++)
         transform_inverse(s->plan[i], out + i * s->face);
@@ -216,8 +217,19 @@ static double share_of(const struct sliding_face *s, size_t node, size_t axis) {
     return does(s, node) == NODE_STICKS ? 1 : 0;
 }
 
-/* Fills the motions that a residual has on average, and moves it by them. */
-static void settle_motions(struct sliding_face *s, const double *residual, double *r, double *out) {
+/* Adds to slip what a residual of a node in contact slips, by the share of the node. */
+static void add_slip(const struct sliding_face *s, const double *residual, size_t node,
+                     double slip[SIDEWAYS_MOST]) {
+    bool slides = face_node_slides(does(s, node));
+    double drop = slides ? along(s, node, residual) : 0;
+    double slips = slides ? s->local * turning_force(s, node) : 1;
+    for (size_t k = 0; k + 1 < s->d; k++)
+        slip[k] +=
+            slips * (residual[k * s->face + node] - (slides ? drop * direction_of(s, node)[k] : 0));
+}
+
+/* Fills the motions that a residual has on average. */
+static void find_motions(const struct sliding_face *s, const double *residual, double *motions) {
     const struct face_conditions *of = s->conditions;
     size_t d = s->d, face = s->face, contact = 0;
     double vertical = 0, slip[SIDEWAYS_MOST] = {0};
@@ -226,23 +238,24 @@ static void settle_motions(struct sliding_face *s, const double *residual, doubl
             continue;
         contact++;
         vertical += residual[(d - 1) * face + node];
-        bool slides = face_node_slides(does(s, node));
-        double drop = slides ? along(s, node, residual) : 0;
-        double slips = slides ? s->local * turning_force(s, node) : 1;
-        for (size_t k = 0; k + 1 < d; k++)
-            slip[k] += slips *
-                       (residual[k * face + node] - (slides ? drop * direction_of(s, node)[k] : 0));
+        add_slip(s, residual, node, slip);
     }
-    out[d - 1] = vertical / (double)contact;
+    motions[d - 1] = vertical / (double)contact;
     for (size_t k = 0; k + 1 < d; k++)
-        out[k] = of->drive[k].flat != 0 ? residual[d * face + k] / of->drive[k].flat
-                 : s->bearing[k] > 0    ? -slip[k] / s->bearing[k]
-                                        : 0;
+        motions[k] = of->drive[k].flat != 0 ? residual[d * face + k] / of->drive[k].flat
+                     : s->bearing[k] > 0    ? -slip[k] / s->bearing[k]
+                                            : 0;
+}
+
+/* r = the residual of what is held, moved by the motions. */
+static void take_motions(const struct sliding_face *s, const double *residual,
+                         const double *motions, double *r) {
+    size_t d = s->d, face = s->face;
     for (size_t node = 0; node < face; node++) {
         bool touches = does(s, node) != NODE_FREE, sticks = does(s, node) == NODE_STICKS;
         for (size_t k = 0; k + 1 < d; k++)
-            r[k * face + node] = sticks ? residual[k * face + node] + out[k] : 0;
-        r[(d - 1) * face + node] = touches ? residual[(d - 1) * face + node] - out[d - 1] : 0;
+            r[k * face + node] = sticks ? residual[k * face + node] + motions[k] : 0;
+        r[(d - 1) * face + node] = touches ? residual[(d - 1) * face + node] - motions[d - 1] : 0;
     }
 }
 
@@ -268,7 +281,8 @@ static void precondition(struct sliding_face *s, const double *residual, double 
     const struct face_conditions *of = s->conditions;
     size_t d = s->d, face = s->face, contact = 0;
     double *motions = out + d * face, sum[AXES] = {0};
-    settle_motions(s, residual, s->sum, motions);
+    find_motions(s, residual, motions);
+    take_motions(s, residual, motions, s->sum);
     multiply(s, s->inverse, true, s->sum, out);
     for (size_t node = 0; node < face; node++) {
         bool touches = does(s, node) != NODE_FREE;

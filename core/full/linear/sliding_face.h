@@ -19,14 +19,14 @@ int sliding_face_create(struct sliding_face **out, const struct mesh *mesh,
 void sliding_face_destroy(struct sliding_face **handle);
 double sliding_face_bytes(const struct mesh *mesh);
 /* Returns the number of values of a vector. */
-size_t sliding_face_values(const struct sliding_face *face);
+size_t sliding_face_values(const struct sliding_face *sliding);
 
 /* Solves for forces on the nodes in contact, and the motions. The given values are, of a node in
  * contact, the weighted vertical displacement; of one that sticks, its displacement over the flat;
  * of one that slides, what the changes of face_conditions.h are to be; then the drives, and the sum
  * of the vertical forces. Down to a residual of `tolerance` times that of 0, or as near as some
  * iterations come. */
-void sliding_face_solve(struct sliding_face *face, const struct face_conditions *conditions,
+void sliding_face_solve(struct sliding_face *sliding, const struct face_conditions *conditions,
                         const double *given, double tolerance, double *out);
 
 #endif

@@ -139,6 +139,15 @@ static double drawn(uint64_t *seed) {
     return (double)(next_word(seed) >> 11) * 0x1p-53;
 }
 
+/* Where a node is, over the sides of the cell. */
+struct at {
+    double x, y;
+};
+static struct at at_of(const struct grid *grid, size_t node) {
+    const size_t column = node % grid->nx, row = node / grid->nx;
+    return (struct at){(double)column / (double)grid->nx, (double)row / (double)grid->ny};
+}
+
 /* Waves of random phases, down to one of so many nodes, of this RMS slope; ridges are the same
  * along y. */
 static void roughen(struct dragged *d, bool ridges, double nodes, double slope, uint64_t seed) {
@@ -154,9 +163,8 @@ static void roughen(struct dragged *d, bool ridges, double nodes, double slope, 
                 continue;
             square += height * height * k * k * 2 * M_PI * M_PI;
             for (size_t i = 0; i < count(d); i++) {
-                double x = (double)(i % nx) / (double)nx;
-                double y = (double)(i / nx) / (double)d->grid.ny;
-                d->z[i] += height * cos(2 * M_PI * (m * x + row * y + phase));
+                struct at at = at_of(&d->grid, i);
+                d->z[i] += height * cos(2 * M_PI * (m * at.x + row * at.y + phase));
             }
         }
     for (size_t i = 0; i < count(d); i++)
@@ -268,8 +276,7 @@ static double stick_radius(const struct grid *grid, double friction, const doubl
                            const double *q, const double *across) {
     double moment = 0, sum = 0;
     for (size_t i = 0; i < grid_points(grid); i++) {
-        double x = (double)(i % grid->nx) / (double)grid->nx - 0.5;
-        double y = (double)(i / grid->nx) / (double)grid->ny - 0.5;
+        double x = at_of(grid, i).x - 0.5, y = at_of(grid, i).y - 0.5;
         double excess = friction * p[i] - hypot(q[i], across[i]);
         moment += (x * x + y * y) * excess;
         sum += excess;
@@ -284,8 +291,7 @@ static double sphere_pressure(void) {
 
 static void round_off(struct dragged *d) {
     for (size_t i = 0; i < count(d); i++) {
-        double x = (double)(i % d->grid.nx) / (double)d->grid.nx - 0.5;
-        double y = (double)(i / d->grid.nx) / (double)d->grid.ny - 0.5;
+        double x = at_of(&d->grid, i).x - 0.5, y = at_of(&d->grid, i).y - 0.5;
         d->z[i] = -(x * x + y * y) / (2 * SPHERE);
     }
 }
@@ -435,7 +441,7 @@ static void energy(void **state) {
 static void mirror_image(void **state) {
     (void)state;
     enum { N = 16 };
-    struct dragged *one = opened(N, N, 0.2, 0.4, 3), *other = opened(N, N, 0.2, 0.4, 3);
+    struct dragged *one = opened(N, N, 0.2, 0.4, 1), *other = opened(N, N, 0.2, 0.4, 1);
     roughen(one, false, 8, 0.2, 5);
     for (size_t i = 0; i < N * N; i++)
         other->z[i] = one->z[(N - i / N) % N * N + (N - i % N) % N];
