@@ -199,11 +199,15 @@ static const double PROFILE_FACTOR_BYTES = 900, SURFACE_FACTOR_BYTES = 6500;
  * of freedom. */
 static const double PROFILE_TRANSFORMS = 95, SURFACE_TRANSFORMS = 280;
 
-/* Nanoseconds a degree of freedom of a step with friction, which rise by this power of their number
- * over FRICTION_FREEDOM, and with pressures as unknowns by a factor; bytes with those of the
- * factorisation. */
+/* Of profiles, nanoseconds a degree of freedom of a step with friction, which rise by this power of
+ * their number over FRICTION_FREEDOM, and with pressures as unknowns by a factor; bytes with those
+ * of the factorisation. */
 static const double FRICTION_NS = 8000, FRICTION_FREEDOM = 4000, FRICTION_POWER = 0.35;
 static const double FRICTION_PRESSURES = 1.9, FRICTION_BYTES = 2100;
+/* Of surfaces, loads without friction that take as long, and bytes of a degree of freedom, more
+ * with pressures as unknowns. */
+static const double SURFACE_FRICTION_LOADS = 1.15;
+static const double SURFACE_FRICTION_BYTES = 510, SURFACE_PRESSURE_BYTES = 100;
 
 struct full_size cost_full_size(const struct grid *grid, const struct block *block,
                                 const struct full_options *options, double rms_slope) {
@@ -260,7 +264,12 @@ double cost_full_bytes(const struct grid *grid, const struct block *block,
     return isnan(bytes) ? 0 : bytes;
 }
 
-double cost_friction_steps(const struct full_size *size, double steps) {
+double cost_friction_steps(const struct grid *grid, const struct full_size *size, double steps) {
+    if (!grid_is_profile(grid)) {
+        struct full_size iterated = *size;
+        iterated.factored = false;
+        return SURFACE_FRICTION_LOADS * steps * cost_full_contact(grid, &iterated, 1);
+    }
     double slower = pow(size->degrees_of_freedom / FRICTION_FREEDOM, FRICTION_POWER) *
                     (size->pressures ? FRICTION_PRESSURES : 1);
     return 1e-9 * FRICTION_NS * slower * size->degrees_of_freedom * steps;
@@ -268,7 +277,10 @@ double cost_friction_steps(const struct full_size *size, double steps) {
 
 double cost_friction_bytes(const struct grid *grid, const struct block *block,
                            const struct full_options *options, const struct full_size *size) {
-    return cost_full_bytes(grid, block, options, size) + FRICTION_BYTES * size->degrees_of_freedom;
+    double bytes = FRICTION_BYTES;
+    if (!grid_is_profile(grid))
+        bytes = SURFACE_FRICTION_BYTES + (size->pressures ? SURFACE_PRESSURE_BYTES : 0);
+    return cost_full_bytes(grid, block, options, size) + bytes * size->degrees_of_freedom;
 }
 
 double cost_full_transforms(const struct grid *grid) {

@@ -62,10 +62,11 @@ struct full_limit cost_full_limit(const struct grid *grid, const struct full_siz
                                   double seconds);
 double cost_full_bytes(const struct grid *grid, const struct block *block,
                        const struct full_options *options, const struct full_size *size);
-/* CPU seconds of steps with friction of profiles (core/full/friction), and bytes of their solver.
- * Of seven studies of 128 to 512 points, slopes to 0.3 and Poisson's ratios to 0.4999, on a busy
- * machine, the time was 0.87 to 1.31 of the estimate, the memory 0.95 to 1.02. */
-double cost_friction_steps(const struct full_size *size, double steps);
+/* CPU seconds of steps with friction (core/full/friction), and bytes of their solver. Of seven
+ * studies of profiles of 128 to 512 points, slopes to 0.3 and Poisson's ratios to 0.4999, on a busy
+ * machine, the time was 0.87 to 1.31 of the estimate, the memory 0.95 to 1.02; of six studies of
+ * surfaces of 16 x 16 to 64 x 64 points 0.81 to 1.20, and the memory 0.93. */
+double cost_friction_steps(const struct grid *grid, const struct full_size *size, double steps);
 double cost_friction_bytes(const struct grid *grid, const struct block *block,
                            const struct full_options *options, const struct full_size *size);
 /* Returns the number of Fourier transforms of a point, the unit of contact_state.work, that take as

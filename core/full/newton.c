@@ -239,13 +239,13 @@ static int solve_factored(struct newton *n, double tolerance, struct newton_end 
     if (status != 0)
         return status;
     end->factored++;
-    struct linear_system system = {n->tangent, n->active, n->factorisation};
+    struct linear_system system = {n->tangent, n->active, n->factorisation, NULL};
     return gmres_solve(n->gmres, &system, tolerance, n->change, &end->linear, err);
 }
 
 static int solve_iterated(struct newton *n, double tolerance, struct newton_end *end,
                           struct error *err) {
-    struct linear_system system = {n->tangent, n->active, NULL};
+    struct linear_system system = {n->tangent, n->active, NULL, NULL};
     return gmres_solve(n->gmres, &system, tolerance, n->change, &end->linear, err);
 }
 

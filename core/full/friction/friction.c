@@ -10,17 +10,18 @@
 /* What a step starts from. Lengths in this file are in units of dx, the mesh's unit. */
 struct point {
     double *u;           /* unknowns of friction_newton */
-    double *traction;    /* by node of the face: force along it */
+    double *traction;    /* [node * sideways + axis]: force along the face */
     unsigned char *node; /* enum face_node */
-    double shear, flat, pressure;
+    double *direction;   /* of sliding nodes, as traction */
+    double shear[SIDEWAYS_MOST], flat[SIDEWAYS_MOST], pressure;
 };
 
 struct friction {
     struct full_options options;
     double coefficient;
     size_t press_steps;
-    size_t face;
-    struct full *full; /* owned, as all below: the contact without friction */
+    size_t face, sideways; /* nodes, and directions of the face */
+    struct full *full;     /* owned, as all below: the contact without friction */
     const struct mesh *mesh;
     struct friction_newton newton;
     struct point kept; /* of the last step that converged */
@@ -29,8 +30,9 @@ struct friction {
     double gap_without;
     double start_flat, start_sliding, start_far, start_energy; /* at the end of pressing */
     double work, dissipation;                                  /* since then */
-    double *start;              /* by node of the face: displacement over the flat then */
-    double *p, *q, *gap, *slip; /* by node of the face: results */
+    double *start;    /* [node * sideways + axis]: displacement over the flat then */
+    double *p, *gap;  /* by node of the face: results */
+    double *q, *slip; /* [axis * face + node] */
 };
 
 static int options_check(const struct friction_options *friction, struct error *err) {
@@ -45,12 +47,13 @@ static int arrays_create(struct friction *f, struct error *err) {
         double **array;
         size_t count;
     } const arrays[] = {{&f->kept.u, f->newton.unknowns},
-                        {&f->kept.traction, f->face},
-                        {&f->start, f->face},
+                        {&f->kept.traction, f->face * f->sideways},
+                        {&f->kept.direction, f->face * f->sideways},
+                        {&f->start, f->face * f->sideways},
                         {&f->p, f->face},
-                        {&f->q, f->face},
+                        {&f->q, f->face * f->sideways},
                         {&f->gap, f->face},
-                        {&f->slip, f->face}};
+                        {&f->slip, f->face * f->sideways}};
     for (size_t a = 0; a < sizeof arrays / sizeof *arrays; a++) {
         *arrays[a].array = array_create(arrays[a].count, sizeof(double));
         if (*arrays[a].array == NULL)
@@ -78,8 +81,9 @@ int friction_create(struct friction **out, const struct grid *grid, const struct
     if (status == 0) {
         f->mesh = full_mesh(f->full);
         f->face = f->mesh->face;
+        f->sideways = (size_t)f->mesh->dimension - 1;
         status = friction_newton_create(&f->newton, f->mesh, &material, block->weighting,
-                                        friction->coefficient, err);
+                                        friction->coefficient, full_newton(f->full)->gmres, err);
     }
     if (status == 0)
         status = arrays_create(f, err);
@@ -102,6 +106,7 @@ void friction_destroy(struct friction **friction) {
     free(f->kept.u);
     free(f->kept.traction);
     free(f->kept.node);
+    free(f->kept.direction);
     free(f->p);
     free(f->q);
     free(f->gap);
@@ -127,14 +132,26 @@ int friction_begin(struct friction *f, const double *z, struct error *err) {
 
 /* --- steps --- */
 
+/* Returns the index of a node's displacement or force along an axis of the face. */
+static size_t along(const struct friction *f, size_t node, size_t axis) {
+    return node * (f->sideways + 1) + axis;
+}
+
+/* Returns a node's displacement over the flat in the last state, along an axis. */
+static double over_flat(const struct friction *f, size_t node, size_t axis) {
+    return f->kept.u[along(f, node, axis)] - f->kept.flat[axis];
+}
+
 static void keep(struct friction *f, double pressure) {
     const struct friction_newton *n = &f->newton;
     memcpy(f->kept.u, n->u, n->unknowns * sizeof *n->u);
     memcpy(f->kept.node, n->node, f->face);
+    memcpy(f->kept.direction, n->direction, f->face * f->sideways * sizeof *n->direction);
     for (size_t node = 0; node < f->face; node++)
-        f->kept.traction[node] = n->force[node * 2];
-    f->kept.shear = n->shear;
-    f->kept.flat = n->flat;
+        for (size_t k = 0; k < f->sideways; k++)
+            f->kept.traction[node * f->sideways + k] = n->force[along(f, node, k)];
+    memcpy(f->kept.shear, n->shear, sizeof n->shear);
+    memcpy(f->kept.flat, n->flat, sizeof n->flat);
     f->kept.pressure = pressure;
 }
 
@@ -142,15 +159,17 @@ static void restore(struct friction *f) {
     struct friction_newton *n = &f->newton;
     memcpy(n->u, f->kept.u, n->unknowns * sizeof *n->u);
     memcpy(n->node, f->kept.node, f->face);
-    n->shear = f->kept.shear;
-    n->flat = f->kept.flat;
+    memcpy(n->direction, f->kept.direction, f->face * f->sideways * sizeof *n->direction);
+    memcpy(n->shear, f->kept.shear, sizeof n->shear);
+    memcpy(n->flat, f->kept.flat, sizeof n->flat);
     n->evaluated = false;
 }
 
 /* Slip counts from the last point. */
 static void settle(struct friction *f) {
     for (size_t node = 0; node < f->face; node++)
-        f->newton.reference[node] = f->kept.u[node * 2] - f->kept.flat;
+        for (size_t k = 0; k < f->sideways; k++)
+            f->newton.reference[node * f->sideways + k] = over_flat(f, node, k);
 }
 
 /* Adds what the step to the present state worked and dissipated. */
@@ -158,10 +177,13 @@ static void add_works(struct friction *f) {
     const struct friction_newton *n = &f->newton;
     struct sum slid = {0};
     for (size_t node = 0; node < f->face; node++)
-        sum_add(&slid,
-                (n->force[node * 2] + f->kept.traction[node]) / 2 * friction_newton_slip(n, node));
+        for (size_t k = 0; k < f->sideways; k++)
+            sum_add(&slid,
+                    (n->force[along(f, node, k)] + f->kept.traction[node * f->sideways + k]) / 2 *
+                        friction_newton_slip(n, node, k));
     f->dissipation -= sum_value(&slid);
-    f->work += (n->shear + f->kept.shear) / 2 * (n->flat - f->kept.flat);
+    for (size_t k = 0; k < f->sideways; k++)
+        f->work += (n->shear[k] + f->kept.shear[k]) / 2 * (n->flat[k] - f->kept.flat[k]);
 }
 
 /* Takes the nodes in contact without friction under this pressure for a guess; from no contact the
@@ -220,8 +242,13 @@ static int step_to(struct friction *f, const struct friction_goal *goal, double 
 }
 
 static double drive_now(const struct friction *f) {
-    const struct drive *drive = &f->newton.conditions.drive;
-    return drive->flat * f->kept.flat + drive->shear * f->kept.shear;
+    const struct drive *drive = f->newton.conditions.drive;
+    return drive->flat * f->kept.flat[0] + drive->shear * f->kept.shear[0];
+}
+
+/* In squares of the mesh's unit; of profiles in units. */
+static double face_area(const struct friction *f) {
+    return (double)f->face * f->mesh->across;
 }
 
 /* Goes from the last point to a goal, in one step or in smaller ones, which grow again as those of
@@ -256,7 +283,7 @@ static int follow(struct friction *f, const struct friction_goal *goal, struct f
                                  "contact with friction %g under a mean pressure of %g E* and a "
                                  "traction of %g E* was followed over %.3g of a step only; the "
                                  "next %.2g of it failed",
-                                 f->coefficient, f->kept.pressure, f->kept.shear / (double)f->face,
+                                 f->coefficient, f->kept.pressure, f->kept.shear[0] / face_area(f),
                                  done, 2 * step);
     }
     return 0;
@@ -272,7 +299,7 @@ static double far_height(const struct friction *f) {
 static double flat_over_face(const struct friction *f) {
     struct sum sum = {0};
     for (size_t node = 0; node < f->face; node++)
-        sum_add(&sum, f->kept.flat - f->kept.u[node * 2]);
+        sum_add(&sum, f->kept.flat[0] - f->kept.u[along(f, node, 0)]);
     return sum_value(&sum) / (double)f->face;
 }
 
@@ -282,12 +309,15 @@ static void fill_nodes(struct friction *f, struct friction_state *out) {
     friction_newton_measure_gaps(n);
     for (size_t node = 0; node < f->face; node++) {
         bool touches = n->node[node] != NODE_FREE, sticks = n->node[node] == NODE_STICKS;
-        double force = n->force[node * 2 + 1];
+        double force = n->force[mesh_vertical(f->mesh, node)] / f->mesh->across;
         /* As in full_press, callers recognise contact by p > 0. */
         f->p[node] = touches ? fmax(DBL_MIN, force) : 0;
-        f->q[node] = touches ? n->force[node * 2] : 0;
         f->gap[node] = n->gap[node] * f->mesh->unit;
-        f->slip[node] = touches ? (n->u[node * 2] - n->flat - f->start[node]) * f->mesh->unit : NAN;
+        for (size_t k = 0; k < f->sideways; k++) {
+            double slip = over_flat(f, node, k) - f->start[node * f->sideways + k];
+            f->q[k * f->face + node] = touches ? n->force[along(f, node, k)] / f->mesh->across : 0;
+            f->slip[k * f->face + node] = touches ? slip * f->mesh->unit : NAN;
+        }
         out->nodes += touches;
         out->stuck += sticks;
         sum_add(&all, f->p[node]);
@@ -299,19 +329,21 @@ static void fill_nodes(struct friction *f, struct friction_state *out) {
 
 static void fill_state(struct friction *f, struct friction_state *out) {
     const struct friction_newton *n = &f->newton;
-    double by_area = f->mesh->unit / (double)f->face;
+    double by_area = f->mesh->unit / face_area(f);
     bool deforms = n->material.kinematics != KINEMATICS_SMALL;
     fill_nodes(f, out);
     out->pressure = f->kept.pressure;
-    out->traction = f->kept.shear / (double)f->face;
+    out->traction = f->kept.shear[0] / face_area(f);
     out->p = f->p;
     out->q = f->q;
     out->gap = f->gap;
     out->slip = f->slip;
+    out->q_across = f->sideways > 1 ? f->q + f->face : NULL;
+    out->slip_across = f->sideways > 1 ? f->slip + f->face : NULL;
     out->gap_without = f->gap_without;
     out->nodes_without = f->nodes_without;
     out->mean_gap = face_mean_gap(f->mesh, deforms ? n->u : NULL, n->gap) * f->mesh->unit;
-    out->displacement = (f->kept.flat - f->start_flat) * f->mesh->unit;
+    out->displacement = (f->kept.flat[0] - f->start_flat) * f->mesh->unit;
     out->sliding = (flat_over_face(f) - f->start_sliding) * f->mesh->unit;
     out->work = f->work * by_area;
     out->dissipation = f->dissipation * by_area;
@@ -327,7 +359,8 @@ static void lift(struct friction *f) {
     memset(n->u, 0, n->unknowns * sizeof *n->u);
     memset(n->force, 0, n->unknowns * sizeof *n->force);
     memset(n->node, NODE_FREE, f->face);
-    n->shear = n->flat = 0;
+    memset(n->shear, 0, sizeof n->shear);
+    memset(n->flat, 0, sizeof n->flat);
     n->evaluated = false;
     keep(f, 0);
 }
@@ -338,15 +371,17 @@ static int press_without(struct friction *f, double pressure, struct friction_st
                          struct error *err) {
     struct friction_newton *n = &f->newton;
     size_t first = mesh_far_side(f->mesh);
-    struct sum sum = {0};
     int status = guess(f, pressure, out, err);
     if (status != 0)
         return status;
-    for (size_t node = first; node < f->mesh->nodes; node++)
-        sum_add(&sum, n->u[node * 2]);
-    double mean = sum_value(&sum) / (double)(f->mesh->nodes - first);
-    for (size_t node = 0; node < f->mesh->nodes; node++)
-        n->u[node * 2] -= mean;
+    for (size_t k = 0; k < f->sideways; k++) {
+        struct sum sum = {0};
+        for (size_t node = first; node < f->mesh->nodes; node++)
+            sum_add(&sum, n->u[along(f, node, k)]);
+        double mean = sum_value(&sum) / (double)(f->mesh->nodes - first);
+        for (size_t node = 0; node < f->mesh->nodes; node++)
+            n->u[along(f, node, k)] -= mean;
+    }
     if (!tangent_evaluate(f->mesh, &n->material, n->u, &n->energy, n->force, n->tangent))
         return error_set(err, ERROR_NUMERIC,
                          "an element is turned inside out under a mean pressure of %g E*",
@@ -359,7 +394,7 @@ static int press_without(struct friction *f, double pressure, struct friction_st
 static int press_with(struct friction *f, double pressure, struct friction_state *out,
                       struct error *err) {
     int status = 0;
-    f->newton.conditions.drive = (struct drive){.shear = 1};
+    friction_newton_drive(&f->newton, (struct drive){.shear = 1});
     for (size_t step = 1; status == 0 && step <= f->press_steps; step++) {
         double root = (double)step / (double)f->press_steps;
         struct friction_goal goal = {.pressure = pressure * root * root};
@@ -375,7 +410,8 @@ int friction_press(struct friction *f, double pressure, struct friction_state *o
                          pressure);
     struct friction_state state = {0};
     f->pressed = false;
-    unsymmetric_forget(f->newton.lu);
+    if (f->newton.lu != NULL)
+        unsymmetric_forget(f->newton.lu);
     lift(f);
     int status = f->press_steps > 0 ? press_with(f, pressure, &state, err)
                                     : press_without(f, pressure, &state, err);
@@ -383,12 +419,13 @@ int friction_press(struct friction *f, double pressure, struct friction_state *o
         return status;
     f->pressed = true;
     f->work = f->dissipation = 0;
-    f->start_flat = f->kept.flat;
+    f->start_flat = f->kept.flat[0];
     f->start_sliding = flat_over_face(f);
     f->start_far = far_height(f);
     f->start_energy = f->newton.energy;
     for (size_t node = 0; node < f->face; node++)
-        f->start[node] = f->kept.u[node * 2] - f->kept.flat;
+        for (size_t k = 0; k < f->sideways; k++)
+            f->start[node * f->sideways + k] = over_flat(f, node, k);
     fill_state(f, &state);
     *out = state;
     return 0;
@@ -402,7 +439,7 @@ static int pressed_check(const struct friction *f, struct error *err) {
 static int move(struct friction *f, struct drive drive, double goal, struct friction_state *out,
                 struct error *err) {
     struct friction_state state = {0};
-    f->newton.conditions.drive = drive;
+    friction_newton_drive(&f->newton, drive);
     struct friction_goal end = {f->kept.pressure, goal};
     int status = follow(f, &end, &state, err);
     if (status != 0)
@@ -434,5 +471,5 @@ int friction_load(struct friction *f, double traction, struct friction_state *ou
                            f->coefficient * f->kept.pressure);
     if (status != 0)
         return status;
-    return move(f, (struct drive){.shear = 1}, traction * (double)f->face, out, err);
+    return move(f, (struct drive){.shear = 1}, traction * face_area(f), out, err);
 }

@@ -1,10 +1,11 @@
-/* Contact of a rough profile with a rigid flat by finite elements at finite strain, with friction
+/* Contact of a rough face with a rigid flat by finite elements at finite strain, with friction
  * after Coulomb (F14.7): the model `full` (core/full/full.h), pressed on without friction or with
  * it, and then dragged along.
  *
- * The flat is pressed on with a mean pressure. Then it is dragged to displacements along the face,
- * or the mean traction is taken to values below friction times the pressure. Both may rise and
- * fall; the pressure stays. Slip of a step is that since the step before: a path is as fine as its
+ * The flat is pressed on with a mean pressure. Then it is dragged to displacements along x, or the
+ * mean traction along x is taken to values below friction times the pressure. Both may rise and
+ * fall; the pressure stays. Across x, on surfaces, the flat is free to follow, and the mean
+ * traction is 0. Slip of a step is that since the step before: a path is as fine as its
  * steps, and a step that fails is halved. Tractions are forces of the flat on the block over the
  * tributary areas of the flat grid, in E* = E/(1 - nu^2), positive where the flat pulls forward.
  *
@@ -25,32 +26,33 @@ struct friction_options {
  * grid's unit, works by area in E* times it, all since the end of pressing. */
 struct friction_state {
     double pressure, traction; /* means */
-    const double *p, *q;       /* by node of the face: pressures and tractions */
+    const double *p, *q;       /* by node of the face: pressures, and tractions along x */
     const double *gap;
-    const double *slip;   /* of the nodes in contact over the flat; NaN of others */
-    double mean_gap;      /* as that of full_press */
-    double gap_without;   /* that without friction, under the same pressure */
-    size_t nodes_without; /* in contact, likewise */
-    size_t nodes, stuck;  /* in contact, and those of them that do not slide */
-    double stick_area;    /* stuck over nodes */
-    double stick_load;    /* pressures of stuck nodes over all */
-    double displacement;  /* of the flat over the mean of the far side */
-    double sliding;       /* of the flat over the mean of the face */
-    double work;          /* of the traction on the flat, by trapezoids */
-    double pressing_work; /* of the pressure on the far side */
-    double dissipation;   /* by slip on the face, by trapezoids */
-    double energy;        /* gained by the block */
-    size_t steps, cuts;   /* of this call: steps that converged, and steps that were halved */
-    size_t newton;        /* iterations, those without friction too */
-    size_t linear;        /* iterations of the equations with friction */
-    size_t factored;      /* their factorisations */
-    double residual;      /* largest out-of-balance force, over the largest contact force */
+    const double *slip; /* of the nodes in contact over the flat, along x; NaN of others */
+    const double *q_across, *slip_across; /* likewise along y; NULL of profiles */
+    double mean_gap;                      /* as that of full_press */
+    double gap_without;                   /* that without friction, under the same pressure */
+    size_t nodes_without;                 /* in contact, likewise */
+    size_t nodes, stuck;                  /* in contact, and those of them that do not slide */
+    double stick_area;                    /* stuck over nodes */
+    double stick_load;                    /* pressures of stuck nodes over all */
+    double displacement;                  /* of the flat over the mean of the far side */
+    double sliding;                       /* of the flat over the mean of the face */
+    double work;                          /* of the traction on the flat, by trapezoids */
+    double pressing_work;                 /* of the pressure on the far side */
+    double dissipation;                   /* by slip on the face, by trapezoids */
+    double energy;                        /* gained by the block */
+    size_t steps, cuts; /* of this call: steps that converged, and steps that were halved */
+    size_t newton;      /* iterations, those without friction too */
+    size_t linear;      /* iterations of the equations with friction */
+    size_t factored;    /* their factorisations */
+    double residual;    /* largest out-of-balance force, over the largest contact force */
 };
 
 struct friction;
 
-/* ERROR_INPUT for options out of the ranges above, what full_create refuses, or a grid that is no
- * profile; ERROR_MEMORY. */
+/* ERROR_INPUT for options out of the ranges above, what full_create refuses, or a profile of too
+ * many nodes; ERROR_MEMORY. */
 int friction_create(struct friction **out, const struct grid *grid, const struct block *block,
                     const struct full_options *options, const struct friction_options *friction,
                     struct error *err);
@@ -58,7 +60,7 @@ void friction_destroy(struct friction **friction);
 /* As full_set_stop. */
 void friction_set_stop(struct friction *friction, int (*stop)(void *context), void *context);
 
-/* Takes a profile, as full_begin. */
+/* Takes a surface, as full_begin. */
 int friction_begin(struct friction *friction, const double *z, struct error *err);
 /* Presses to a mean pressure above 0, from no contact, and begins works and displacements at 0.
  * Without friction the pressures are those of full_press. ERROR_NUMERIC names the load that was

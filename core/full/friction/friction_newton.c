@@ -14,10 +14,14 @@ static const double COMPLEMENTARITY = 1;
 static const double TRUSTED = 0.1, TRUSTED_ONE = 1e-4;
 static const double LINEAR_MOST = 1e-3, LINEAR_PART = 0.1;
 static const double ROUNDINGS = 8, ROUNDING_MOST = 0.01;
+/* A direction that has so much across the first axis. */
+static const double TURNED = 0.1;
 enum { HALVINGS = 8, PATIENCE = 10, RETURNS = 3 };
 
 static int arrays_create(struct friction_newton *n, struct error *err) {
     const size_t unknowns = n->unknowns, face = n->mesh->face;
+    const size_t linear =
+        n->gmres != NULL ? gmres_friction_unknowns(n->gmres) : mesh_degrees_of_freedom(n->mesh) + 2;
     struct {
         double **array;
         size_t count;
@@ -25,8 +29,10 @@ static int arrays_create(struct friction_newton *n, struct error *err) {
                         {&n->force, unknowns},
                         {&n->before, unknowns},
                         {&n->change, unknowns},
-                        {&n->step, mesh_degrees_of_freedom(n->mesh) + 2},
-                        {&n->reference, face},
+                        {&n->step, linear},
+                        {&n->reference, face * n->sideways},
+                        {&n->direction, face * n->sideways},
+                        {&n->turn, face},
                         {&n->gap, face},
                         {&n->opening, face}};
     for (size_t a = 0; a < sizeof arrays / sizeof *arrays; a++) {
@@ -34,20 +40,26 @@ static int arrays_create(struct friction_newton *n, struct error *err) {
         if (*arrays[a].array == NULL)
             return error_memory(err, arrays[a].count * sizeof(double), "contact with friction");
     }
+    n->conditions.direction = n->direction;
+    n->conditions.turn = n->turn;
     n->conditions.node = n->node = array_create(face, sizeof *n->node);
     return n->node != NULL ? 0 : error_memory(err, face, "contact with friction");
 }
 
 int friction_newton_create(struct friction_newton *out, const struct mesh *mesh,
                            const struct material *material, enum gap_weighting weighting,
-                           double friction, struct error *err) {
+                           double friction, struct gmres *gmres, struct error *err) {
     bool pressures = gmres_needs_pressures(material);
     *out = (struct friction_newton){
         .mesh = mesh,
         .material = *material,
         .unknowns = mesh_unknowns(mesh, pressures),
-        .conditions = {.friction = friction, .weighting = weighting, .drive = {.flat = 1}}};
-    int status = unsymmetric_create(&out->lu, mesh, err);
+        .sideways = (size_t)mesh->dimension - 1,
+        .gmres = mesh->dimension == 3 ? gmres : NULL,
+        .conditions = {.friction = friction, .stiffness = COMPLEMENTARITY, .weighting = weighting}};
+    friction_newton_drive(out, (struct drive){.flat = 1});
+    int status = out->gmres != NULL ? gmres_add_friction(gmres, weighting, err)
+                                    : unsymmetric_create(&out->lu, mesh, err);
     if (status == 0)
         status = tangent_create(&out->tangent, mesh, pressures, err);
     if (status == 0)
@@ -58,8 +70,8 @@ int friction_newton_create(struct friction_newton *out, const struct mesh *mesh,
 }
 
 void friction_newton_clear(struct friction_newton *n) {
-    double *const arrays[] = {n->u,    n->force,     n->before, n->change,
-                              n->step, n->reference, n->gap,    n->opening};
+    double *const arrays[] = {n->u,         n->force, n->before,  n->change,    n->step,
+                              n->reference, n->gap,   n->opening, n->direction, n->turn};
     for (size_t a = 0; a < sizeof arrays / sizeof *arrays; a++)
         free(arrays[a]);
     free(n->node);
@@ -68,30 +80,56 @@ void friction_newton_clear(struct friction_newton *n) {
     *n = (struct friction_newton){0};
 }
 
-void friction_newton_measure_gaps(struct friction_newton *n) {
+void friction_newton_drive(struct friction_newton *n, struct drive drive) {
+    n->conditions.drive[0] = drive;
+    for (size_t k = 1; k < SIDEWAYS_MOST; k++)
+        n->conditions.drive[k] = (struct drive){.shear = 1};
+}
+
+/* The weighted gaps of a profile. */
+static void weigh(struct friction_newton *n) {
     size_t face = n->mesh->face;
     double beside = n->conditions.weighting == GAP_STANDARD ? 1.0 / 6 : 0;
-    for (size_t node = 0; node < face; node++)
-        n->gap[node] = n->mesh->height[node] + n->u[mesh_vertical(n->mesh, node)] - n->flat_height;
     for (size_t node = 0; node < face; node++)
         n->opening[node] = (1 - 2 * beside) * n->gap[node] +
                            beside * (n->gap[(node + face - 1) % face] + n->gap[(node + 1) % face]);
 }
 
-double friction_newton_slip(const struct friction_newton *n, size_t node) {
-    return n->u[node * 2] - n->flat - n->reference[node];
+void friction_newton_measure_gaps(struct friction_newton *n) {
+    for (size_t node = 0; node < n->mesh->face; node++)
+        n->gap[node] = n->mesh->height[node] + n->u[mesh_vertical(n->mesh, node)] - n->flat_height;
+    if (n->gmres != NULL)
+        gmres_weigh(n->gmres, n->gap, n->opening);
+    else
+        weigh(n);
+}
+
+/* Returns the index of a node's displacement or force along an axis of the face. */
+static size_t along(const struct friction_newton *n, size_t node, size_t axis) {
+    return node * (n->sideways + 1) + axis;
+}
+
+double friction_newton_slip(const struct friction_newton *n, size_t node, size_t axis) {
+    return n->u[along(n, node, axis)] - n->flat[axis] - n->reference[node * n->sideways + axis];
+}
+
+static double slip_size(const struct friction_newton *n, size_t node) {
+    double across = n->sideways > 1 ? friction_newton_slip(n, node, 1) : 0;
+    return hypot(friction_newton_slip(n, node, 0), across);
 }
 
 static double pressing(const struct friction_newton *n, size_t node) {
-    return n->force[node * 2 + 1];
+    return n->force[mesh_vertical(n->mesh, node)];
 }
 
 /* Rounding errors, as in newton.c. */
 static double gap_rounding(const struct friction_newton *n) {
-    return ROUNDINGS * DBL_EPSILON * fmax(fabs(n->flat_height), fabs(n->flat));
+    double flat = fmax(fabs(n->flat[0]), fabs(n->flat[1]));
+    return ROUNDINGS * DBL_EPSILON * fmax(fabs(n->flat_height), flat);
 }
 static double force_rounding(const struct friction_newton *n) {
-    return gap_rounding(n) * (2 * n->material.shear + n->material.local + n->material.mean);
+    return gap_rounding(n) * (2 * n->material.shear + n->material.local + n->material.mean) *
+           n->mesh->across;
 }
 
 static double largest_force(const struct friction_newton *n) {
@@ -103,37 +141,85 @@ static double largest_force(const struct friction_newton *n) {
 
 /* --- what nodes do --- */
 
-/* What a node does next, and the force by which what it does contradicts its forces, gap and
- * slip. */
+/* What a node does next, forward for any direction, and the force by which what it does contradicts
+ * its forces, gap and slip. */
 struct verdict {
     enum face_node next;
     double wrong;
 };
 
-static enum face_node towards(double traction) {
-    return traction > 0 ? NODE_FORWARD : NODE_BACKWARD;
+/* The force along the face that a node would have, if what it slipped were undone: q - c w. */
+struct trial {
+    double of[SIDEWAYS_MOST], size;
+};
+
+static struct trial try_node(const struct friction_newton *n, size_t node) {
+    struct trial trial = {.size = 0};
+    for (size_t k = 0; k < n->sideways; k++)
+        trial.of[k] =
+            n->force[along(n, node, k)] - COMPLEMENTARITY * friction_newton_slip(n, node, k);
+    trial.size = hypot(trial.of[0], trial.of[1]);
+    return trial;
+}
+
+/* Makes a node slide in the direction of its trial. */
+static void point(struct friction_newton *n, size_t node, const struct trial *trial) {
+    double *e = n->direction + node * n->sideways;
+    double friction = n->conditions.friction * fmax(0, pressing(n, node));
+    for (size_t k = 0; k < n->sideways; k++)
+        e[k] = trial->size > 0 ? trial->of[k] / trial->size : k == 0 ? -1 : 0;
+    n->turn[node] = trial->size > friction ? friction / trial->size : 1;
+    n->node[node] = e[0] > 0 ? NODE_FORWARD : NODE_BACKWARD;
+}
+
+/* Returns what a trial has in a sliding node's direction. */
+static double forward(const struct friction_newton *n, size_t node, const struct trial *trial) {
+    double sum = 0;
+    for (size_t k = 0; k < n->sideways; k++)
+        sum += n->direction[node * n->sideways + k] * trial->of[k];
+    return sum;
+}
+
+/* Lets the directions of sliding nodes follow their trials. One that turns back keeps its own, by
+ * which it is judged. */
+static void follow_directions(struct friction_newton *n) {
+    for (size_t node = 0; node < n->mesh->face; node++) {
+        if (!face_node_slides(n->node[node]))
+            continue;
+        struct trial trial = try_node(n, node);
+        if (forward(n, node, &trial) > 0)
+            point(n, node, &trial);
+    }
 }
 
 static struct verdict judge(const struct friction_newton *n, size_t node) {
     enum face_node does = n->node[node];
+    struct trial trial = try_node(n, node);
     double normal = pressing(n, node) - COMPLEMENTARITY * n->opening[node];
-    double trial = n->force[node * 2] - COMPLEMENTARITY * friction_newton_slip(n, node);
     double bound = n->conditions.friction * fmax(0, normal);
-    enum face_node in_contact = fabs(trial) < bound ? NODE_STICKS : towards(trial);
     switch (does) {
     case NODE_FREE:
-        return (struct verdict){in_contact, -COMPLEMENTARITY * n->opening[node]};
+        return (struct verdict){trial.size < bound ? NODE_STICKS : NODE_FORWARD,
+                                -COMPLEMENTARITY * n->opening[node]};
     case NODE_STICKS:
-        if (normal <= 0 && -normal >= fabs(trial) - bound)
+        if (normal <= 0 && -normal >= trial.size - bound)
             return (struct verdict){NODE_FREE, -normal};
-        return (struct verdict){towards(trial), fabs(trial) - bound};
+        return (struct verdict){NODE_FORWARD, trial.size - bound};
     case NODE_FORWARD:
     case NODE_BACKWARD:
         break;
     }
-    double lack = bound - (does == NODE_FORWARD ? trial : -trial);
+    double lack = bound - forward(n, node, &trial);
     return -normal > fmax(0, lack) ? (struct verdict){NODE_FREE, -normal}
                                    : (struct verdict){NODE_STICKS, lack};
+}
+
+/* A node that begins to slide does so in the direction of its trial. */
+static void change(struct friction_newton *n, size_t node, enum face_node next) {
+    struct trial trial = try_node(n, node);
+    n->node[node] = (unsigned char)next;
+    if (face_node_slides(next))
+        point(n, node, &trial);
 }
 
 /* Makes the nearest node stick when none touches, because some node must carry the load. */
@@ -148,25 +234,33 @@ static void fill_contact(struct friction_newton *n) {
     n->node[nearest] = NODE_STICKS;
 }
 
-/* The part of a sliding node's pressure that its traction is. */
-static double sliding_share(const struct friction_newton *n, size_t node) {
-    return n->node[node] == NODE_FORWARD ? n->conditions.friction : -n->conditions.friction;
+/* The part of a sliding node's pressure that its traction along an axis is. */
+static double sliding_share(const struct friction_newton *n, size_t node, size_t axis) {
+    return n->conditions.friction * n->direction[node * n->sideways + axis];
 }
 
-/* Where a given shear leaves no node sticking, the flat follows the excess of the sliding nodes'
- * tractions until one of those in its direction stops: makes the one that slid least stick. */
+/* Returns whether a sliding node holds the flat along the first axis, as its direction turns. */
+static bool turns(const struct friction_newton *n, size_t node) {
+    return face_node_slides(n->node[node]) && n->sideways > 1 &&
+           fabs(n->direction[node * n->sideways + 1]) > TURNED;
+}
+
+/* Where a given shear leaves no node sticking, and none turns, the flat follows the excess of the
+ * sliding nodes' tractions until one of those in its direction stops: makes the one that slid least
+ * stick. */
 static void fill_sticking(struct friction_newton *n) {
-    double excess = -n->shear, shortest = INFINITY;
+    struct trial excess = {.of = {-n->shear[0], -n->shear[1]}};
+    double shortest = INFINITY;
     size_t held = SIZE_MAX;
     for (size_t node = 0; node < n->mesh->face; node++) {
-        if (n->node[node] == NODE_STICKS || n->conditions.drive.flat != 0)
+        if (n->node[node] == NODE_STICKS || turns(n, node) || n->conditions.drive->flat != 0)
             return;
-        if (n->node[node] != NODE_FREE)
-            excess += sliding_share(n, node) * pressing(n, node);
+        for (size_t k = 0; n->node[node] != NODE_FREE && k < n->sideways && k < SIDEWAYS_MOST; k++)
+            excess.of[k] += sliding_share(n, node, k) * pressing(n, node);
     }
     for (size_t node = 0; node < n->mesh->face; node++) {
-        double slid = fabs(friction_newton_slip(n, node));
-        if (n->node[node] == (unsigned char)towards(excess) && slid < shortest) {
+        double slid = slip_size(n, node);
+        if (n->node[node] != NODE_FREE && forward(n, node, &excess) > 0 && slid < shortest) {
             shortest = slid;
             held = node;
         }
@@ -190,10 +284,10 @@ static size_t update(struct friction_newton *n, double least, bool one) {
             which = node;
         }
         if (!one)
-            n->node[node] = (unsigned char)verdict.next;
+            change(n, node, verdict.next);
     }
     if (one && changes > 0) {
-        n->node[which] = (unsigned char)worst.next;
+        change(n, which, worst.next);
         changes = 1;
     }
     fill_contact(n);
@@ -207,14 +301,15 @@ static size_t update(struct friction_newton *n, double least, bool one) {
  * where displacements are prescribed, `gap` says whether they are, or 0. */
 static void face_rows(const struct friction_newton *n, bool gap, double *x) {
     for (size_t node = 0; node < n->mesh->face; node++) {
-        double *row = x + 2 * node;
+        double *row = x + along(n, node, 0);
         if (n->node[node] == NODE_FREE)
             continue;
-        if (n->node[node] == NODE_STICKS)
-            row[0] = gap ? -friction_newton_slip(n, node) : 0;
-        else
-            row[0] -= sliding_share(n, node) * row[1];
-        row[1] = gap ? -n->opening[node] : 0;
+        for (size_t k = 0; k < n->sideways; k++)
+            if (n->node[node] == NODE_STICKS)
+                row[k] = gap ? -friction_newton_slip(n, node, k) : 0;
+            else
+                row[k] -= sliding_share(n, node, k) * row[n->sideways];
+        row[n->sideways] = gap ? -n->opening[node] : 0;
     }
 }
 
@@ -225,26 +320,29 @@ static void far_rows(const struct friction_newton *n, double pressure, double *x
     size_t first = mesh_far_side(mesh);
     double nodes = (double)(mesh->nodes - first);
     struct sum vertical = {0};
-    sum_add(&vertical, -pressure * (double)mesh->face);
+    sum_add(&vertical, -pressure * mesh->across * (double)mesh->face);
     for (size_t node = first; node < mesh->nodes; node++) {
-        x[node * 2] -= n->shear / nodes;
-        sum_add(&vertical, x[node * 2 + 1]);
-        x[node * 2 + 1] = 0;
+        for (size_t k = 0; k < n->sideways; k++)
+            x[along(n, node, k)] -= n->shear[k] / nodes;
+        sum_add(&vertical, x[mesh_vertical(mesh, node)]);
+        x[mesh_vertical(mesh, node)] = 0;
     }
-    x[first * 2 + 1] = sum_value(&vertical);
+    x[mesh_vertical(mesh, first)] = sum_value(&vertical);
 }
 
-static double far_mean(const struct friction_newton *n) {
+static double far_mean(const struct friction_newton *n, size_t axis) {
     size_t first = mesh_far_side(n->mesh);
     struct sum sum = {0};
     for (size_t node = first; node < n->mesh->nodes; node++)
-        sum_add(&sum, n->u[node * 2]);
+        sum_add(&sum, n->u[along(n, node, axis)]);
     return sum_value(&sum) / (double)(n->mesh->nodes - first);
 }
 
-static double drive_left(const struct friction_newton *n, const struct friction_goal *goal) {
-    const struct drive *drive = &n->conditions.drive;
-    return goal->drive - drive->flat * n->flat - drive->shear * n->shear;
+static double drive_left(const struct friction_newton *n, const struct friction_goal *goal,
+                         size_t axis) {
+    const struct drive *drive = &n->conditions.drive[axis];
+    return (axis == 0 ? goal->drive : 0) - drive->flat * n->flat[axis] -
+           drive->shear * n->shear[axis];
 }
 
 /* Returns the largest out-of-balance force, and that of sliding nodes' friction. */
@@ -259,34 +357,66 @@ static double residual(struct friction_newton *n, const struct friction_goal *go
     return largest;
 }
 
+/* What the flat and the shear change by. */
+struct motion {
+    double flat[SIDEWAYS_MOST], shear[SIDEWAYS_MOST];
+};
+
+/* Replaces the right side x by the solution. */
+static int solve(struct friction_newton *n, double tolerance, double *x, struct friction_end *end,
+                 struct error *err) {
+    if (n->gmres != NULL) {
+        struct linear_system system = {.tangent = n->tangent, .friction = &n->conditions};
+        return gmres_solve(n->gmres, &system, tolerance, x, &end->work.iterations, err);
+    }
+    int status = unsymmetric_set(n->lu, n->tangent, &n->conditions, err);
+    return status == 0 ? unsymmetric_solve(n->lu, tolerance, x, &end->work, err) : status;
+}
+
+/* Sets what is driven to its goal, which iterations leave by their tolerance. */
+static void meet_drives(const struct friction_newton *n, const struct friction_goal *goal,
+                        struct motion *motion) {
+    for (size_t k = 0; k < n->sideways; k++) {
+        const struct drive *drive = &n->conditions.drive[k];
+        if (drive->flat == 0)
+            motion->shear[k] = drive_left(n, goal, k) / drive->shear;
+        else if (drive->shear == 0)
+            motion->flat[k] = drive_left(n, goal, k) / drive->flat;
+    }
+}
+
 /* off: the present residual in the units of the tolerance; the next one will be about its square.
- * Replaces change by Newton's change of u, and *flat and *shear by those of flat and shear. */
+ * Replaces change by Newton's change of u. */
 static int newton_step(struct friction_newton *n, const struct friction_goal *goal, double off,
-                       double *flat, double *shear, struct friction_end *end, struct error *err) {
+                       struct motion *motion, struct friction_end *end, struct error *err) {
     double tolerance = fmin(fmax(LINEAR_PART * off, LINEAR_PART * n->tolerance / off), LINEAR_MOST);
-    size_t degrees_of_freedom = mesh_degrees_of_freedom(n->mesh);
-    bool pressures = n->unknowns > degrees_of_freedom;
-    double *x = n->step;
+    size_t degrees_of_freedom = mesh_degrees_of_freedom(n->mesh), sideways = n->sideways;
+    bool eliminated = n->gmres == NULL && n->unknowns > degrees_of_freedom;
+    size_t solved = eliminated ? degrees_of_freedom : n->unknowns;
+    double *x = n->step, *behind = x + solved;
     for (size_t f = 0; f < n->unknowns; f++)
         n->change[f] = -n->force[f];
-    memcpy(x, n->change, degrees_of_freedom * sizeof *x);
-    if (pressures)
+    memcpy(x, n->change, solved * sizeof *x);
+    if (eliminated)
         volumetric_forces(n->tangent->volumetric, n->change + degrees_of_freedom, -1, x);
     far_rows(n, goal->pressure, x);
     face_rows(n, true, x);
-    x[degrees_of_freedom] = -far_mean(n);
-    x[degrees_of_freedom + 1] = drive_left(n, goal);
-    int status = unsymmetric_set(n->lu, n->tangent, &n->conditions, err);
-    if (status == 0)
-        status = unsymmetric_solve(n->lu, tolerance, x, &end->work, err);
+    for (size_t k = 0; k < sideways; k++) {
+        behind[k] = -far_mean(n, k);
+        behind[sideways + k] = drive_left(n, goal, k);
+    }
+    int status = solve(n, tolerance, x, end, err);
     if (status != 0)
         return status;
-    memcpy(n->change, x, degrees_of_freedom * sizeof *x);
-    if (pressures)
+    memcpy(n->change, x, solved * sizeof *x);
+    if (eliminated)
         volumetric_pressures(n->tangent->volumetric, x, 1, n->change + degrees_of_freedom,
                              n->change + degrees_of_freedom);
-    *shear = x[degrees_of_freedom];
-    *flat = x[degrees_of_freedom + 1];
+    *motion = (struct motion){0};
+    memcpy(motion->shear, behind, sideways * sizeof *behind);
+    memcpy(motion->flat, behind + sideways, sideways * sizeof *behind);
+    if (n->gmres != NULL)
+        meet_drives(n, goal, motion);
     return 0;
 }
 
@@ -297,15 +427,20 @@ static bool evaluate(struct friction_newton *n) {
 
 /* Advances u, flat and shear by the longest of the step and its halves that neither folds the face
  * nor inverts an element. */
-static int advance(struct friction_newton *n, double flat, double shear, struct error *err) {
-    double length = 1, flat_before = n->flat, shear_before = n->shear;
+static int advance(struct friction_newton *n, const struct motion *motion, struct error *err) {
+    struct motion before;
+    double length = 1;
     bool folds = false;
+    memcpy(before.flat, n->flat, sizeof before.flat);
+    memcpy(before.shear, n->shear, sizeof before.shear);
     memcpy(n->before, n->u, n->unknowns * sizeof *n->before);
     for (int halving = 0; halving < HALVINGS; halving++, length /= 2) {
         for (size_t f = 0; f < n->unknowns; f++)
             n->u[f] = n->before[f] + length * n->change[f];
-        n->flat = flat_before + length * flat;
-        n->shear = shear_before + length * shear;
+        for (size_t k = 0; k < n->sideways; k++) {
+            n->flat[k] = before.flat[k] + length * motion->flat[k];
+            n->shear[k] = before.shear[k] + length * motion->shear[k];
+        }
         folds = face_folds(n->mesh, n->u);
         if (!folds && evaluate(n))
             return 0;
@@ -336,17 +471,30 @@ static void measure(const struct friction_newton *n, struct friction_end *end) {
         }
         end->inside = fmax(end->inside, fabs(gap));
         if (n->node[node] == NODE_STICKS)
-            end->inside = fmax(end->inside, fabs(friction_newton_slip(n, node)));
+            end->inside = fmax(end->inside, slip_size(n, node));
     }
+}
+
+/* Returns whether the flat and the shear are at their goals. */
+static bool is_driven(const struct friction_newton *n, const struct friction_goal *goal,
+                      const struct round *round) {
+    bool driven = true;
+    for (size_t k = 0; k < n->sideways; k++) {
+        const struct drive *drive = &n->conditions.drive[k];
+        driven = driven &&
+                 fabs(drive_left(n, goal, k)) <=
+                     fmax(fabs(drive->flat) * round->closed, fabs(drive->shear) * round->balanced);
+    }
+    return driven;
 }
 
 static struct round assess(struct friction_newton *n, const struct friction_goal *goal,
                            struct set_history *history, struct friction_end *end) {
     struct round round = {.largest = 0};
-    const struct drive *drive = &n->conditions.drive;
     bool first = end->iterations == 0, careful = end->cycles > 0;
     friction_newton_measure_gaps(n);
-    round.largest = fmax(largest_force(n), goal->pressure);
+    follow_directions(n);
+    round.largest = fmax(largest_force(n), goal->pressure * n->mesh->across);
     round.balanced = fmax(n->tolerance * round.largest, force_rounding(n));
     round.closed = fmax(n->tolerance * round.largest / COMPLEMENTARITY, gap_rounding(n));
     round.residual = residual(n, goal);
@@ -359,8 +507,7 @@ static struct round assess(struct friction_newton *n, const struct friction_goal
     }
     measure(n, end);
     round.inside = end->inside;
-    round.driven = fabs(drive_left(n, goal)) <=
-                   fmax(fabs(drive->flat) * round.closed, fabs(drive->shear) * round.balanced);
+    round.driven = is_driven(n, goal, &round);
     end->residual = round.residual / round.largest;
     return round;
 }
@@ -398,7 +545,7 @@ int friction_newton_solve(struct friction_newton *n, const struct friction_goal 
     struct set_history history = {0};
     struct progress progress = {.least = INFINITY};
     *end = (struct friction_end){0};
-    double load = goal->pressure * (double)n->mesh->face;
+    double load = goal->pressure * n->mesh->across * (double)n->mesh->face;
     if (force_rounding(n) > ROUNDING_MOST * load)
         return error_set(err, ERROR_NUMERIC, "rounding makes forces up to %.2g of so light a load",
                          force_rounding(n) / load);
@@ -414,13 +561,13 @@ int friction_newton_solve(struct friction_newton *n, const struct friction_goal 
             round.inside <= round.closed && round.driven)
             return 0;
         double off = fmax(end->residual, round.inside * COMPLEMENTARITY / round.largest);
-        double flat, shear;
+        struct motion motion;
         int status = check_progress(n, &progress, off, &round, end, err);
         if (status == 0)
-            status = newton_step(n, goal, off, &flat, &shear, end, err);
+            status = newton_step(n, goal, off, &motion, end, err);
         end->iterations++;
         if (status == 0)
-            status = advance(n, flat, shear, err);
+            status = advance(n, &motion, err);
         if (status != 0)
             return status;
     }

@@ -1,4 +1,4 @@
-/* Equilibrium of a meshed profile on a rigid flat with Coulomb's friction, after one increment of
+/* Equilibrium of a meshed block on a rigid flat with Coulomb's friction, after one increment of
  * the load and of the flat's displacement along the face (F14.7). Pressures, tractions and the sets
  * of free, sticking and sliding nodes are solved together by one Newton's method (Hueber, Stadler
  * & Wohlmuth 2008; Gitterle, Popp, Gee & Wall 2010). Private to core/full/friction.
@@ -10,11 +10,18 @@
  *
  *   p - max(0, p - c g) = 0,  q - P(q - c w) = 0,  P: to within friction * max(0, p - c g) of 0
  *
+ * where q and w have one component in profiles, two on surfaces. A sliding node's direction is that
+ * of q - c w; it follows each iteration as long as it turns by less than a right angle.
+ *
  * Slip is the change of the node's displacement along the flat, less that of the flat: a motion of
  * both alike is none, whatever the strain. Of GAP_STANDARD the gap is a mean over neighbours, but
  * the slip is of the node alone, so that its work on the traction is that of the forces.
  *
- * The far side bears the load and the shear evenly; its mean displacement along the face is 0.
+ * The far side bears the load and the shear evenly; its mean displacement along the face is 0. The
+ * flat is driven along the first axis. Across it nothing holds the flat: the shear there is 0.
+ *
+ * Equations of profiles are solved by a sparse factorisation (unsymmetric.h), those of surfaces by
+ * iterations with the flat block (gmres.h).
  * Lengths are in the mesh's unit, pressures in E*. */
 #ifndef RUGO_CORE_FULL_FRICTION_FRICTION_NEWTON_H
 #define RUGO_CORE_FULL_FRICTION_FRICTION_NEWTON_H
@@ -27,36 +34,41 @@ struct friction_newton {
     struct material material;
     struct face_conditions conditions; /* what nodes do is owned, as all below */
     unsigned char *node;               /* by node of the face: enum face_node */
+    double *direction, *turn;          /* of sliding nodes (face_conditions.h) */
     struct tangent *tangent;
-    struct unsymmetric *lu;
+    struct unsymmetric *lu; /* of profiles */
+    struct gmres *gmres;    /* borrowed, of surfaces */
     double *u;     /* unknowns: displacements, then pressures of elements where they are unknowns
                       (gmres.h); whoever changes them sets evaluated to false */
     double *force; /* unknowns: inner forces, and the excess of the pressures */
     double *before, *change; /* unknowns: scratch */
-    double *step;            /* degrees of freedom + 2: scratch */
-    double *reference;       /* by node of the face: displacement over the flat, along the face, at
-                                the beginning of the increment */
+    double *step;            /* unknowns of the linear equations: scratch */
+    double *reference;       /* [node * directions + axis]: displacement over the flat, along the
+                                face, at the beginning of the increment */
     double *gap, *opening;   /* by node of the face, at u */
-    double shear, flat;      /* force along the face on the block, and the flat's displacement */
-    double energy;           /* of the block at u, E* times the square of the mesh's unit */
-    double flat_height;      /* vertical position of the flat */
-    double tolerance;        /* largest residual, over the largest contact force */
+    double shear[SIDEWAYS_MOST], flat[SIDEWAYS_MOST]; /* force along the face on the block, and the
+                                                         flat's displacement */
+    double energy; /* of the block at u, E* times the cube (profiles: square) of the mesh's unit */
+    double flat_height; /* vertical position of the flat */
+    double tolerance;   /* largest residual, over the largest contact force */
     size_t unknowns, max_iterations;
+    size_t sideways;            /* directions of the face: 1 of profiles, 2 of surfaces */
     bool evaluated;             /* force, tangent and energy belong to u */
     int (*stop)(void *context); /* called before each iteration, non-zero stops; may be NULL */
     void *context;
 };
 
-/* ERROR_INPUT for a surface; ERROR_MEMORY. */
+/* gmres: that of the mesh and material without friction, for surfaces. ERROR_INPUT for a profile
+ * with too many nodes; ERROR_MEMORY. */
 int friction_newton_create(struct friction_newton *out, const struct mesh *mesh,
                            const struct material *material, enum gap_weighting weighting,
-                           double friction, struct error *err);
+                           double friction, struct gmres *gmres, struct error *err);
 void friction_newton_clear(struct friction_newton *newton);
 
 /* The loads at the end of the increment. */
 struct friction_goal {
     double pressure; /* mean, above 0 */
-    double drive;    /* value of conditions.drive */
+    double drive;    /* value of conditions.drive along the first axis */
 };
 /* The course of a solution; as newton_end. */
 struct friction_end {
@@ -72,7 +84,9 @@ int friction_newton_solve(struct friction_newton *newton, const struct friction_
                           struct friction_end *end, struct error *err);
 /* Computes gap and opening from u. */
 void friction_newton_measure_gaps(struct friction_newton *newton);
-/* Returns a node's slip since the beginning of the increment. */
-double friction_newton_slip(const struct friction_newton *newton, size_t node);
+/* Returns a node's slip along an axis since the beginning of the increment. */
+double friction_newton_slip(const struct friction_newton *newton, size_t node, size_t axis);
+/* Drives the flat along the first axis by this. */
+void friction_newton_drive(struct friction_newton *newton, struct drive drive);
 
 #endif

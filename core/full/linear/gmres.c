@@ -1,6 +1,7 @@
 #include "core/full/linear/gmres.h"
 #include "core/full/linear/aliasing.h"
 #include "core/full/linear/hessenberg.h"
+#include "core/full/linear/sliding_face.h"
 #include "core/vectors.h"
 #include <math.h>
 #include <stdlib.h>
@@ -13,11 +14,15 @@ static const double STALLED = 0.5;
 static const double BULK_RATIO_LEAST = 10;
 /* The preconditioner solves the face (face_solver.h) down to this residual. */
 static const double FACE_TOLERANCE = 1e-3;
+/* Shears, displacements of the flat. */
+enum { BEHIND_MOST = 2 * SIDEWAYS_MOST };
 
 struct gmres {
     const struct mesh *mesh; /* borrowed */
     struct preconditioner *preconditioner;
     struct face_solver face_solver;
+    struct sliding_face *sliding_face; /* NULL without friction, as the next two */
+    double *given, *borne;             /* vectors of it */
     struct volumetric *volumetric; /* of the flat block; NULL where pressures are not unknowns */
     size_t degrees_of_freedom, unknowns; /* the pressures of elements follow the displacements */
     double *basis[BASIS + 1];            /* orthonormal residuals */
@@ -46,14 +51,15 @@ int gmres_create(struct gmres **out, const struct mesh *mesh, const struct mater
             face_solver_create(&gmres->face_solver, mesh, gmres->preconditioner, weighting, err);
     for (size_t b = 0; status == 0 && b < 2 * BASIS + 1; b++) {
         double **array = b <= BASIS ? &gmres->basis[b] : &gmres->direction[b - BASIS - 1];
-        *array = array_create(gmres->unknowns, sizeof(double));
+        *array = array_create(gmres->unknowns + BEHIND_MOST, sizeof(double));
         if (*array == NULL)
             status = error_memory(err, gmres->unknowns * sizeof(double), "residuals");
     }
     double **const others[] = {&gmres->face, &gmres->target, &gmres->forces,
                                &gmres->load, &gmres->moved,  &gmres->pressures};
     for (size_t a = 0; status == 0 && a < 6; a++) {
-        *others[a] = array_create(a < 3 ? mesh->face : gmres->unknowns, sizeof(double));
+        *others[a] =
+            array_create(a < 3 ? mesh->face : gmres->unknowns + BEHIND_MOST, sizeof(double));
         if (*others[a] == NULL)
             status = error_memory(err, gmres->unknowns * sizeof(double), "residuals");
     }
@@ -77,11 +83,33 @@ void gmres_destroy(struct gmres **handle) {
     free(gmres->load);
     free(gmres->moved);
     free(gmres->pressures);
+    free(gmres->given);
+    free(gmres->borne);
+    sliding_face_destroy(&gmres->sliding_face);
     volumetric_destroy(&gmres->volumetric);
     face_solver_clear(&gmres->face_solver);
     preconditioner_destroy(&gmres->preconditioner);
     free(gmres);
     *handle = NULL;
+}
+
+int gmres_add_friction(struct gmres *gmres, enum gap_weighting weighting, struct error *err) {
+    if (gmres->sliding_face != NULL)
+        return 0;
+    int status = sliding_face_create(&gmres->sliding_face, gmres->mesh, gmres->preconditioner,
+                                     weighting, err);
+    if (status != 0)
+        return status;
+    size_t values = sliding_face_values(gmres->sliding_face);
+    gmres->given = array_create(values, sizeof *gmres->given);
+    gmres->borne = array_create(values, sizeof *gmres->borne);
+    return gmres->given != NULL && gmres->borne != NULL
+               ? 0
+               : error_memory(err, 2 * values * sizeof *gmres->given, "forces along the face");
+}
+
+size_t gmres_friction_unknowns(const struct gmres *gmres) {
+    return gmres->unknowns + 2 * ((size_t)gmres->mesh->dimension - 1);
 }
 
 double gmres_bytes(const struct mesh *mesh, const struct material *material, double iterations) {
@@ -131,7 +159,55 @@ static void scale(size_t n, double factor, double *x) {
 
 /* The factorisation covers the equations of the displacements alone. */
 static size_t unknowns_of(const struct gmres *gmres, const struct linear_system *system) {
+    if (system->friction != NULL)
+        return gmres_friction_unknowns(gmres);
     return system->factorisation != NULL ? gmres->degrees_of_freedom : gmres->unknowns;
+}
+
+/* Turns forces y along the face under x into the rows of a node in contact. */
+static void operate_node(const struct gmres *gmres, const struct face_conditions *friction,
+                         size_t node, const double *x, double *y) {
+    size_t sideways = (size_t)gmres->mesh->dimension - 1, at = node * (sideways + 1);
+    const double *flat = x + gmres->unknowns + sideways, *e = friction->direction + node * sideways;
+    double slip[SIDEWAYS_MOST], force = 0, slid = 0, pressure = y[at + sideways];
+    for (size_t k = 0; k < sideways; k++) {
+        slip[k] = x[at + k] - flat[k];
+        slid += e[k] * slip[k];
+        force += e[k] * y[at + k];
+    }
+    for (size_t k = 0; k < sideways; k++) {
+        double across = y[at + k] - e[k] * force - friction->stiffness * (slip[k] - e[k] * slid);
+        y[at + k] =
+            friction->node[node] == NODE_STICKS
+                ? slip[k]
+                : y[at + k] - friction->turn[node] * across - friction->friction * e[k] * pressure;
+    }
+}
+
+/* The rows of y along the face and behind the others, of which y has forces. */
+static void operate_friction(const struct gmres *gmres, const struct face_conditions *friction,
+                             const double *x, double *y) {
+    const struct mesh *mesh = gmres->mesh;
+    size_t sideways = (size_t)mesh->dimension - 1, far_side = mesh_far_side(mesh);
+    const double *shear = x + gmres->unknowns, *flat = shear + sideways;
+    double *mean = y + gmres->unknowns, nodes = (double)(mesh->nodes - far_side);
+    for (size_t node = 0; node < mesh->face; node++)
+        if (friction->node[node] != NODE_FREE)
+            operate_node(gmres, friction, node, x, y);
+    for (size_t k = 0; k < sideways; k++) {
+        mean[k] = 0;
+        for (size_t node = far_side; node < mesh->nodes; node++) {
+            y[node * (sideways + 1) + k] += shear[k] / nodes;
+            mean[k] += x[node * (sideways + 1) + k] / nodes;
+        }
+        mean[sideways + k] =
+            friction->drive[k].flat * flat[k] + friction->drive[k].shear * shear[k];
+    }
+}
+
+static bool touches(const struct linear_system *system, size_t node) {
+    return system->friction != NULL ? system->friction->node[node] != NODE_FREE
+                                    : system->active[node];
 }
 
 /* y = A x. Rows are forces. The first node of the far side has the sum of the far side's vertical
@@ -142,7 +218,7 @@ static void operate(struct gmres *gmres, const struct linear_system *system, con
     size_t far_side = mesh_far_side(mesh);
     double sum = 0;
     tangent_apply(system->tangent, x, y);
-    if (unknowns_of(gmres, system) > gmres->degrees_of_freedom) {
+    if (gmres->volumetric != NULL && system->factorisation == NULL) {
         volumetric_pressures(system->tangent->volumetric, x, -1, x + gmres->degrees_of_freedom,
                              y + gmres->degrees_of_freedom);
         volumetric_forces(system->tangent->volumetric, y + gmres->degrees_of_freedom, 1, y);
@@ -155,8 +231,10 @@ static void operate(struct gmres *gmres, const struct linear_system *system, con
     for (size_t node = 0; node < mesh->face; node++)
         gmres->face[node] = x[mesh_vertical(mesh, node)];
     face_solver_weigh(&gmres->face_solver, gmres->face, gmres->face);
+    if (system->friction != NULL)
+        operate_friction(gmres, system->friction, x, y);
     for (size_t node = 0; node < mesh->face; node++)
-        if (system->active[node])
+        if (touches(system, node))
             y[mesh_vertical(mesh, node)] = gmres->face[node];
 }
 
@@ -209,6 +287,74 @@ static void preconditioner_apply_flat(struct gmres *gmres, const bool *active, c
                              x + gmres->degrees_of_freedom);
 }
 
+/* Fills what the flat block's face is to do under r, less what it does under moved, the forces on
+ * all nodes but those of the contact; sum has theirs. */
+static void give_face(struct gmres *gmres, const struct face_conditions *friction, const double *r,
+                      const double *sum) {
+    const struct mesh *mesh = gmres->mesh;
+    size_t d = (size_t)mesh->dimension, face = mesh->face;
+    double *given = gmres->given, *vertical = given + (d - 1) * face;
+    const double *mean = r + gmres->unknowns, *drives = mean + d - 1;
+    preconditioner_face_all(gmres->preconditioner, given);
+    face_solver_weigh(&gmres->face_solver, vertical, vertical);
+    for (size_t node = 0; node < face; node++) {
+        const double *e = friction->direction + node * (d - 1);
+        bool free = friction->node[node] == NODE_FREE, sticks = friction->node[node] == NODE_STICKS;
+        double turns = sticks ? 1 : friction->turn[node] * friction->stiffness, slid = 0;
+        for (size_t k = 0; k + 1 < d; k++)
+            slid += sticks ? 0 : e[k] * (given[k * face + node] + mean[k]);
+        for (size_t k = 0; k + 1 < d; k++) {
+            double slip = given[k * face + node] + mean[k] - (sticks ? 0 : e[k] * slid);
+            given[k * face + node] = free ? 0 : r[node * d + k] - turns * slip;
+        }
+        vertical[node] = free ? 0 : r[node * d + d - 1] - vertical[node];
+    }
+    for (size_t k = 0; k + 1 < d; k++)
+        given[d * face + k] = drives[k] - friction->drive[k].shear * sum[k];
+    given[d * face + d - 1] = -sum[d - 1];
+}
+
+/* The same with friction. Forces along the far side balance those on the other nodes, so that its
+ * mean does not move (preconditioner.h). */
+static void precondition_friction(struct gmres *gmres, const struct face_conditions *friction,
+                                  const double *r, double *x) {
+    const struct mesh *mesh = gmres->mesh;
+    size_t d = (size_t)mesh->dimension, face = mesh->face, far_side = mesh_far_side(mesh);
+    double sum[SIDEWAYS_MOST + 1] = {0}, nodes = (double)(mesh->nodes - far_side);
+    double move[SIDEWAYS_MOST + 1], *behind = x + gmres->unknowns;
+    memcpy(gmres->moved, r, gmres->degrees_of_freedom * sizeof *r);
+    for (size_t node = 0; node < face; node++)
+        for (size_t k = 0; friction->node[node] != NODE_FREE && k < d; k++)
+            gmres->moved[node * d + k] = 0;
+    if (gmres->volumetric != NULL)
+        volumetric_forces(gmres->volumetric, r + gmres->degrees_of_freedom, -1, gmres->moved);
+    for (size_t node = 0; node < mesh->nodes; node++)
+        for (size_t k = 0; k < d; k++)
+            sum[k] += gmres->moved[node * d + k];
+    for (size_t node = far_side; node < mesh->nodes; node++)
+        for (size_t k = 0; k + 1 < d; k++)
+            gmres->moved[node * d + k] -= sum[k] / nodes;
+    preconditioner_load(gmres->preconditioner, gmres->moved);
+    give_face(gmres, friction, r, sum);
+    sliding_face_solve(gmres->sliding_face, friction, gmres->given, FACE_TOLERANCE, gmres->borne);
+    preconditioner_displace_all(gmres->preconditioner, gmres->borne, x);
+    for (size_t k = 0; k + 1 < d; k++) {
+        double borne = 0;
+        for (size_t node = 0; node < face; node++)
+            borne += gmres->borne[k * face + node];
+        behind[k] = sum[k] + borne;
+        behind[d - 1 + k] = gmres->borne[d * face + k];
+        move[k] = r[gmres->unknowns + k] - borne / nodes;
+    }
+    move[d - 1] = gmres->borne[d * face + d - 1];
+    for (size_t node = 0; node < mesh->nodes; node++)
+        for (size_t k = 0; k < d; k++)
+            x[node * d + k] += move[k];
+    if (gmres->volumetric != NULL)
+        volumetric_pressures(gmres->volumetric, x, 1, r + gmres->degrees_of_freedom,
+                             x + gmres->degrees_of_freedom);
+}
+
 /* --- minimal residuals --- */
 
 static void combine(struct gmres *gmres, size_t n, size_t count, double *x) {
@@ -231,6 +377,8 @@ static int cycle(struct gmres *gmres, const struct linear_system *system, double
         if (system->factorisation != NULL)
             status =
                 precondition_factored(gmres, system, gmres->basis[c], gmres->direction[c], err);
+        else if (system->friction != NULL)
+            precondition_friction(gmres, system->friction, gmres->basis[c], gmres->direction[c]);
         else
             preconditioner_apply_flat(gmres, system->active, gmres->basis[c], gmres->direction[c]);
         if (status != 0)
@@ -273,7 +421,7 @@ static void eliminate_pressures(struct gmres *gmres, const struct linear_system 
 int gmres_solve(struct gmres *gmres, const struct linear_system *system, double tolerance,
                 double *x, size_t *iterations, struct error *err) {
     size_t n = unknowns_of(gmres, system);
-    bool eliminated = n < gmres->unknowns;
+    bool eliminated = system->factorisation != NULL && gmres->volumetric != NULL;
     if (eliminated)
         eliminate_pressures(gmres, system, x);
     double first = sqrt(dot(n, x, x)), left = first, before = INFINITY;
@@ -294,7 +442,8 @@ int gmres_solve(struct gmres *gmres, const struct linear_system *system, double 
         if (status != 0)
             return status;
     }
-    hold(gmres, x);
+    if (system->friction == NULL)
+        hold(gmres, x);
     if (eliminated)
         volumetric_pressures(system->tangent->volumetric, x, 1, gmres->pressures,
                              x + gmres->degrees_of_freedom);

@@ -17,6 +17,7 @@
 #ifndef RUGO_CORE_FULL_LINEAR_GMRES_H
 #define RUGO_CORE_FULL_LINEAR_GMRES_H
 
+#include "core/full/linear/face_conditions.h"
 #include "core/full/linear/face_solver.h"
 #include "core/full/linear/factorisation.h"
 #include "core/full/tangent.h"
@@ -26,6 +27,10 @@ struct gmres;
 int gmres_create(struct gmres **out, const struct mesh *mesh, const struct material *material,
                  enum gap_weighting weighting, struct error *err);
 void gmres_destroy(struct gmres **handle);
+/* Prepares equations with friction. */
+int gmres_add_friction(struct gmres *gmres, enum gap_weighting weighting, struct error *err);
+/* Returns the values of x with friction, with those behind. */
+size_t gmres_friction_unknowns(const struct gmres *gmres);
 
 /* Returns the bytes that this many iterations of a linear step touch. */
 double gmres_bytes(const struct mesh *mesh, const struct material *material, double iterations);
@@ -42,13 +47,16 @@ struct linear_system {
     const bool *active; /* by node of the face: whether it is in contact */
     struct factorisation
         *factorisation; /* of that tangent and active set; NULL: the flat block preconditions */
+    const struct face_conditions
+        *friction; /* in place of both, after gmres_add_friction; or NULL */
 };
 
 /* Solves for x, which has tangent_unknowns values. On entry x holds forces (at the first node of
  * the far side the sum of the vertical ones there), on vertical degrees of freedom in contact the
  * prescribed change of the weighted gap, and the excess of the pressures. On return it holds
- * displacements and pressures. Ends when the residual is `tolerance` times that of x = 0;
- * ERROR_NUMERIC when it stays larger. Adds to *iterations. */
+ * displacements and pressures. With friction, rows of nodes in contact are those of
+ * sliding_face_solve, and x has gmres_friction_unknowns values. Ends when the residual is
+ * `tolerance` times that of x = 0; ERROR_NUMERIC when it stays larger. Adds to *iterations. */
 int gmres_solve(struct gmres *gmres, const struct linear_system *system, double tolerance,
                 double *x, size_t *iterations, struct error *err);
 

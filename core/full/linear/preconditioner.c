@@ -517,17 +517,23 @@ static void descend_wider(struct preconditioner *preconditioner, size_t level) {
         below[k] -= share * preconditioner->folded[k];
 }
 
-void preconditioner_displace(struct preconditioner *preconditioner, const double *vertical,
-                             double *displacements) {
-    const struct mesh *mesh = preconditioner->mesh;
-    size_t d = preconditioner->d, n = waves_at(preconditioner, 0);
-    double *re = field_at(preconditioner, 0, d - 1);
-    transform_forward(preconditioner->transform[0], vertical);
+/* Adds forces on the face along one axis to those stored. */
+static void add_force(struct preconditioner *preconditioner, size_t i, const double *force) {
+    size_t n = waves_at(preconditioner, 0);
+    double *re = field_at(preconditioner, 0, i);
+    bool vertical = i == preconditioner->d - 1;
+    transform_forward(preconditioner->transform[0], force);
     const double complex *s = transform_spectrum(preconditioner->transform[0]);
     for (size_t k = 0; k < n; k++) {
-        re[k] += creal(s[k]);
-        re[n + k] += cimag(s[k]);
+        re[k] += vertical ? creal(s[k]) : cimag(s[k]);
+        re[n + k] += vertical ? cimag(s[k]) : -creal(s[k]);
     }
+}
+
+/* Computes all displacements under the forces stored. */
+static void displace(struct preconditioner *preconditioner, double *displacements) {
+    const struct mesh *mesh = preconditioner->mesh;
+    size_t d = preconditioner->d;
     pivot_apply(preconditioner, 0, field_at(preconditioner, 0, 0));
     for (size_t level = 0; level < mesh->layers; level++)
         if (mesh_widens(mesh, level))
@@ -544,4 +550,62 @@ void preconditioner_displace(struct preconditioner *preconditioner, const double
             for (size_t node = 0; node < level_nodes(&mesh->level[level]); node++)
                 displacement[node * d] = preconditioner->plane[node];
         }
+}
+
+void preconditioner_displace(struct preconditioner *preconditioner, const double *vertical,
+                             double *displacements) {
+    add_force(preconditioner, preconditioner->d - 1, vertical);
+    displace(preconditioner, displacements);
+}
+
+/* --- all directions of the face --- */
+
+void preconditioner_face_all(struct preconditioner *preconditioner, double *face) {
+    size_t n = waves_at(preconditioner, 0), d = preconditioner->d;
+    double complex *s = transform_spectrum(preconditioner->transform[0]);
+    for (size_t i = 0; i < d; i++) {
+        for (size_t k = 0; k < n; k++) {
+            double re = 0, im = 0;
+            for (size_t j = 0; j < d; j++) {
+                double a = inverse_at(preconditioner, 0)[(i * d + j) * n + k];
+                re += a * field_at(preconditioner, 0, j)[k];
+                im += a * field_at(preconditioner, 0, j)[n + k];
+            }
+            s[k] = i == d - 1 ? re + im * I : -im + re * I;
+        }
+        transform_inverse(preconditioner->transform[0], face + i * preconditioner->mesh->face);
+    }
+}
+
+void preconditioner_displace_all(struct preconditioner *preconditioner, const double *forces,
+                                 double *displacements) {
+    for (size_t i = 0; i < preconditioner->d; i++)
+        add_force(preconditioner, i, forces + i * preconditioner->mesh->face);
+    displace(preconditioner, displacements);
+}
+
+/* Of the mean wave the far side is held by a stiffness of 1 a node (hold_far_side), whose part is
+ * taken out. */
+void preconditioner_matrices(const struct preconditioner *preconditioner, double *compliance,
+                             double *stiffness) {
+    const struct mesh *mesh = preconditioner->mesh;
+    size_t n = waves_at(preconditioner, 0), d = preconditioner->d;
+    double given = (double)mesh->face / (double)level_nodes(&mesh->level[mesh->layers]);
+    memcpy(compliance, inverse_at(preconditioner, 0), d * d * n * sizeof *compliance);
+    for (size_t i = 0; i + 1 < d; i++)
+        compliance[(i * d + i) * n] -= given;
+    for (size_t k = 0; k < n; k++) {
+        double matrix[3][3], inverse[3][3];
+        for (size_t i = 0; i < d; i++)
+            for (size_t j = 0; j < d; j++)
+                matrix[i][j] = compliance[(i * d + j) * n + k];
+        if (k == 0)
+            matrix[d - 1][d - 1] = 1;
+        invert((int)d, matrix, inverse);
+        if (k == 0)
+            inverse[d - 1][d - 1] = 0;
+        for (size_t i = 0; i < d; i++)
+            for (size_t j = 0; j < d; j++)
+                stiffness[(i * d + j) * n + k] = inverse[i][j];
+    }
 }

@@ -38,4 +38,18 @@ void preconditioner_face(struct preconditioner *preconditioner, double *vertical
 void preconditioner_displace(struct preconditioner *preconditioner, const double *vertical,
                              double *displacements);
 
+/* The same for forces and displacements in all directions of the face, as an array for each
+ * component, the vertical one last: [component * face + node]. Forces along the face are to be in
+ * balance with those on the far side: else the far side gives by their mean there, and the face
+ * with it. */
+void preconditioner_face_all(struct preconditioner *preconditioner, double *face);
+void preconditioner_displace_all(struct preconditioner *preconditioner, const double *forces,
+                                 double *displacements);
+/* Fills, with d components, compliance and stiffness of the face against a far side whose mean
+ * stays, by wave: [(i*d + j)*waves + wave], by which components of forces and displacements are
+ * multiplied where those along the face stand as -i times their spectra. The vertical mean has
+ * neither. */
+void preconditioner_matrices(const struct preconditioner *preconditioner, double *compliance,
+                             double *stiffness);
+
 #endif

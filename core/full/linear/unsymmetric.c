@@ -72,10 +72,11 @@ static int arrays_create(struct unsymmetric *lu, struct error *err) {
 int unsymmetric_create(struct unsymmetric **out, const struct mesh *mesh, struct error *err) {
     *out = NULL;
     if (mesh->dimension != 2)
-        return error_set(err, ERROR_INPUT,
-                         "friction at finite strain is of profiles, not of surfaces of %zu x %zu "
-                         "nodes",
-                         mesh->level[0].nx, mesh->level[0].ny);
+        return error_set(
+            err, ERROR_INPUT,
+            "a sparse factorisation with friction is of profiles, not of surfaces of %zu "
+            "x %zu nodes",
+            mesh->level[0].nx, mesh->level[0].ny);
     if (entries_of(mesh) > INT_MAX)
         return error_set(err, ERROR_INPUT,
                          "friction at finite strain on a mesh of %zu nodes; allowed: matrices of "
@@ -142,11 +143,11 @@ static void put_force(struct unsymmetric *lu, const struct face_conditions *cond
     bool face = node < lu->mesh->face;
     enum face_node does = face ? conditions->node[node] : NODE_FREE;
     int row = lu->unknown[node * 2 + i];
-    bool slides = does == NODE_FORWARD || does == NODE_BACKWARD;
+    bool slides = face_node_slides(does);
     bool stays = does == NODE_FREE || (slides && i == 0);
     put(lu, row, column, stays ? value : 0);
     if (face && i == 1) {
-        double share = does == NODE_FORWARD ? -conditions->friction : conditions->friction;
+        double share = slides ? -conditions->friction * conditions->direction[node] : 0;
         put(lu, row - 1, column, slides ? share * value : 0);
     }
 }
@@ -201,8 +202,8 @@ static void put_far_side(struct unsymmetric *lu, const struct face_conditions *c
         put(lu, lu->unknown[node * 2], shear, share);
         put(lu, shear, lu->unknown[node * 2], share);
     }
-    put(lu, flat, shear, conditions->drive.shear);
-    put(lu, flat, flat, conditions->drive.flat);
+    put(lu, flat, shear, conditions->drive->shear);
+    put(lu, flat, flat, conditions->drive->flat);
 }
 
 static int failure(const struct unsymmetric *lu, int status, struct error *err) {

@@ -5,34 +5,12 @@
  * take more, the matrix is factorised anew. Its pattern does not depend on what nodes do, so that
  * it is analysed only once.
  *
- * Behind the displacements there are two unknowns: the shear, the force along the face on all nodes
- * of the far side, in equal parts; and the flat, its displacement along the face. Behind the forces
- * there are two rows: the mean displacement of the far side along the face, and the drive
- * (struct drive). Private to core/full. */
+ * Unknowns and rows are those of face_conditions.h. Private to core/full. */
 #ifndef RUGO_CORE_FULL_LINEAR_UNSYMMETRIC_H
 #define RUGO_CORE_FULL_LINEAR_UNSYMMETRIC_H
 
+#include "core/full/linear/face_conditions.h"
 #include "core/full/tangent.h"
-
-/* What a node of the face does. Forces are those on the block; forward is along the first axis. */
-enum face_node {
-    NODE_FREE,
-    NODE_STICKS,
-    NODE_FORWARD, /* the flat slides over it and pulls it forward */
-    NODE_BACKWARD
-};
-
-/* The last equation: flat * (displacement of the flat) + shear * (shear) is given. */
-struct drive {
-    double flat, shear;
-};
-
-struct face_conditions {
-    const unsigned char *node; /* borrowed, by node of the face: enum face_node */
-    double friction;
-    enum gap_weighting weighting;
-    struct drive drive;
-};
 
 struct unsymmetric;
 

@@ -47,10 +47,11 @@ static const struct parameter ROWS[] = {
      .later = true,
      .target_refusal = FRICTION_NO_TARGET,
      .example_json = "0.2",
-     .help = "coefficient of friction: the block is pressed, and a tangential load then rises to "
-             "full slip; what sticks, how far it gives, and what a cycle takes, by the loads "
-             "below, to which some are added where they are far apart. With the model full, of "
-             "profiles and up to 1, at finite strain by how far the flat slides"},
+     .help =
+         "coefficient of friction: the block is pressed, and a tangential load then rises to "
+         "full slip; what sticks, how far it gives, and what a cycle takes, by the loads "
+         "below, to which some are added where they are far apart. With the model full, up to 1, "
+         "at finite strain by how far the flat slides along x"},
     {.path = "/contact/slip/pressure",
      .type = PARAMETER_NUMBER,
      .minimum = 0,

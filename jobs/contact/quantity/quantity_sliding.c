@@ -1,5 +1,5 @@
-/* Friction at finite strain: profiles of the model full are pressed to one load, and the flat is
- * then dragged along a path (core/full/friction). Curves are by how far it has slid over the mean
+/* Friction at finite strain: blocks of the model full are pressed to one load, and the flat is then
+ * dragged along x on a path (core/full/friction). Curves are by how far it has slid over the mean
  * of the face, over the RMS height. A half-space beside it, and those of companions, follow the
  * same path with pressures and tractions coupled: their differences are the errors of other
  * sources. */
@@ -24,6 +24,7 @@ static const double COEFFICIENT_MOST = 1;
 
 #define FRICTION "/contact/friction"
 static const char TO[] = "/contact/slip/to", STEPS[] = "/contact/slip/steps";
+static const char DIRECTION[] = "/contact/slip/direction";
 
 static const struct parameter ROWS[] = {
     {.path = "/contact/slip/to",
@@ -58,10 +59,9 @@ static bool asked(struct contact_case *one_case, struct values *values) {
     for (size_t a = 0; a < sizeof own / sizeof *own; a++)
         if (!slides && values_is_given(values, own[a]))
             values_fault(values, own[a], "belongs to " FRICTION " with the model full");
-    if (slides && surface_case_dimension(values) == 2)
-        values_fault(values, FRICTION,
-                     "the model full has that of profiles alone; leave one of them out, or take "
-                     "\"dimension\": 1");
+    if (slides && one_case->slip_angle != 0)
+        values_fault(values, DIRECTION,
+                     "\"y\": the model full drags the flat along x; leave one of them out");
     if (slides && one_case->friction > COEFFICIENT_MOST)
         values_fault(values, FRICTION, "%g; allowed with the model full: (0, %g]",
                      one_case->friction, COEFFICIENT_MOST);

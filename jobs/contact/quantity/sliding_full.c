@@ -16,6 +16,9 @@ enum { STEPS_LEAST = 16, STEPS_TIMES = 20 };
 /* Of estimates: steps beside those, and the sliding to full slip over the coefficient. */
 enum { STEPS_BESIDE = 4 };
 static const double SLIP_EXPECTED = 1.6;
+/* The part of the friction from which all of the face slides evenly: on surfaces, directions still
+ * turn by a little. */
+static const double EVEN = 0.999;
 /* The least step, over the longest; how near a point may be that a step aims at, over what lies
  * between points. */
 static const double STEP_LEAST = 1e-3, AIM_LEAST = 0.5;
@@ -52,7 +55,7 @@ int sliding_full_create(struct sliding_full **out, const struct quantity_scene *
         return error_memory(err, sizeof *made, "sliding at finite strain");
     made->block = scene->block;
     made->limit = options.limit;
-    made->step_seconds = cost_friction_steps(&size, 1);
+    made->step_seconds = cost_friction_steps(&scene->grid, &size, 1);
     int status =
         friction_create(&made->friction, &scene->grid, &made->block, &options, &friction, err);
     if (status != 0)
@@ -95,6 +98,10 @@ static size_t aim_of(const struct sliding_record *record, double sliding) {
     return near && next < sliding_record_turn(record) ? next + 1 : next;
 }
 
+static bool slides_evenly(const struct friction_state *state, double friction) {
+    return state->stuck == 0 && fabs(state->traction) >= EVEN * friction * state->pressure;
+}
+
 /* Drags the flat to the next turning point. Where all of the face slides, nothing changes any more
  * but the work. */
 static int drag(struct sliding_full *sliding, const struct measure_context *context,
@@ -128,7 +135,7 @@ static int drag(struct sliding_full *sliding, const struct measure_context *cont
         sliding->used +=
             sliding->step_seconds * (double)(sliding->state.steps + sliding->state.cuts);
         rate = forward * (sliding->state.sliding - before) / by;
-        slides = sliding->state.stuck == 0;
+        slides = slides_evenly(&sliding->state, one_case->friction);
         const struct sliding_sample sample = sample_of(sliding, context, record);
         sliding_record_add(record, &sample);
     }
@@ -186,5 +193,6 @@ double sliding_full_seconds(const struct quantity_scene *scene) {
     const struct full_size size =
         cost_full_size(&scene->grid, &scene->block, &options, one_case->rms_slope);
     const double steps = steps_expected(one_case) + (one_case->slip_pressing ? PRESS_STEPS : 0);
-    return cost_full_contact(&scene->grid, &size, 1) + cost_friction_steps(&size, steps);
+    return cost_full_contact(&scene->grid, &size, 1) +
+           cost_friction_steps(&scene->grid, &size, steps);
 }

@@ -1,4 +1,4 @@
-/* Profiles at finite strain, dragged along a path with friction (core/full/friction). Private to
+/* Blocks at finite strain, dragged along a path with friction (core/full/friction). Private to
  * jobs/contact/quantity. */
 #ifndef RUGO_JOBS_CONTACT_QUANTITY_SLIDING_FULL_H
 #define RUGO_JOBS_CONTACT_QUANTITY_SLIDING_FULL_H

@@ -106,8 +106,10 @@ double sliding_linear_bytes(const struct quantity_scene *scene) {
 }
 
 double sliding_linear_seconds(const struct quantity_scene *scene) {
-    static const double TIMES = 2; /* the transforms of contact, as coupled slip */
+    static const double PROFILE = 2, SURFACE = 10; /* times the transforms of contact, as coupled
+                                                      slip */
     const struct contact_case *one_case = scene->one_case;
     const size_t loads = steps_of(one_case) + HALVES + (one_case->slip_pressing ? PRESS_STEPS : 0);
-    return TIMES * cost_linear_contact(&scene->grid, one_case->tolerance, loads);
+    return (grid_is_profile(&scene->grid) ? PROFILE : SURFACE) *
+           cost_linear_contact(&scene->grid, one_case->tolerance, loads);
 }

@@ -76,8 +76,8 @@ static const struct option_row OPTIONS[] = {
      "pressure at which the block yields, such as 2GPa; without it, it is elastic"},
     {"friction", 0, OPTION_NUMBER, 1e-3, 10, AT(words.friction), "MU", NULL,
      "coefficient of friction: what sticks, and how far the face gives, as a tangential load rises "
-     "under the highest load (loads below it are added); the model full drags the flat over "
-     "profiles (--slide-to), with up to 1"},
+     "under the highest load (loads below it are added); the model full drags the flat along x "
+     "(--slide-to), with up to 1"},
     {"direction", 0, OPTION_CHOICE, 0, 0, AT(along_y), "x|y", "x", "of the tangential load"},
     {"coupling", 0, OPTION_CHOICE, 0, 0, AT(coupling), COUPLINGS, "none",
      "with --friction: also solve slip with pressures and tractions coupled, after pressing the "
@@ -309,10 +309,6 @@ static int read_map(struct height_map *map, struct press_order *order, struct er
     status = take_coating(order, map, err);
     for (size_t m = 0; m < order->model_count && status == 0; m++)
         status = map_press_check(order->boundary, order->blocks[m].model, err);
-    if (status == 0 && order->slide.at != NULL && !grid_is_profile(&map->grid))
-        status = error_set(err, ERROR_INPUT,
-                           "--friction: the model full has that of profiles alone, and this is a "
-                           "surface; --model halfspace has that of surfaces");
     return status == 0 ? 0 : error_context(err, "%s", order->path);
 }
 
@@ -651,6 +647,10 @@ static int order_friction(struct press_order *order, struct error *err) {
     if (friction > SLIDING_FRICTION_MOST)
         return error_set(err, ERROR_INPUT, "--friction %g; allowed with the model full: (0, %g]",
                          friction, SLIDING_FRICTION_MOST);
+    if (options->along_y)
+        return error_set(err, ERROR_INPUT,
+                         "--direction y: the model full drags the flat along x; --transpose "
+                         "exchanges x and y of the map");
     int status =
         press_path_parse(&order->slide, options->slide_to, options->slide_steps, friction, err);
     for (size_t m = 0; m < order->model_count && status == 0; m++) {

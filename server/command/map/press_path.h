@@ -1,4 +1,4 @@
-/* The path of the flat that `press` drags over a profile with friction at finite strain. */
+/* The path of the flat that `press` drags over a map with friction at finite strain. */
 #ifndef RUGO_SERVER_COMMAND_MAP_PRESS_PATH_H
 #define RUGO_SERVER_COMMAND_MAP_PRESS_PATH_H
 

@@ -156,9 +156,9 @@ static int drag_solid(void *context, struct error *err) {
     struct friction *friction = NULL;
     struct friction_state state;
     double z[POINTS];
-    (void)context;
-    heights(&LINE, 0.02, z);
-    int status = friction_create(&friction, &LINE, &MESHED, &FULL_DEFAULTS, &FRICTION, err);
+    const struct grid *grid = context;
+    heights(grid, 0.02, z);
+    int status = friction_create(&friction, grid, &MESHED, &FULL_DEFAULTS, &FRICTION, err);
     if (status == 0)
         status = friction_begin(friction, z, err);
     if (status == 0)
@@ -174,7 +174,11 @@ static int drag_solid(void *context, struct error *err) {
 /* UMFPACK tries again with less memory. */
 static void friction(void **state) {
     (void)state;
-    each_allocation(&(struct failing_call){.name = "friction", drag_solid, .may_succeed = true});
+    struct grid line = LINE, surface = GRID;
+    each_allocation(&(struct failing_call){
+        .name = "friction", drag_solid, .context = &line, .may_succeed = true});
+    each_allocation(&(struct failing_call){
+        .name = "friction of a surface", drag_solid, .context = &surface, .may_succeed = true});
 }
 
 static int fit_all(void *context, struct error *err) {

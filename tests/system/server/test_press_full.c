@@ -146,8 +146,28 @@ static void what_has_no_meaning_is_refused(void **state) {
     }
     check_shell("awk 'BEGIN { for (i = 0; i < 256; i++) printf \"%.5f%c\", cos(i * 0.3), i % 16 < "
                 "15 ? 44 : 10 }' > small.csv");
-    assert_int_equal(run_shell("$RUGO press small.csv --dx 10 --model full --friction 0.2"), 2);
-    assert_true(contains("shell.err", "that of profiles alone, and this is a surface; --model"));
+    assert_int_equal(
+        run_shell("$RUGO press small.csv --dx 10 --model full --friction 0.2 --direction y"), 2);
+    assert_true(contains("shell.err", "--direction y: the model full drags the flat along x"));
+}
+
+/* The flat slides over a surface, too: with the friction of all of the pressure in the end. */
+static void surfaces_slide(void **state) {
+    (void)state;
+    check_shell("awk 'BEGIN { for (i = 0; i < 256; i++) printf \"%.5f%c\", cos(i * 0.393) * "
+                "cos(int(i / 16) * 0.393), i % 16 < 15 ? 44 : 10 }' > waves.csv && $RUGO press "
+                "waves.csv --dx 10 --boundary periodic --model full --loads 0.1 --error none "
+                "--friction 0.2 --slide-to 1 --slide-steps 4 --format json > waves.json");
+    cJSON *map = read_json("waves.json");
+    const cJSON *force = json_at(map, "/sliding/force");
+    assert_int_equal(cJSON_GetArraySize(force), 5);
+    for (int i = 1; i < 5; i++)
+        assert_true(cJSON_GetArrayItem(force, i)->valuedouble >=
+                    cJSON_GetArrayItem(force, i - 1)->valuedouble);
+    check_relative(cJSON_GetArrayItem(force, 4)->valuedouble, 0.2, 1e-3);
+    check_close(json_at(map, "/sliding/stick_area/4")->valuedouble, 0, 0);
+    assert_null(json_at(map, "/note"));
+    cJSON_Delete(map);
 }
 
 int main(void) {
@@ -158,6 +178,7 @@ int main(void) {
         cmocka_unit_test(open_maps_are_mirrored),
         cmocka_unit_test(what_it_takes_is_estimated),
         cmocka_unit_test(what_has_no_meaning_is_refused),
+        cmocka_unit_test(surfaces_slide),
     };
     return cmocka_run_group_tests(tests, setup, NULL);
 }

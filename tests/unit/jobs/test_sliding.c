@@ -1,8 +1,9 @@
 /* Protects friction at finite strain in studies: the flat slides fully in the end, and its work is
  * then that of the friction; where slopes are small, curves are those of lighter loads (nu near
- * 1/2) and of the coupled half-plane; a path turns; friction while pressing leaves nodes that slide
- * and less area; a realisation that ends early has a note and no values from there on; curves do
- * not depend on how realisations are cut into blocks; what cannot be computed is refused. */
+ * 1/2) and of the coupled half-plane or half-space; a path turns; friction while pressing leaves
+ * nodes that slide and less area; a realisation that ends early has a note and no values from there
+ * on; curves do not depend on how realisations are cut into blocks; what cannot be computed is
+ * refused. */
 #include "jobs/contact/contact_case_read.h"
 #include "jobs/contact/quantity/quantity.h"
 #include "tests/support/check.h"
@@ -130,6 +131,41 @@ static void small_slopes_slide_as_the_half_plane(void **state) {
     }
 }
 
+/* Surfaces of small slopes and the coupled half-space: the same path, with all curves and the error
+ * of the model. Directions of tractions turn until the end, so that the force comes to mu P within
+ * a thousandth. */
+static void surfaces_slide_as_the_half_space(void **state) {
+    (void)state;
+    cJSON *document =
+        solve("{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 1.5, \"length_ratio\": 2, "
+              "\"points_per_wavelength\": 8, \"rms_slope\": 0.01}, \"contact\": {\"cell_error\": "
+              "\"none\", \"levels\": [4, 8], \"gap_weighting\": \"dual\", \"model\": "
+              "[\"full\", \"halfspace\"], \"friction\": 0.3, \"slip\": {\"to\": [1.2], \"steps\": "
+              "12}, \"pressures\": {\"values\": [0.1]}}}",
+              1);
+    static const struct {
+        const char *name;
+        double scale, apart;
+    } CURVES[] = {{"sliding_force", 0.3, 0.03},        {"sliding_stick_area", 1, 0.1},
+                  {"sliding_stick_load", 1, 0.1},      {"sliding_contact_area", 1, 0.05},
+                  {"sliding_dissipation", 0.03, 0.05}, {"sliding_gap", 1, 0.01}};
+    for (size_t c = 0; c < sizeof CURVES / sizeof *CURVES; c++) {
+        const cJSON *full = curve_of(document, CURVES[c].name, "", "full");
+        const cJSON *linear = curve_of(document, CURVES[c].name, "", "halfspace");
+        double most = 0;
+        assert_int_equal(points(full), 13);
+        for (int i = 0; i < points(full); i++)
+            most = fmax(most, fabs(at(full, "/y", i) - at(linear, "/y", i)));
+        printf("[   INFO   ] %s: %.4f apart\n", CURVES[c].name, most / CURVES[c].scale);
+        assert_true(most <= CURVES[c].apart * CURVES[c].scale);
+        assert_true(isfinite(at(linear, "/model_bound", 6)));
+    }
+    const cJSON *force = curve_of(document, "sliding_force", "", "full");
+    check_relative(at(force, "/y", 12), MU, 1e-3);
+    assert_near(at(curve_of(document, "sliding_stick_area", "", "full"), "/y", 12), 0, 0, 1.2);
+    cJSON_Delete(document);
+}
+
 /* To and fro: x is how far the flat has gone, tractions turn their sign, and friction takes work
  * all along. */
 static void a_path_turns(void **state) {
@@ -218,9 +254,9 @@ static void what_does_not_fit_is_refused(void **state) {
     (void)state;
     refuse("{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 2, \"length_ratio\": 2, "
            "\"points_per_wavelength\": 4, \"rms_slope\": 0.1}, \"contact\": {\"model\": \"full\", "
-           "\"friction\": 0.3}}",
-           "/contact/friction: the model full has that of profiles alone; leave one of them out, "
-           "or take \"dimension\": 1");
+           "\"friction\": 0.3, \"slip\": {\"direction\": \"y\"}}}",
+           "/contact/slip/direction: \"y\": the model full drags the flat along x; leave one of "
+           "them out");
     refuse(STUDY("0.1", "\"model\": \"full\", \"friction\": 1.5"),
            "/contact/friction: 1.5; allowed with the model full: (0, 1]");
     refuse(STUDY("0.1", "\"model\": \"full\", \"slip\": {\"to\": [1]}"),
@@ -268,6 +304,7 @@ int main(void) {
         cmocka_unit_test(the_flat_slides_fully),
         cmocka_unit_test(small_slopes_slide_by_lighter_loads),
         cmocka_unit_test(small_slopes_slide_as_the_half_plane),
+        cmocka_unit_test(surfaces_slide_as_the_half_space),
         cmocka_unit_test(a_path_turns),
         cmocka_unit_test(a_path_that_ends_has_a_note),
         cmocka_unit_test(blocks_do_not_matter),

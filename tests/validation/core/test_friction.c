@@ -1,7 +1,7 @@
-/* Protects friction at finite strain: the stick radius of a cylinder in closed form, the coupled
- * half-plane where slopes are small, evenly loaded faces, rigid motions, energy, mirror images,
- * contact without friction as the limit, and what it refuses. Drawn scenes must end in an answer
- * that meets Coulomb's law, or in an error with its numbers. */
+/* Protects friction of profiles at finite strain: the stick radius of a cylinder in closed form,
+ * the coupled half-plane where slopes are small, evenly loaded faces, rigid motions, energy, mirror
+ * images, contact without friction as the limit, and what it refuses. Drawn scenes must end in an
+ * answer that meets Coulomb's law, or in an error with its numbers. */
 #include "tests/support/check.h"
 
 #include "core/contact/slip/partial_slip.h"
@@ -469,16 +469,12 @@ static int stop_at_once(void *context) {
 static void refusals(void **state) {
     (void)state;
     struct dragged d = opened(32, 0.3, 0, 0);
-    struct grid surface = {.nx = 16, .ny = 16, .lx = 1, .ly = 1};
     struct error err = {0};
     assert_int_equal(friction_create(&d.solver, &d.grid, &d.block, &d.options, &d.friction, &err),
                      ERROR_INPUT);
     assert_string_equal(err.text, "friction = 0; allowed: above 0, finite");
-    d.friction.coefficient = 0.25;
-    assert_int_equal(friction_create(&d.solver, &surface, &d.block, &d.options, &d.friction, &err),
-                     ERROR_INPUT);
     assert_null(d.solver);
-    assert_non_null(strstr(err.text, "16 x 16"));
+    d.friction.coefficient = 0.25;
     round_off(&d, 10);
     begin(&d);
     assert_int_equal(friction_drag(d.solver, 0.1, &d.state, &err), ERROR_STATE);
