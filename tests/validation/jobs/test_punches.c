@@ -25,7 +25,8 @@ static double height_of(enum shape shape, double x, double y, double size) {
 
 static struct height_map map_of(enum shape shape, size_t side, double x, double y, double size) {
     struct height_map map = {.grid = {side, side, (double)side, (double)side}};
-    double middle = (double)(side / 2);
+    const size_t half = side / 2;
+    double middle = (double)half;
     map.z = array_create(side * side, sizeof *map.z);
     assert_non_null(map.z);
     for (size_t j = 0; j < side; j++)
