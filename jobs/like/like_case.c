@@ -41,6 +41,18 @@ static int read_measured(struct like_case *out, struct values *values, struct er
     return 0;
 }
 
+/* Reads what was fitted, and what of it the map leaves open. */
+static void read_fitted(struct like_case *out, struct values *values) {
+    int held[LIKE_HELD_COUNT];
+    size_t count = values_choices(values, "/surface/like/held", held);
+    out->detrend = (enum detrend)values_choice(values, "/surface/like/detrend");
+    out->spectrum = (enum like_spectrum)values_choice(values, "/surface/like/spectrum");
+    out->heights = (enum like_heights)values_choice(values, "/surface/like/heights");
+    out->uncertainty = (enum like_uncertainty)values_choice(values, "/surface/like/uncertainty");
+    for (size_t h = 0; h < count; h++)
+        out->held[held[h]] = true;
+}
+
 /* Returns how many spacings of the surface's grid one of the map has; 0 where that is no whole
  * number. 0 also where the map is larger than half of the cell: its opposite rims would be
  * neighbours. */
@@ -69,8 +81,9 @@ int like_case_fill(struct like_case *out, struct values *values, const struct su
     if (!out->given)
         return 0;
     check_digest(values);
-    double spacing = values_number(values, "/surface/like/spacing");
-    out->detrend = (enum detrend)values_choice(values, "/surface/like/detrend");
+    const double spacing = values_number(values, "/surface/like/spacing");
+    out->spacing = spacing;
+    read_fitted(out, values);
     size_t before = values_fault_count(values);
     int status = read_points(out, values, surface_case_dimension(values) == 1, err);
     if (isnan(spacing))

@@ -19,6 +19,7 @@ struct fit {
     const char *unit; /* of lengths */
     struct measured_map map;
     struct like_choices choices;
+    bool held[LIKE_HELD_COUNT]; /* by the study */
     bool profile;
     double wavelength; /* lambda_s: the shortest wave that the points hold */
     double side;       /* the shorter one of the map */
@@ -186,6 +187,23 @@ static bool put_prepared(cJSON *like, const struct fit *fit) {
     return put;
 }
 
+/* Writes what the map leaves open; nothing where the study gives spectrum and heights. */
+static bool put_uncertainty(cJSON *like, const struct fit *fit) {
+    const struct like_choices *choices = &fit->choices;
+    bool open = choices->spectrum != LIKE_SPECTRUM_GIVEN ||
+                choices->heights == LIKE_HEIGHTS_QUANTILES || choices->heights == LIKE_HEIGHTS_FIT;
+    enum like_uncertainty uncertainty = open ? fit->source->uncertainty : LIKE_UNCERTAINTY_NONE;
+    bool put =
+        field_put_text(like, "uncertainty", choice_name(LIKE_UNCERTAINTIES, (int)uncertainty));
+    cJSON *held = NULL;
+    for (int h = 0; h < LIKE_HELD_COUNT && put; h++)
+        if (fit->held[h] && uncertainty != LIKE_UNCERTAINTY_NONE) {
+            held = held != NULL ? held : cJSON_AddArrayToObject(like, "held");
+            put = held != NULL && list_put(held, cJSON_CreateString(choice_name(LIKE_HELD, h)));
+        }
+    return put;
+}
+
 static bool put_marks(cJSON *like, const struct fit *fit) {
     const struct like_source *source = fit->source;
     const struct grid *grid = fit->map.grid;
@@ -205,7 +223,8 @@ static bool put_marks(cJSON *like, const struct fit *fit) {
            field_put_text(like, "detrend", choice_name(LIKE_DETRENDS, (int)source->detrend)) &&
            field_put_text(like, "spectrum",
                           choice_name(LIKE_SPECTRA, (int)fit->choices.spectrum)) &&
-           field_put_text(like, "heights", choice_name(LIKE_HEIGHTS, (int)fit->choices.heights));
+           field_put_text(like, "heights", choice_name(LIKE_HEIGHTS, (int)fit->choices.heights)) &&
+           put_uncertainty(like, fit);
 }
 
 static int put_like(cJSON *surface, const struct fit *fit, struct error *err) {
@@ -230,6 +249,9 @@ static void choose(struct fit *fit, const cJSON *surface) {
         .heights = heights_given(surface) ? LIKE_HEIGHTS_GIVEN : fit->source->heights,
         .detrend = fit->source->detrend,
         .off_stated = fit->source->off_stated};
+    fit->held[LIKE_HELD_SCALE] = has(surface, "rms_slope") || has(surface, "rms_height");
+    fit->held[LIKE_HELD_LAY] = has(surface, "anisotropy") || has(surface, "lay_angle");
+    fit->held[LIKE_HELD_ROLLOFF] = has(surface, "rolloff_ratio");
     fit->side = grid_dx(grid) * (double)(fit->profile || grid->nx < grid->ny ? grid->nx : grid->ny);
     fit->wavelength = (own_spectrum && points > 0 ? points : 2) * grid_dx(grid);
 }
