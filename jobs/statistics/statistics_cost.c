@@ -97,8 +97,8 @@ void statistics_case_estimate(const struct statistics_case *one_case, struct stu
                         6 * summits * sizeof(struct summit) + spectra_bytes(one_case) +
                         PROCESS_BYTES;
     out->seconds = expected_seconds(one_case);
-    out->case_seconds = expected_case_seconds(one_case, summits) +
-                        LIKE_DRAWS * statistics_draws_seconds(one_case);
+    out->case_seconds =
+        expected_case_seconds(one_case, summits) + LIKE_DRAWS * statistics_draws_seconds(one_case);
     /* sum of the bins' errors over their sum: integral sqrt(p) / sqrt(N w), p near normal */
     double counted = statistics_case_symmetric(one_case) ? 2 * summits : summits; /* with pits */
     out->relative_error = 2.239 * sqrt(spread / (counted * bins_width(&one_case->height)));
