@@ -5,7 +5,7 @@
 
 #include "core/statistics/spectra/spectrum_fit.h"
 
-enum { JOINT_PATCHES_MOST = 32 };
+enum { JOINT_PATCHES_MOST = 16 };
 
 struct joint_patch {
     const struct map_spectrum *spectrum; /* over circles; borrowed, as the next */
