@@ -134,7 +134,7 @@ static const struct parameter ROWS[] = {
      .help = "what the patch leaves open of the fit: estimated (posterior), as the error patch, by "
              "surfaces that are fitted to sub-maps as large as the map; or none, and results are "
              "those of surfaces with exactly these parameters. Commands that fit a file write "
-             "posterior unless told otherwise"},
+             "posterior unless \"like\" says none"},
     {.path = "/surface/like/held",
      .type = PARAMETER_CHOICES,
      .choices = LIKE_HELD,

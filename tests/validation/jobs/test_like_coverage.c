@@ -1,8 +1,10 @@
 /* Protects: the error "patch" of surfaces like a measured patch says how far they are from the
  * surface that the patch was cut from. Patches are cut from surfaces of known laws, one each. A
  * study like each has 95 % intervals, with the error and without it, of values of the surface and
- * of contact areas, at the same pressures. Measured with RUGO_EFFORT=2, on 128 and 80 patches a
- * law: with it 89 to 98 % hold the truth, without it 4 to 45 %. */
+ * of contact areas, at the same pressures. Measured with RUGO_EFFORT=1 on 64 patches of each
+ * Gaussian law: with it 95 to 98 % hold the truth, without it 11 to 20 %; of areas, on 40 patches,
+ * 98 and 30 %. Without RUGO_EFFORT four patches of one law are tried, and no areas, which take
+ * three minutes. */
 #include "jobs/like/like_fit.h"
 #include "jobs/merger.h"
 #include "jobs/runner.h"
@@ -129,12 +131,14 @@ static void count(struct coverage *coverage, double truth, double unit, double v
     coverage->without += truth >= without.low && truth <= without.high;
 }
 
-/* Prints them. Fewer than 88 % or more than 99.5 % of n would be told from 95 % by the bounds. */
+/* Prints them. Of n intervals 88 % at least are to hold the truth, within two standard errors of
+ * that share. */
 static bool holds(const struct law *law, const char *what, const struct coverage *coverage) {
     const double n = (double)coverage->n, share = (double)coverage->with / n;
     printf("%-40s %-16s %3zu: with the patch %5.1f %%, without %5.1f %%\n", law->name, what,
            coverage->n, 100 * share, 100 * (double)coverage->without / n);
-    return share >= 0.88 - 2 * sqrt(0.88 * 0.12 / n) && coverage->without < 0.7 * n;
+    return share >= 0.88 - 2 * sqrt(0.88 * 0.12 / n) &&
+           (double)coverage->without < fmax(0.7 * n, 4);
 }
 
 static void statistics(void **state) {
@@ -147,7 +151,7 @@ static void statistics(void **state) {
         cJSON *parameters = parameters_of(LAWS[l].surface, "");
         run("statistics", parameters, TRUTH_SEED, TRUTHS, &truth);
         cJSON_Delete(parameters);
-        for (uint64_t r = 0; r < cases_of(64); r++) {
+        for (uint64_t r = 0; r < (every_case() ? 64 * effort() : 4); r++) {
             parameters = like_patch(&LAWS[l], r);
             const double length = json_number_at(parameters, "/surface/like/wavelength", NAN);
             run("statistics", parameters, r, REALISATIONS, &result);
@@ -193,7 +197,7 @@ static void areas(void **state) {
         cJSON *parameters = parameters_of(LAWS[l].surface, rest);
         run("contact", parameters, TRUTH_SEED, TRUTHS, &truth);
         cJSON_Delete(parameters);
-        for (uint64_t r = 0; r < cases_of(40); r++) {
+        for (uint64_t r = 0; r < 40 * effort(); r++) {
             parameters = like_patch(&LAWS[l], r);
             cJSON *contact = cJSON_Parse(
                 "{\"levels\": [2], \"cell_error\": \"none\", \"law_difference\": \"none\","
@@ -218,6 +222,8 @@ static void areas(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(statistics), cmocka_unit_test(areas)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    const struct CMUnitTest quick[] = {cmocka_unit_test(statistics)};
+    const struct CMUnitTest all[] = {cmocka_unit_test(statistics), cmocka_unit_test(areas)};
+    return every_case() ? cmocka_run_group_tests(all, NULL, NULL)
+                        : cmocka_run_group_tests(quick, NULL, NULL);
 }
