@@ -73,6 +73,16 @@ static void check_digest(struct values *values) {
         values_fault(values, path, "a SHA-256 digest has 64 of the digits 0 to 9 and a to f");
 }
 
+/* Draws need cells of twice the sides of the map. */
+static void check_cell(const struct like_case *like, struct values *values) {
+    const double points = (like->ny == 1 ? 2 : 4) * (double)like->nx * (double)like->ny;
+    if (like->uncertainty == LIKE_UNCERTAINTY_POSTERIOR && points > SURFACE_POINTS_MOST)
+        values_fault(values, "/surface/like/uncertainty",
+                     "cells of twice the sides of the map have %.3g points; %.0f are allowed, and "
+                     "\"none\" needs no such cells",
+                     points, SURFACE_POINTS_MOST);
+}
+
 int like_case_fill(struct like_case *out, struct values *values, const struct surface_case *surface,
                    struct error *err) {
     *out = (struct like_case){.given = values_text(values, "/surface/like/file") != NULL};
@@ -88,6 +98,8 @@ int like_case_fill(struct like_case *out, struct values *values, const struct su
     int status = read_points(out, values, surface_case_dimension(values) == 1, err);
     if (isnan(spacing))
         values_fault(values, "/surface/like/spacing", "missing: distance of the points of the map");
+    if (status == 0)
+        check_cell(out, values);
     if (status == 0 && surface != NULL && values_fault_count(values) == before)
         out->stride = stride_of(out, &surface->grid, spacing);
     return status == 0 ? read_measured(out, values, err) : status;

@@ -13,7 +13,7 @@ struct like_draw {
     const struct surface_case *base;
     struct grid cell;        /* of the surfaces that are cut */
     struct like_case cut;    /* how they are */
-    struct generator *whole; /* owned, as all below: of these surfaces */
+    struct generator *whole; /* owned, as all below: of these surfaces; NULL: there are none */
     struct like_patch *patch;
     double *cut_z;        /* of their cell */
     double *z, *gaussian; /* of the cell of the case; the latter NULL until it is wanted */
@@ -68,9 +68,11 @@ static int draw_fill(struct like_draw *draw, struct error *err) {
     const size_t points = grid_points(&surface->grid);
     struct surface_options options = surface->options;
     options.amplitudes = AMPLITUDES_RANDOM; /* a patch is not of a surface with an exact spectrum */
-    int status = generator_create(&draw->whole, &surface->spectrum, &draw->cell, &options, err);
-    if (status == 0)
-        status = like_patch_create(&draw->patch, &draw->cut, &draw->cell, err);
+    struct error reason = {0};
+    int status = generator_create(&draw->whole, &surface->spectrum, &draw->cell, &options, &reason);
+    if (status != 0 && status != ERROR_INPUT)
+        return error_set(err, status, "%s", reason.text);
+    status = like_patch_create(&draw->patch, &draw->cut, &draw->cell, err);
     if (status != 0)
         return status;
     draw->cut_z = array_create(grid_points(&draw->cell), sizeof *draw->cut_z);
@@ -106,6 +108,9 @@ static int estimate_draw(struct like_draw *draw, struct random_key key, struct e
     const struct like_choices choices = {like->spectrum, like->heights, like->detrend, true};
     const double *heights;
     key.sequence ^= UINT64_C(1) << SUBMAP_BIT;
+    if (draw->whole == NULL)
+        return error_set(err, ERROR_INPUT,
+                         "the points of the map do not hold the waves of the case");
     int status = generator_run(draw->whole, key, draw->cut_z, NULL, err);
     if (status == 0)
         status = like_patch_cut(draw->patch, draw->cut_z, &heights, err);

@@ -23,8 +23,8 @@ static inline struct subset like_draw_due(void) {
 }
 
 struct like_draw;
-/* Borrows both; to the case like_draw_applies. ERROR_INPUT where the points of the map do not hold
- * the waves of the case. */
+/* Borrows both; to the case like_draw_applies. Where the points of the map do not hold the waves of
+ * the case, no surface can be made. */
 int like_draw_create(struct like_draw **out, const struct like_case *like,
                      const struct surface_case *surface, struct error *err);
 void like_draw_destroy(struct like_draw **draw);

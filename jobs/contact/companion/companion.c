@@ -1,6 +1,5 @@
 #include "jobs/contact/companion/companion.h"
 #include <stdlib.h>
-#include <string.h>
 
 #define ADDRESS(name) &COMPANION_ROW_##name,
 const struct companion *const COMPANIONS[COMPANION_COUNT] = {COMPANION_NAMES(ADDRESS)};
@@ -57,20 +56,6 @@ double companions_first_seconds(const struct contact_case *one_case) {
                        ((double)draws - (double)plan->due.first / (double)plan->due.interval);
     }
     return seconds;
-}
-
-int companion_press_own(const struct companion_own *own, const struct contact_surface *surface,
-                        struct contact_tally *tally, double *series,
-                        const struct contact_stopper *stopper, struct error *err) {
-    const struct contact_case *one_case = tally->one_case;
-    if (subset_has(&one_case->companions[COMPANION_PROBE].due, surface->key.realisation)) {
-        memcpy(series, contact_tally_series(tally, COMPANION_PROBE, 0, 0),
-               measure_paired(one_case) * contact_case_slots(one_case) * sizeof *series);
-        return 0;
-    }
-    int status = contact_level_sample(own->level, &one_case->surface, own->rms_height, surface->z,
-                                      own->z, err);
-    return status != 0 ? status : coarse_solver_press(own->halfspace, own->z, series, stopper, err);
 }
 
 int companions_curves(const struct contact_tally *tally, struct case_result *out,

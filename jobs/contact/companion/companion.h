@@ -90,19 +90,6 @@ int companion_bench_solve(struct companion_bench *bench, const struct contact_su
                           struct contact_tally *tally, const struct contact_stopper *stopper,
                           struct error *err);
 
-/* Where a companion presses the surface of the case; all borrowed. */
-struct companion_own {
-    struct coarse_solver *halfspace;
-    const struct contact_level *level; /* that of coarse_level */
-    double rms_height;                 /* of the surfaces */
-    double *z;                         /* room for heights on the level */
-};
-/* Fills a series: presses the surface of the case, or copies the values of the probe, which has
- * pressed it on the same mesh if it was due. */
-int companion_press_own(const struct companion_own *own, const struct contact_surface *surface,
-                        struct contact_tally *tally, double *series,
-                        const struct contact_stopper *stopper, struct error *err);
-
 /* Presses a measured map, heights in lambda_s without its trend, as the sub-maps of random surfaces
  * are: area by edges and mean gap/sqrt(m0) at each load of a case with surfaces like it. NaN where
  * no solution is found. */

@@ -7,6 +7,7 @@
  * realisation, but for the first ones of a small study. */
 #include "jobs/contact/companion/companion_law.h"
 #include "jobs/contact/companion/companion.h"
+#include "jobs/contact/companion/companion_own.h"
 #include "jobs/surface/other_law.h"
 #include <stdlib.h>
 

@@ -4,6 +4,7 @@
  * are in the units of the case for both: its slope and height are parameters that the patch leaves
  * open. The relative difference of these pairs stands for that of other models and meshes. */
 #include "jobs/contact/companion/companion.h"
+#include "jobs/contact/companion/companion_own.h"
 #include "jobs/like/like_draw.h"
 #include <stdlib.h>
 
