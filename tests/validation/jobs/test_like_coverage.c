@@ -96,7 +96,7 @@ static cJSON *like_patch(const struct law *law, uint64_t realisation) {
     assert_int_equal(height_map_shape(&map, SIDE, SIDE, grid_dx(&one.grid), &err), 0);
     map.z = calloc((size_t)SIDE * SIDE, sizeof *map.z);
     assert_true(map.z != NULL && one.grid.nx == 2 * SIDE);
-    for (size_t j = 0; j < SIDE; j++)
+    for (size_t j = 0; j < SIDE && z != NULL; j++)
         memcpy(map.z + j * SIDE, z + j * one.grid.nx, SIDE * sizeof *z);
     assert_int_equal(detrend(&map.grid, map.z, DETREND_PLANE, &trend, &err), 0);
     cJSON *parameters = cJSON_CreateObject();
