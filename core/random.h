@@ -16,7 +16,7 @@ enum random_stream {
     STREAM_AMPLITUDES = 3
 };
 
-enum { COUNTER_BIT = 60 };
+enum { COUNTER_BIT = 60, SUBMAP_BIT = 59 };
 
 /* Selects random numbers. Plain data that may be copied. */
 struct random_key {
@@ -24,7 +24,8 @@ struct random_key {
     uint64_t sequence; /* 0; or the case's number, where cases share no random numbers; with one of
                           the three highest bits, and a number from bit 40 on, for surfaces beside
                           the realisations; with the fourth highest, COUNTER_BIT, for the counter
-                          faces of all these */
+                          faces of all these; with the fifth, SUBMAP_BIT, for surfaces of which
+                          sub-maps stand for a measured one */
     uint64_t realisation;
 };
 

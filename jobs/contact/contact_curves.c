@@ -395,6 +395,34 @@ static int append_own(struct contact_curve_maker *maker, size_t m, struct error 
     return status;
 }
 
+/* Adds the error of the density of pressures by the patch: that by the change of the area. */
+static int put_patch(struct contact_curve_maker *maker, size_t model, size_t at,
+                     struct curve *curve, struct error *err) {
+    const struct contact_case *one_case = maker->one_case;
+    const size_t n = curve->n, load = one_case->pdf_loads[at];
+    if (!contact_errors(maker->tally, MEASURE_EDGES, model, ERROR_PATCH, maker->errors) ||
+        isnan(maker->errors[load].value))
+        return 0;
+    double *value = result_numbers(maker->result, 3 * n);
+    if (value == NULL)
+        return no_room(err);
+    const struct contact_error *of_area = &maker->errors[load];
+    const double area =
+        contact_mean(maker->tally, MEASURE_EDGES, model, one_case->level_count - 1, load).value;
+    for (size_t b = 0; b < n; b++) {
+        const double by = contact_errors_stretch(n, curve->x, curve->y, b) / area;
+        value[b] = by * of_area->value;
+        value[n + b] = fabs(by) * of_area->bound;
+        value[2 * n + b] = fabs(by) * of_area->standard_error;
+    }
+    curve->errors[ERROR_PATCH] = (struct curve_error){.applies = true,
+                                                      .value = value,
+                                                      .bound = value + n,
+                                                      .standard_error = value + 2 * n,
+                                                      .order = NAN};
+    return 0;
+}
+
 /* Adds the law difference of the density of pressures, which is x and y of the curve: that by the
  * change of the area. */
 static int put_law(struct contact_curve_maker *maker, size_t model, size_t at, struct curve *curve,
@@ -471,7 +499,9 @@ static int append_pressures(struct contact_curve_maker *maker, size_t model, siz
     curve.counted = true;
     curve.underflow = (double)count[0] / parts;
     curve.overflow = (double)count[n + 1] / parts;
-    int status = put_law(maker, model, at, &curve, err);
+    int status = put_patch(maker, model, at, &curve, err);
+    if (status == 0)
+        status = put_law(maker, model, at, &curve, err);
     return status != 0 ? status : result_add_curve(maker->result, &curve, err);
 }
 

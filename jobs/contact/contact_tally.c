@@ -332,6 +332,12 @@ uint64_t contact_tally_draws(const struct contact_tally *tally, enum companion_n
         .sums.counts.count[companion_cell(tally->one_case, series, measure, load)];
 }
 
+uint64_t contact_tally_pairs(const struct contact_tally *tally, enum companion_name companion,
+                             size_t pair, enum contact_measure measure, size_t load) {
+    return tally->companions[companion]
+        .differences.counts.count[companion_cell(tally->one_case, pair, measure, load)];
+}
+
 struct estimate contact_tally_pair(const struct contact_tally *tally, enum companion_name companion,
                                    size_t pair, enum contact_measure measure, size_t load) {
     return contact_sums_mean(&tally->companions[companion].differences,

@@ -99,6 +99,9 @@ struct estimate contact_tally_pair(const struct contact_tally *tally, enum compa
 /* Counts the values of a series of a companion of the case: one a draw. */
 uint64_t contact_tally_draws(const struct contact_tally *tally, enum companion_name companion,
                              size_t series, enum contact_measure measure, size_t load);
+/* Counts the differences of a pair: one a draw in which both series have a value. */
+uint64_t contact_tally_pairs(const struct contact_tally *tally, enum companion_name companion,
+                             size_t pair, enum contact_measure measure, size_t load);
 /* Returns a mean of at least two realisations, and NaN for one, which shows no scatter. */
 static inline struct estimate contact_tally_several(struct estimate mean) {
     return isnan(mean.standard_error) ? (struct estimate){NAN, NAN} : mean;

@@ -41,6 +41,18 @@ static int read_measured(struct like_case *out, struct values *values, struct er
     return 0;
 }
 
+/* Reads what was fitted, and what of it the map leaves open. */
+static void read_fitted(struct like_case *out, struct values *values) {
+    int held[LIKE_HELD_COUNT];
+    size_t count = values_choices(values, "/surface/like/held", held);
+    out->detrend = (enum detrend)values_choice(values, "/surface/like/detrend");
+    out->spectrum = (enum like_spectrum)values_choice(values, "/surface/like/spectrum");
+    out->heights = (enum like_heights)values_choice(values, "/surface/like/heights");
+    out->uncertainty = (enum like_uncertainty)values_choice(values, "/surface/like/uncertainty");
+    for (size_t h = 0; h < count; h++)
+        out->held[held[h]] = true;
+}
+
 /* Returns how many spacings of the surface's grid one of the map has; 0 where that is no whole
  * number. 0 also where the map is larger than half of the cell: its opposite rims would be
  * neighbours. */
@@ -61,6 +73,16 @@ static void check_digest(struct values *values) {
         values_fault(values, path, "a SHA-256 digest has 64 of the digits 0 to 9 and a to f");
 }
 
+/* Draws need cells of twice the sides of the map. */
+static void check_cell(const struct like_case *like, struct values *values) {
+    const double points = (like->ny == 1 ? 2 : 4) * (double)like->nx * (double)like->ny;
+    if (like->uncertainty == LIKE_UNCERTAINTY_POSTERIOR && points > SURFACE_POINTS_MOST)
+        values_fault(values, "/surface/like/uncertainty",
+                     "cells of twice the sides of the map have %.3g points; %.0f are allowed, and "
+                     "\"none\" needs no such cells",
+                     points, SURFACE_POINTS_MOST);
+}
+
 int like_case_fill(struct like_case *out, struct values *values, const struct surface_case *surface,
                    struct error *err) {
     *out = (struct like_case){.given = values_text(values, "/surface/like/file") != NULL};
@@ -69,12 +91,15 @@ int like_case_fill(struct like_case *out, struct values *values, const struct su
     if (!out->given)
         return 0;
     check_digest(values);
-    double spacing = values_number(values, "/surface/like/spacing");
-    out->detrend = (enum detrend)values_choice(values, "/surface/like/detrend");
+    const double spacing = values_number(values, "/surface/like/spacing");
+    out->spacing = spacing;
+    read_fitted(out, values);
     size_t before = values_fault_count(values);
     int status = read_points(out, values, surface_case_dimension(values) == 1, err);
     if (isnan(spacing))
         values_fault(values, "/surface/like/spacing", "missing: distance of the points of the map");
+    if (status == 0)
+        check_cell(out, values);
     if (status == 0 && surface != NULL && values_fault_count(values) == before)
         out->stride = stride_of(out, &surface->grid, spacing);
     return status == 0 ? read_measured(out, values, err) : status;

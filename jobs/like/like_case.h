@@ -11,9 +11,14 @@
 struct like_case {
     bool given;           /* the case resembles a measured surface */
     size_t nx, ny;        /* points of its map; of a profile ny is 1 */
+    double spacing;       /* of its points, in lambda_s */
     size_t stride;        /* spacing of its points in those of the surface's grid; 0: no sub-maps,
                            * as they would not fit into the cell, or not have its points */
     enum detrend detrend; /* of the map, and of each sub-map */
+    enum like_spectrum spectrum; /* where the parameters of the surfaces come from */
+    enum like_heights heights;
+    enum like_uncertainty uncertainty;
+    bool held[LIKE_HELD_COUNT];            /* given by the study */
     double measured[PATCH_QUANTITY_COUNT]; /* of the map, lengths in lambda_s; NaN: not known */
 };
 /* Reads the measured surface from values that a kind has checked by tables with LIKE_PARAMETERS

@@ -15,6 +15,7 @@ struct like_source {
     enum detrend detrend; /* of the trend that was removed */
     enum like_spectrum spectrum;
     enum like_heights heights;
+    enum like_uncertainty uncertainty;
     bool off_stated; /* surfaces whose RMS values are off by more than 5 % are made all the same */
 };
 

@@ -12,6 +12,10 @@ const struct choice LIKE_HEIGHTS[] = {{"quantiles", LIKE_HEIGHTS_QUANTILES},
                                       {"gaussian", LIKE_HEIGHTS_GAUSSIAN},
                                       {"given", LIKE_HEIGHTS_GIVEN},
                                       {0}};
+const struct choice LIKE_UNCERTAINTIES[] = {
+    {"none", LIKE_UNCERTAINTY_NONE}, {"posterior", LIKE_UNCERTAINTY_POSTERIOR}, {0}};
+const struct choice LIKE_HELD[] = {
+    {"scale", LIKE_HELD_SCALE}, {"lay", LIKE_HELD_LAY}, {"rolloff", LIKE_HELD_ROLLOFF}, {0}};
 #define DETREND(type, name, value) {name, DETREND_##type},
 const struct choice LIKE_DETRENDS[] = {{"none", DETREND_NONE}, RUGO_TRENDS(DETREND){0}};
 #define QUANTITY(quantity, name, power) {name, PATCH_##quantity},
@@ -121,6 +125,23 @@ static const struct parameter ROWS[] = {
      .example_json = "\"quantiles\"",
      .help = "where the heights come from: quantiles of the map, a distribution fitted to it, "
              "Gaussian ones, or given by the study"},
+    {.path = "/surface/like/uncertainty",
+     .type = PARAMETER_CHOICE,
+     .choices = LIKE_UNCERTAINTIES,
+     .later = true,
+     .default_json = "\"none\"",
+     .example_json = "\"posterior\"",
+     .help = "what the patch leaves open of the fit: estimated (posterior), as the error patch, by "
+             "surfaces that are fitted to sub-maps as large as the map; or none, and results are "
+             "those of surfaces with exactly these parameters. Commands that fit a file write "
+             "posterior unless \"like\" says none"},
+    {.path = "/surface/like/held",
+     .type = PARAMETER_CHOICES,
+     .choices = LIKE_HELD,
+     .later = true,
+     .example_json = "[\"scale\"]",
+     .help = "what the study gave itself, and the patch does not leave open: the RMS slope or "
+             "height (scale), the anisotropy (lay), the roll-off of a fitted law (rolloff)"},
     {.path = "/surface/like/quantities",
      .type = PARAMETER_CHOICES,
      .choices = LIKE_QUANTITIES,

@@ -12,7 +12,12 @@ enum like_heights {
     LIKE_HEIGHTS_GAUSSIAN,
     LIKE_HEIGHTS_GIVEN
 };
-extern const struct choice LIKE_SPECTRA[], LIKE_HEIGHTS[], LIKE_DETRENDS[], LIKE_QUANTITIES[];
+/* Whether what the patch leaves open is estimated (like_draw.h). */
+enum like_uncertainty { LIKE_UNCERTAINTY_NONE, LIKE_UNCERTAINTY_POSTERIOR };
+/* What the study gave itself, so that no patch leaves it open. */
+enum like_held { LIKE_HELD_SCALE, LIKE_HELD_LAY, LIKE_HELD_ROLLOFF, LIKE_HELD_COUNT };
+extern const struct choice LIKE_SPECTRA[], LIKE_HEIGHTS[], LIKE_DETRENDS[], LIKE_QUANTITIES[],
+    LIKE_UNCERTAINTIES[], LIKE_HELD[];
 
 /* The rows of /surface/like/... */
 extern const struct parameter_table LIKE_PARAMETERS;

@@ -4,6 +4,7 @@
 #include "jobs/merger.h"
 #include "jobs/statistics/statistics_case.h"
 #include "jobs/statistics/statistics_curves.h"
+#include "jobs/statistics/statistics_draws.h"
 #include "jobs/statistics/statistics_grid_theory.h"
 #include "jobs/statistics/statistics_law.h"
 #include "jobs/statistics/statistics_levels.h"
@@ -185,6 +186,7 @@ struct statistics_workspace {
     struct spectra spectra;
     struct statistics_law *law;        /* NULL for Gaussian heights */
     struct like_patch *patch;          /* NULL: no sub-maps are measured */
+    struct statistics_draws *draws;    /* NULL: what the patch leaves open is not asked for */
     struct summit_list summits[SIDES]; /* of a symmetric case the first holds all */
 };
 
@@ -214,6 +216,8 @@ static int workspace_create(void *workspace, const void *one_case,
         status = spectra_create(&work->spectra, statistics, modes, err);
     if (status == 0 && like_case_is_cut(&statistics->like))
         status = like_patch_create(&work->patch, &statistics->like, grid, err);
+    if (status == 0)
+        status = statistics_draws_create(&work->draws, statistics, &basis->moments, err);
     if (status != 0)
         return status;
     return statistics_law_create(&work->law, statistics, &basis->moments, err);
@@ -223,6 +227,7 @@ static void workspace_clear(void *workspace) {
     struct statistics_workspace *work = workspace;
     statistics_law_destroy(&work->law);
     like_patch_destroy(&work->patch);
+    statistics_draws_destroy(&work->draws);
     summit_finder_destroy(&work->finder);
     levels_workspace_destroy(&work->levels);
     spectra_clear(&work->spectra);
@@ -301,6 +306,10 @@ static int realise(void *workspace, const struct realisation *realisation, void 
     if (status != 0)
         return status;
     struct statistics_levels *levels = tally;
+    status = statistics_draws_measure(work->draws, realisation, work->summits, scalars,
+                                      levels->draws, err);
+    if (status != 0)
+        return status;
     return statistics_law_measure(work->law, realisation, work->summits, levels->pairs, scalars,
                                   err);
 }
@@ -364,6 +373,8 @@ static int result(const void *one_case, const struct surface_basis *basis, const
     const struct statistics_levels *levels = tally;
     if (status == 0)
         status = statistics_law_differences(one_case, realisations, levels->pairs, out, err);
+    if (status == 0)
+        status = statistics_draws_errors(one_case, levels->draws, out, err);
     return status != 0 ? status : statistics_levels_errors(tally, out, err);
 }
 

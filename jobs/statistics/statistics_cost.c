@@ -3,6 +3,7 @@
 #include "core/surface/spectrum.h"
 #include "jobs/publishing_cost.h"
 #include "jobs/statistics/statistics_case.h"
+#include "jobs/statistics/statistics_draws.h"
 #include "jobs/statistics/statistics_law.h"
 #include "jobs/statistics/statistics_levels.h"
 #include "jobs/statistics/statistics_spectra.h"
@@ -92,10 +93,12 @@ void statistics_case_estimate(const struct statistics_case *one_case, struct stu
                                             sampled.y, wanted) +
                         (wanted ? (double)grid_points(grid) * sizeof(double) : 0) +
                         statistics_tally_bytes(one_case) + statistics_levels_bytes(one_case) +
-                        like_patch_bytes(&one_case->like) + 6 * summits * sizeof(struct summit) +
-                        spectra_bytes(one_case) + PROCESS_BYTES;
+                        like_patch_bytes(&one_case->like) + statistics_draws_bytes(one_case) +
+                        6 * summits * sizeof(struct summit) + spectra_bytes(one_case) +
+                        PROCESS_BYTES;
     out->seconds = expected_seconds(one_case);
-    out->case_seconds = expected_case_seconds(one_case, summits);
+    out->case_seconds =
+        expected_case_seconds(one_case, summits) + LIKE_DRAWS * statistics_draws_seconds(one_case);
     /* sum of the bins' errors over their sum: integral sqrt(p) / sqrt(N w), p near normal */
     double counted = statistics_case_symmetric(one_case) ? 2 * summits : summits; /* with pits */
     out->relative_error = 2.239 * sqrt(spread / (counted * bins_width(&one_case->height)));

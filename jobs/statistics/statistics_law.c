@@ -96,20 +96,17 @@ void statistics_law_destroy(struct statistics_law **law) {
     *law = NULL;
 }
 
-/* Adds one surface of a pair to its sums. */
-static void surface_add(struct statistics_law *law, enum pair_surface surface, size_t group,
-                        const double *z, const struct summit_list summits[],
-                        struct statistics_groups *sums) {
-    const struct statistics_case *one_case = law->one_case;
-    struct summit_counts *counts = &law->counts;
+void statistics_pair_add(const struct statistics_case *one_case, struct summit_counts *counts,
+                         const struct summit_scales *scales, size_t group, const double *z,
+                         const struct summit_list summits[], struct statistics_groups *sums) {
     sums->realisations[group]++;
-    histogram_add(&one_case->height, grid_points(&one_case->surface.grid), z,
-                  law->scales[surface].height, counts->height);
+    histogram_add(&one_case->height, grid_points(&one_case->surface.grid), z, scales->height,
+                  counts->height);
     statistics_groups_count(sums, group, statistics_group_offsets(one_case).height,
                             cells_of(&one_case->height), counts->height);
     summit_counts_zero(counts, one_case);
-    for (size_t side = 0; side < SIDES; side++) {
-        summit_counts_fill(counts, one_case, &law->scales[surface], &summits[side]);
+    for (size_t side = 0; side < statistics_case_sides(one_case); side++) {
+        summit_counts_fill(counts, one_case, scales, &summits[side]);
         statistics_groups_side(sums, one_case, group, side, counts);
         summit_counts_zero(counts, one_case);
     }
@@ -143,8 +140,10 @@ int statistics_law_measure(struct statistics_law *law, const struct realisation 
     for (size_t a = 0; a < LAW_COUNT; a++)
         scalars[SCALAR_LAW + a] = others[LAW_OWN[a]];
     size_t group = group_of(subset_ordinal(&law->due, key.realisation));
-    surface_add(law, PAIR_OWN, group, realisation->z, own, &pairs[PAIR_OWN]);
-    surface_add(law, PAIR_OTHER, group, z, law->summits, &pairs[PAIR_OTHER]);
+    statistics_pair_add(law->one_case, &law->counts, &law->scales[PAIR_OWN], group, realisation->z,
+                        own, &pairs[PAIR_OWN]);
+    statistics_pair_add(law->one_case, &law->counts, &law->scales[PAIR_OTHER], group, z,
+                        law->summits, &pairs[PAIR_OTHER]);
     return 0;
 }
 

@@ -27,6 +27,11 @@ int statistics_law_measure(struct statistics_law *law, const struct realisation 
 double statistics_law_bytes(const struct statistics_case *one_case);
 double statistics_law_seconds(const struct statistics_case *one_case);
 
+/* Adds one surface of a pair, in its scales, to the sums of curves of a group. counts: scratch. */
+void statistics_pair_add(const struct statistics_case *one_case, struct summit_counts *counts,
+                         const struct summit_scales *scales, size_t group, const double *z,
+                         const struct summit_list summits[], struct statistics_groups *sums);
+
 /* Returns whether sums of pairs can be those of some realisations of a tally. */
 bool statistics_law_fits(const struct statistics_groups pairs[PAIR_SURFACES],
                          const struct statistics_tally *tally);

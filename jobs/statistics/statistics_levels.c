@@ -1,6 +1,7 @@
 #include "jobs/statistics/statistics_levels.h"
 #include "core/statistics/uncertainty/richardson.h"
 #include "jobs/estimate.h"
+#include "jobs/statistics/statistics_draws.h"
 #include "jobs/statistics/statistics_scalars.h"
 #include "jobs/statistics/summit_heights.h"
 #include "jobs/surface/other_law.h"
@@ -21,6 +22,10 @@ struct statistics_case statistics_level_case(const struct statistics_case *one_c
 
 static bool levels_have_pairs(const struct statistics_levels *levels) {
     return levels->pairs[PAIR_OWN].counts > 0;
+}
+
+static bool levels_have_draws(const struct statistics_levels *levels) {
+    return levels->draws[PAIR_OWN].counts > 0;
 }
 
 static int pairs_create(struct statistics_levels *out, const struct statistics_case *one_case,
@@ -47,6 +52,8 @@ int statistics_levels_create(struct statistics_levels *out, const struct statist
         status = statistics_groups_create(&out->moments[l], SIDES, LEVEL_SUMS, err);
     if (status == 0 && other_law_applies(&one_case->surface))
         status = pairs_create(out, one_case, err);
+    if (status == 0)
+        status = statistics_draws_sums(out->draws, one_case, err);
     if (status != 0)
         statistics_levels_clear(out);
     return status;
@@ -58,8 +65,10 @@ void statistics_levels_clear(struct statistics_levels *levels) {
         statistics_tally_clear(&levels->tallies[l]);
     for (size_t l = 0; l <= STATISTICS_LEVELS_MOST; l++)
         statistics_groups_clear(&levels->moments[l]);
-    for (size_t a = 0; a < PAIR_SURFACES; a++)
+    for (size_t a = 0; a < PAIR_SURFACES; a++) {
         statistics_groups_clear(&levels->pairs[a]);
+        statistics_groups_clear(&levels->draws[a]);
+    }
     *levels = (struct statistics_levels){0};
 }
 
@@ -71,6 +80,8 @@ void statistics_levels_put(struct bytes *bytes, const struct statistics_levels *
         statistics_groups_put(bytes, &levels->moments[l]);
     for (size_t a = 0; levels_have_pairs(levels) && a < PAIR_SURFACES; a++)
         statistics_groups_put(bytes, &levels->pairs[a]);
+    for (size_t a = 0; levels_have_draws(levels) && a < PAIR_SURFACES; a++)
+        statistics_groups_put(bytes, &levels->draws[a]);
 }
 
 void statistics_levels_get(struct byte_reader *reader, struct statistics_levels *levels) {
@@ -81,6 +92,8 @@ void statistics_levels_get(struct byte_reader *reader, struct statistics_levels 
         statistics_groups_get(reader, &levels->moments[l]);
     for (size_t a = 0; levels_have_pairs(levels) && a < PAIR_SURFACES; a++)
         statistics_groups_get(reader, &levels->pairs[a]);
+    for (size_t a = 0; levels_have_draws(levels) && a < PAIR_SURFACES && !reader->failed; a++)
+        statistics_groups_get(reader, &levels->draws[a]);
 }
 
 /* Returns whether groups count the summits of a tally. */
@@ -97,8 +110,9 @@ static bool moments_fit(const struct statistics_groups *moments,
 }
 
 bool statistics_levels_add_up(const struct statistics_levels *levels) {
-    bool fit =
-        statistics_tally_adds_up(&levels->own) && statistics_law_fits(levels->pairs, &levels->own);
+    bool fit = statistics_tally_adds_up(&levels->own) &&
+               statistics_law_fits(levels->pairs, &levels->own) &&
+               statistics_draws_fit(levels->draws, (uint64_t)levels->own.points.realisations);
     for (size_t l = 0; l < levels->count && fit; l++)
         fit = statistics_tally_adds_up(&levels->tallies[l]) &&
               levels->tallies[l].points.realisations == levels->own.points.realisations &&
@@ -114,6 +128,8 @@ void statistics_levels_merge(struct statistics_levels *into, const struct statis
         statistics_groups_merge(&into->moments[l], &from->moments[l]);
     for (size_t a = 0; levels_have_pairs(into) && a < PAIR_SURFACES; a++)
         statistics_groups_merge(&into->pairs[a], &from->pairs[a]);
+    for (size_t a = 0; levels_have_draws(into) && a < PAIR_SURFACES; a++)
+        statistics_groups_merge(&into->draws[a], &from->draws[a]);
 }
 
 double statistics_levels_bytes(const struct statistics_case *one_case) {

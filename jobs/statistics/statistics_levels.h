@@ -18,6 +18,7 @@ struct statistics_levels {
      * empty without levels. */
     struct statistics_groups moments[1 + STATISTICS_LEVELS_MOST];
     struct statistics_groups pairs[PAIR_SURFACES]; /* of realisations that have the other law */
+    struct statistics_groups draws[PAIR_SURFACES]; /* of those that have drawn parameters */
 };
 int statistics_levels_create(struct statistics_levels *out, const struct statistics_case *one_case,
                              const struct moments *moments, const struct spectra_sizes *sizes,

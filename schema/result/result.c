@@ -19,6 +19,7 @@ const struct error_source_row ERROR_SOURCE_ROWS[ERROR_SOURCES] = {
                      .standard_error_key = "model_error_standard_error"},
     [ERROR_SOLVER] = {SOURCE_KEYS("solver")},
     [ERROR_MISSING] = {SOURCE_KEYS("missing")},
+    [ERROR_PATCH] = {SOURCE_KEYS("patch"), .bound_has_interval = true},
 };
 
 bool error_is_unresolved(enum error_source source, double value, double bound,

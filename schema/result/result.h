@@ -25,6 +25,7 @@ enum error_source {
     ERROR_MODEL,          /* this model less the most complete one */
     ERROR_SOLVER,         /* an answer to a tolerance less the exact one */
     ERROR_MISSING,        /* a mean over the realisations that have a value less one over all */
+    ERROR_PATCH,          /* surfaces like a measured patch less that which it is a patch of */
     ERROR_SOURCES
 };
 struct error_source_row {

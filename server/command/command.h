@@ -17,7 +17,7 @@
 #define LOG_LEVEL_HELP "the least that is logged on standard error"
 #define SET_HELP "change the study, e.g. --set realisations=100"
 
-enum { ARGUMENTS_MOST = 3, WORKERS_MOST = 4096, SECONDS_MOST = 31536000 };
+enum { ARGUMENTS_MOST = 17, WORKERS_MOST = 4096, SECONDS_MOST = 31536000 };
 
 struct command {
     const char *name, *arguments, *summary;

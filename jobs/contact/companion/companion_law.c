@@ -7,9 +7,9 @@
  * realisation, but for the first ones of a small study. */
 #include "jobs/contact/companion/companion_law.h"
 #include "jobs/contact/companion/companion.h"
+#include "jobs/contact/companion/companion_own.h"
 #include "jobs/surface/other_law.h"
 #include <stdlib.h>
-#include <string.h>
 
 /* Time for these surfaces, over that of the case without, and CPU seconds a realisation that they
  * may take in any case. */
@@ -82,22 +82,6 @@ static void law_clear(void *workspace) {
     free(law->z);
 }
 
-/* Presses the surface of the case, or copies the values of the probe, which has pressed it on the
- * same mesh if it was due. */
-static int press_own(struct law *law, const struct contact_surface *surface,
-                     struct contact_tally *tally, double *series,
-                     const struct contact_stopper *stopper, struct error *err) {
-    const struct contact_case *one_case = tally->one_case;
-    if (subset_has(&one_case->companions[COMPANION_PROBE].due, surface->key.realisation)) {
-        memcpy(series, contact_tally_series(tally, COMPANION_PROBE, 0, 0),
-               measure_paired(one_case) * contact_case_slots(one_case) * sizeof *series);
-        return 0;
-    }
-    int status = contact_level_sample(&law->plan->level, &one_case->surface, law->rms_height,
-                                      surface->z, law->z, err);
-    return status != 0 ? status : coarse_solver_press(law->own, law->z, series, stopper, err);
-}
-
 static int press_other(struct law *law, const struct contact_surface *surface, double *series,
                        const struct contact_stopper *stopper, struct error *err) {
     struct surface_report report;
@@ -116,7 +100,9 @@ static int law_solve(void *workspace, const struct contact_surface *surface,
     const struct contact_case *one_case = tally->one_case;
     if (other_law_surface(law->law) == NULL)
         return 0;
-    int status = press_own(law, surface, tally, companion_series(one_case, out, OWN), stopper, err);
+    const struct companion_own own = {law->own, &law->plan->level, law->rms_height, law->z};
+    int status = companion_press_own(&own, surface, tally, companion_series(one_case, out, OWN),
+                                     stopper, err);
     return status != 0
                ? status
                : press_other(law, surface, companion_series(one_case, out, OTHER), stopper, err);

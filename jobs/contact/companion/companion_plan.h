@@ -16,9 +16,11 @@
  * of the case.
  * LAW: the surface of the case, series 0, and that of the other law of heights.
  * LIKE: the mirrored sub-map of a surface like a measured one; one series.
- * ASPERITIES: theories by the counted summits of the surface, on the finest level and the next. */
+ * ASPERITIES: theories by the counted summits of the surface, on the finest level and the next.
+ * PATCH: the surface of the case, series 0, and that of parameters which the patch leaves open. */
 #define COMPANION_NAMES(NAME)                                                                      \
-    NAME(LONGER) NAME(SHORTER) NAME(EQUAL) NAME(PROBE) NAME(LAW) NAME(LIKE) NAME(ASPERITIES)
+    NAME(LONGER)                                                                                   \
+    NAME(SHORTER) NAME(EQUAL) NAME(PROBE) NAME(LAW) NAME(LIKE) NAME(ASPERITIES) NAME(PATCH)
 #define COMPANION_ENTRY(name) COMPANION_##name,
 enum companion_name { COMPANION_NAMES(COMPANION_ENTRY) COMPANION_COUNT };
 #undef COMPANION_ENTRY

@@ -270,6 +270,8 @@ static bool applies(const struct contact_answer *answer, enum error_source sourc
         return isfinite(component_case(answer->of[ROLE_BASE])->blocks[0].height);
     case ERROR_MODEL:
         return contact_case_has_scale(answer->one_case);
+    case ERROR_PATCH: /* which components do not estimate */
+        return answer->patch;
     default:
         return false;
     }
@@ -571,6 +573,9 @@ static int read_target(struct contact_answer *out, const cJSON *parameters, stru
     /* a chosen mesh was taken out of the parameters, unless the surface depends on the grid */
     out->named_mesh = json_at(parameters, "/contact/levels") != NULL;
     out->densities = json_at(parameters, "/contact/pressure_pdf/at") != NULL;
+    const char *uncertainty =
+        cJSON_GetStringValue(json_at(parameters, "/surface/like/uncertainty"));
+    out->patch = uncertainty != NULL && strcmp(uncertainty, "none") != 0;
     const cJSON *name = json_at(parameters, "/contact/model");
     if (cJSON_IsArray(name))
         name = name->child;

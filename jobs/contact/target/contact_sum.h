@@ -42,6 +42,7 @@ struct contact_answer {
     bool named_mesh;                       /* the answer is for the finest level, not for the
                                             * limit */
     bool densities;                        /* of pressure are asked for */
+    bool patch;                            /* it is like a patch, which leaves something open */
     size_t loads;
     struct case_result *result;
 };

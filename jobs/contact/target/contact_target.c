@@ -180,6 +180,9 @@ static int put_errors(cJSON *parameters, const struct choices *choices,
     int status = put(parameters, "contact", "cell_error", cJSON_CreateString("none"));
     if (status == 0 && !variant->law)
         status = put(parameters, "contact", "law_difference", cJSON_CreateString("none"));
+    cJSON *like = cJSON_GetObjectItemCaseSensitive(
+        cJSON_GetObjectItemCaseSensitive(parameters, "surface"), "like");
+    cJSON_DeleteItemFromObjectCaseSensitive(like, "uncertainty"); /* it is not known of an answer */
     if (status == 0 && choices->densities)
         status = put_pairs(parameters, variant->both || variant->count > 1);
     return status;

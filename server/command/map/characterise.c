@@ -5,6 +5,7 @@
 #include "server/command/map/like_study.h"
 #include "server/command/map/map_file.h"
 #include "server/command/map/map_output.h"
+#include "server/command/map/together.h"
 #include "server/command/output_file.h"
 #include "server/show/map/map_figure.h"
 #include "server/show/map/map_report.h"
@@ -17,7 +18,7 @@ struct characterise_options {
     struct map_options map;
     const char *trust_from, *trust_to; /* NULL: by the map */
     int format;
-    bool all;
+    bool all, together;
     const char *group;            /* NULL: none is asked for */
     const char *picture, *report; /* NULL: none, as the next */
     const char *acf, *psd;
@@ -34,6 +35,8 @@ static const struct option_row OPTIONS[] = {
      "what to print; svg: the page of --report; study: one of surfaces like the map"},
     {"all", 0, OPTION_FLAG, 0, 0, AT(all), NULL, NULL,
      "print all values and tables in place of one screen"},
+    {"together", 0, OPTION_FLAG, 0, 0, AT(together), NULL, NULL,
+     "several files are of one surface: fit one law to them; --report draws their spectra"},
     {"group", 0, OPTION_TEXT, 0, 0, AT(group), "NAME[,NAME]", NULL,
      "print these groups of values and tables, as text or JSON"},
     {"picture", 0, OPTION_TEXT, 0, 0, AT(picture), "FILE.svg|FILE.png", NULL,
@@ -240,14 +243,60 @@ static int characterise(struct map_characterisation *measured, struct named_valu
     return status == 0 ? map_report_fill(found, measured, map, record, err) : status;
 }
 
+/* --- several maps --- */
+
+static int check_together(const struct characterise_options *options, struct error *err) {
+    if (options->trust_from != NULL || options->trust_to != NULL || options->picture != NULL ||
+        options->acf != NULL || options->psd != NULL)
+        return error_set(err, ERROR_INPUT,
+                         "--together goes with --report, and not with --trust-from, --trust-to, "
+                         "--picture, --acf and --psd");
+    return options->format <= FORMAT_JSON
+               ? 0
+               : error_set(err, ERROR_INPUT, "--together prints --format text or json");
+}
+
+static int run_together(const struct characterise_options *options, const char *const *arguments) {
+    static const char ONE_SCREEN[] = "files,together,maps";
+    struct named_values found = {0};
+    struct error err = {0};
+    int status = check_report(options->report, &err);
+    if (status == 0)
+        status = check_group(options, &err);
+    if (status == 0)
+        status = check_together(options, &err);
+    if (status == 0)
+        status = together_run(arguments, &options->map, options->report, &found, &err);
+    const bool text = options->format == FORMAT_TEXT;
+    const char *groups =
+        options->group == NULL && text && !options->all ? ONE_SCREEN : options->group;
+    if (status == 0)
+        status = keep_groups(&found, groups, &err);
+    if (status == 0 && text)
+        named_values_print(stdout, &found);
+    else if (status == 0 && named_values_print_json(stdout, &found))
+        putchar('\n');
+    else if (status == 0)
+        status = error_memory(&err, sizeof found, "the characterisation");
+    if (status == 0 && (fflush(stdout) != 0 || ferror(stdout) != 0))
+        status = error_set(&err, ERROR_SYSTEM, "cannot write to standard output");
+    named_values_clear(&found);
+    return status == 0 ? EXIT_DONE : command_fail("characterise", &err);
+}
+
 static int run(const void *values, const char *const *arguments) {
     const struct characterise_options *options = values;
+    if (options->together)
+        return run_together(options, arguments);
     struct height_map map = {0};
     struct map_characterisation measured = {0};
     struct named_values found = {0};
     struct error err = {0};
     struct preparation_record record = {0};
-    int status = check_report(options->report, &err);
+    int status = arguments[1] == NULL
+                     ? check_report(options->report, &err)
+                     : error_set(&err, ERROR_INPUT,
+                                 "several files; --together fits them as maps of one surface");
     if (status == 0)
         status = check_group(options, &err);
     if (status == 0)
@@ -278,10 +327,10 @@ static int run(const void *values, const char *const *arguments) {
 
 const struct command COMMAND_CHARACTERISE = {
     .name = "characterise",
-    .arguments = "FILE",
+    .arguments = "FILE [FILE...]",
     .summary = "parameters and summits of a height map in a file",
     .least = 1,
-    .most = 1,
+    .most = 16,
     .options = OPTIONS,
     .options_size = sizeof(struct characterise_options),
     .run = run,

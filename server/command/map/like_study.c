@@ -29,6 +29,7 @@ struct like_options {
     int spectrum, heights; /* enum like_spectrum, enum like_heights */
     int contact;           /* 0: the map is pressed, too, mirrored; 1: it is not */
     int off;               /* 0: refused; 1: stated */
+    int uncertainty;       /* 0: posterior; 1: none */
     size_t number_count;
     char numbers[LIKE_NUMBERS_MOST]
                 [LIKE_NUMBER_SIZE]; /* texts of numbers that were given as such */
@@ -96,6 +97,7 @@ static const struct option_row ROWS[] = {
     {"heights", 0, OPTION_CHOICE, 0, 0, AT(heights), "quantiles|fit|gaussian", "quantiles", NULL},
     {"contact", 0, OPTION_CHOICE, 0, 0, AT(contact), "mirrored|none", "mirrored", NULL},
     {"off", 0, OPTION_CHOICE, 0, 0, AT(off), "refused|stated", "refused", NULL},
+    {"uncertainty", 0, OPTION_CHOICE, 0, 0, AT(uncertainty), "posterior|none", "posterior", NULL},
     MAP_OPTION_ROWS(struct like_options, map),
     {0}};
 
@@ -251,6 +253,8 @@ static int fit_map(cJSON *document, const char *place, const struct like_options
     source.spectrum = (enum like_spectrum)options->spectrum;
     source.heights = (enum like_heights)options->heights;
     source.off_stated = options->off == 1;
+    source.uncertainty =
+        options->uncertainty == 0 ? LIKE_UNCERTAINTY_POSTERIOR : LIKE_UNCERTAINTY_NONE;
     status = like_fit(cJSON_GetObjectItemCaseSensitive(document, "surface"), &map, &source, err);
     if (status == 0 && options->contact == 0)
         status = like_contact_add(document, &map, err);
@@ -339,6 +343,7 @@ int like_study_make(cJSON **out, const struct height_map *map,
     struct like_source source = source_of(record, steps);
     cJSON *study = cJSON_CreateObject();
     source.off_stated = true; /* by the study that is written */
+    source.uncertainty = LIKE_UNCERTAINTY_POSTERIOR;
     snprintf(name, sizeof name, "like %.70s", source.file != NULL ? source.file : "a map");
     cJSON *surface = NULL;
     if (study != NULL && field_put_text(study, "name", name) &&

@@ -625,6 +625,7 @@ void summary_of_curves(const struct study_result *study, const struct study_repo
         print_scalars_unknown(&plan, file);
         if (plan.law)
             print_law_legend(file);
+        print_patch_legend(&shown, file);
         print_heights(&shown, file);
         for (size_t c = 0; c < shown.count && c < TARGETS_SHOWN; c++)
             summary_of_target(shown.list[c], file);

@@ -138,6 +138,25 @@ void print_law_legend(FILE *file) {
           file);
 }
 
+static bool has_patch(const struct case_result *one) {
+    bool has = false;
+    for (size_t a = 0; a < one->curve_count; a++)
+        has = has || one->curves[a].errors[ERROR_PATCH].applies;
+    for (size_t s = 0; s < one->scalar_count; s++)
+        has = has || one->scalars[s].errors[ERROR_PATCH].applies;
+    return has;
+}
+
+void print_patch_legend(const struct shown_cases *shown, FILE *file) {
+    bool any = false;
+    for (size_t c = 0; c < shown->count; c++)
+        any = any || has_patch(shown->list[c]);
+    if (any)
+        fputs("patch: surfaces like the measured one, less that which it was cut from "
+              "(/surface/like/uncertainty).\n",
+              file);
+}
+
 static void print_off(const struct shown_cases *shown, const char *name, const char *what,
                       FILE *file) {
     double most = HEIGHTS_OFF;

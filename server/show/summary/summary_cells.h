@@ -46,6 +46,8 @@ void print_unknown_of(size_t count, const struct unknown_of *list, const char *c
 void print_small(const bool small[ERROR_SOURCES], const char *const *words, FILE *file);
 /* The line below a table with columns "law %". */
 void print_law_legend(FILE *file);
+/* The line on errors by the patch, where a case has them. */
+void print_patch_legend(const struct shown_cases *shown, FILE *file);
 /* Lines on surfaces that do not reach the heights or the spectrum that were asked for: where eps_h
  * or eps_s of a case is above HEIGHTS_OFF. */
 void print_heights(const struct shown_cases *shown, FILE *file);

@@ -489,6 +489,7 @@ void summary_of_quantity(const struct quantity_table *words, const struct shown_
     print_total_legend(file);
     if (any_law(words, shown))
         print_law_legend(file);
+    print_patch_legend(shown, file);
     print_heights(shown, file);
     print_partial(shown, words->x, file);
     print_notes(shown, NOTES_SHOWN, file);

@@ -183,6 +183,7 @@ void summary_of_report(const struct study_report *report, FILE *file) {
           file);
     if (columns.shown[LAW_COLUMN])
         print_law_legend(file);
+    print_patch_legend(&shown, file);
     print_partial(&shown, words != NULL ? words->x : "point", file);
     print_notes(&shown, NOTES_SHOWN, file);
     print_missing(&shown, file);

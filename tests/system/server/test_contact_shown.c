@@ -102,8 +102,8 @@ static void the_report_tells_what_each_part_buys(void **state) {
 #define COLUMNS                                                                                    \
     "case,quantity,series,model,kinematics,level,pressure,x,x2,y,standard_error,"                  \
     "discretisation_error,discretisation_bound,cell_error,cell_bound,block_error,block_bound,"     \
-    "model_error,model_bound,solver_error,solver_bound,missing_error,missing_bound,valueless,"     \
-    "law_difference,law_standard_error"
+    "model_error,model_bound,solver_error,solver_bound,missing_error,missing_bound,"               \
+    "patch_error,patch_bound,valueless,law_difference,law_standard_error"
 
 /* Every curve has its lines in the one table, every unit its picture. */
 static void files_hold_every_curve(void **state) {

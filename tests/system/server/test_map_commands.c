@@ -32,6 +32,40 @@ static void a_surface_goes_out_and_in(void **state) {
         0);
 }
 
+/* Two maps of one surface have one law together, which is printed, drawn and refused of one. */
+static void maps_of_one_surface_go_together(void **state) {
+    (void)state;
+    spit("both.json",
+         "{ \"name\": \"both\", \"kind\": \"statistics\", \"realisations\": 1, \"surface\":"
+         " { \"hurst\": 0.7, \"wavelength_ratio\": 32, \"rolloff_ratio\": 4,"
+         " \"length_ratio\": 2, \"points_per_wavelength\": 4, \"rms_slope\": 0.1,"
+         " \"amplitudes\": \"random\" } }");
+    assert_int_equal(
+        run_shell(
+            "$RUGO generate both.json -o both.npy && convert() { $RUGO convert both.npy \"$@\" "
+            "--dx 0.5um --z-unit um; } && convert one.csv --crop 0,0,128,128 && "
+            "convert two.csv --crop 128,128,128,128 && together() { $RUGO characterise "
+            "one.csv two.csv --together \"$@\"; } && together --report both.svg >both.txt && "
+            "together --format json >both.out && ! together --psd c.npy 2>psd.txt && "
+            "! $RUGO characterise one.csv two.csv 2>two.txt && "
+            "! $RUGO characterise one.csv --together 2>one.txt"),
+        0);
+    assert_true(contains("both.txt", "hurst_low") && contains("both.txt", "two.csv"));
+    assert_true(contains("both.svg", "one.csv") && contains("both.svg", "</svg>"));
+    assert_true(contains("psd.txt", "--together goes with --report"));
+    assert_true(contains("two.txt", "several files; --together fits them"));
+    assert_true(contains("one.txt", "a joint fit needs two"));
+    char *text = slurp("both.out");
+    cJSON *document = cJSON_Parse(text);
+    assert_true(json_at(document, "/together/maps")->valuedouble == 2);
+    assert_true(fabs(json_at(document, "/together/hurst")->valuedouble - 0.7) < 0.3);
+    const cJSON *of = json_at(document, "/psd/map"), *lines = json_at(document, "/psd_x/map");
+    assert_true(cJSON_GetArraySize(lines) >= 2 * 60);
+    assert_true(cJSON_GetArrayItem(of, cJSON_GetArraySize(of) - 1)->valuedouble == 2);
+    cJSON_Delete(document);
+    free(text);
+}
+
 /* A plane wave in a file is Westergaard's: (2/pi) asin(sqrt(sqrt(2) load)). */
 static void a_map_in_a_file_is_pressed(void **state) {
     (void)state;
@@ -490,6 +524,7 @@ static void a_comma_in_the_environment_changes_nothing(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_surface_goes_out_and_in),
+        cmocka_unit_test(maps_of_one_surface_go_together),
         cmocka_unit_test(a_map_in_a_file_is_pressed),
         cmocka_unit_test(several_models_press_a_map),
         cmocka_unit_test(coatings_are_pressed),

@@ -95,8 +95,7 @@ static bool has_no_effect(const char *path) {
     static const char *const TOLD[] = {"/contact/generation_error", "/contact/young",
                                        "/surface/like/bytes",       "/surface/like/format",
                                        "/surface/like/prepared",    "/surface/like/unit",
-                                       "/surface/like/wavelength",  "/surface/like/trusted",
-                                       "/surface/like/spectrum",    "/surface/like/heights"};
+                                       "/surface/like/wavelength",  "/surface/like/trusted"};
     for (size_t t = 0; t < sizeof TOLD / sizeof *TOLD; t++)
         if (strcmp(path, TOLD[t]) == 0)
             return true;

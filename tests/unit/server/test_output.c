@@ -64,18 +64,19 @@ static void every_curve_has_its_lines(void **state) {
         "standard_error,discretisation_error,discretisation_bound,cell_error,"
         "cell_bound,block_error,block_bound,model_error,model_bound,"
         "solver_error,solver_bound,"
-        "missing_error,missing_bound,valueless,law_difference,law_standard_error,"
+        "missing_error,missing_bound,patch_error,patch_bound,valueless,law_difference,law_standard_"
+        "error,"
         "theory_line,total_low,total_high,unknown_errors\n"
-        "1,contact_area,edges,full,small,8,,0.1,,0.25,0.01,,,,,,,,,,,,,,,,0.25,0.2304,0.2696,\n"
-        "1,contact_area,edges,full,small,8,,0.2,,0.5,,,,,,,,,,,,,,,,,0.5,,,\n"
-        "1,contact_area,edges,full,small,4,,0.1,,0.25,0.01,,,,,,,,,,,,,,,,0.25,0.2304,0.2696,\n"
-        "1,contact_area,edges,full,small,4,,0.2,,0.5,,,,,,,,,,,,,,,,,0.5,,,\n"
-        "1,patch_count,cell,full,small,8,,0.1,,0.25,0.01,,,,,,,,,,,,,,,,0.25,0.2304,0.2696,\n"
-        "1,patch_count,cell,full,small,8,,0.2,,0.5,,,,,,,,,,,,,,,,,0.5,,,\n"
-        "1,patch_count,wave,full,small,8,,0.1,,0.25,0.01,,,,,,,,,,,,,,,,0.25,0.2304,0.2696,\n"
-        "1,patch_count,wave,full,small,8,,0.2,,0.5,,,,,,,,,,,,,,,,,0.5,,,\n"
-        "1,contact_pressure_pdf,,,,,0.25,0.1,,0.25,0.01,,,,,,,,,,,,,,,,0.25,0.2304,0.2696,\n"
-        "1,contact_pressure_pdf,,,,,0.25,0.2,,0.5,,,,,,,,,,,,,,,,,0.5,,,\n");
+        "1,contact_area,edges,full,small,8,,0.1,,0.25,0.01,,,,,,,,,,,,,,,,,,0.25,0.2304,0.2696,\n"
+        "1,contact_area,edges,full,small,8,,0.2,,0.5,,,,,,,,,,,,,,,,,,,0.5,,,\n"
+        "1,contact_area,edges,full,small,4,,0.1,,0.25,0.01,,,,,,,,,,,,,,,,,,0.25,0.2304,0.2696,\n"
+        "1,contact_area,edges,full,small,4,,0.2,,0.5,,,,,,,,,,,,,,,,,,,0.5,,,\n"
+        "1,patch_count,cell,full,small,8,,0.1,,0.25,0.01,,,,,,,,,,,,,,,,,,0.25,0.2304,0.2696,\n"
+        "1,patch_count,cell,full,small,8,,0.2,,0.5,,,,,,,,,,,,,,,,,,,0.5,,,\n"
+        "1,patch_count,wave,full,small,8,,0.1,,0.25,0.01,,,,,,,,,,,,,,,,,,0.25,0.2304,0.2696,\n"
+        "1,patch_count,wave,full,small,8,,0.2,,0.5,,,,,,,,,,,,,,,,,,,0.5,,,\n"
+        "1,contact_pressure_pdf,,,,,0.25,0.1,,0.25,0.01,,,,,,,,,,,,,,,,,,0.25,0.2304,0.2696,\n"
+        "1,contact_pressure_pdf,,,,,0.25,0.2,,0.5,,,,,,,,,,,,,,,,,,,0.5,,,\n");
     char *text = slurp("out/curves.json");
     struct study_result read = {0};
     cJSON *document = NULL;

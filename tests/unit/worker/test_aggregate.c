@@ -332,9 +332,9 @@ static double model_deviation(const cJSON *finest) {
 
 /* With the cell's, all sources are known of a series of levels: the total is of all of them. */
 static void check_total(const cJSON *entry) {
-    static const char *const SOURCES[] = {"/discretisation_error", "/cell_error",
-                                          "/block_error",          "/model_error",
-                                          "/solver_error",         "/missing_error"};
+    static const char *const SOURCES[] = {
+        "/discretisation_error", "/cell_error",    "/block_error", "/model_error",
+        "/solver_error",         "/missing_error", "/patch_error"};
     double sum = 0;
     assert_true(cJSON_IsNumber(json_at(entry, "/cell_error")));
     for (size_t s = 0; s < sizeof SOURCES / sizeof *SOURCES; s++)

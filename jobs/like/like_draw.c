@@ -1,0 +1,270 @@
+#include "jobs/like/like_draw.h"
+#include "core/cost.h"
+#include "core/surface/height_table.h"
+#include "core/surface/modes.h"
+#include "core/surface/translation/translation.h"
+#include "jobs/like/like_estimate.h"
+#include <gsl/gsl_cdf.h>
+#include <math.h>
+#include <stdlib.h>
+
+struct like_draw {
+    const struct like_case *like;
+    const struct surface_case *base;
+    struct grid cell;        /* of the surfaces that are cut */
+    struct like_case cut;    /* how they are */
+    struct generator *whole; /* owned, as all below: of these surfaces; NULL: there are none */
+    struct like_patch *patch;
+    double *cut_z;        /* of their cell */
+    double *z, *gaussian; /* of the cell of the case; the latter NULL until it is wanted */
+    /* of the last draw */
+    struct surface_case surface; /* borrows from the case and from what follows */
+    struct like_estimate estimate;
+    struct height_table *heights;
+    struct translation *translation;
+    struct generator *generator;
+};
+
+/* Frees what the last draw made. */
+static void draw_clear(struct like_draw *draw) {
+    generator_destroy(&draw->generator);
+    translation_destroy(&draw->translation);
+    height_table_destroy(&draw->heights);
+    like_estimate_clear(&draw->estimate);
+}
+
+void like_draw_destroy(struct like_draw **draw) {
+    struct like_draw *gone = *draw;
+    if (gone == NULL)
+        return;
+    draw_clear(gone);
+    generator_destroy(&gone->whole);
+    like_patch_destroy(&gone->patch);
+    free(gone->cut_z);
+    free(gone->z);
+    free(gone->gaussian);
+    free(gone);
+    *draw = NULL;
+}
+
+/* Returns a cell of twice the sides of the map, with the spacing of its points. */
+static struct grid cell_of(const struct like_case *like) {
+    const bool profile = like->ny == 1;
+    const size_t nx = surface_case_side(2 * (double)like->nx - 0.5);
+    const size_t ny = profile ? 1 : surface_case_side(2 * (double)like->ny - 0.5);
+    return (struct grid){nx, ny, like->spacing * (double)nx,
+                         like->spacing * (double)(profile ? nx : ny)};
+}
+
+/* Returns how a sub-map is cut from it. */
+static struct like_case cut_of(const struct like_case *like) {
+    struct like_case cut = *like;
+    cut.stride = 1;
+    return cut;
+}
+
+static int draw_fill(struct like_draw *draw, struct error *err) {
+    const struct surface_case *surface = draw->base;
+    const size_t points = grid_points(&surface->grid);
+    struct surface_options options = surface->options;
+    options.amplitudes = AMPLITUDES_RANDOM; /* a patch is not of a surface with an exact spectrum */
+    struct error reason = {0};
+    int status = generator_create(&draw->whole, &surface->spectrum, &draw->cell, &options, &reason);
+    if (status != 0 && status != ERROR_INPUT)
+        return error_set(err, status, "%s", reason.text);
+    status = like_patch_create(&draw->patch, &draw->cut, &draw->cell, err);
+    if (status != 0)
+        return status;
+    draw->cut_z = array_create(grid_points(&draw->cell), sizeof *draw->cut_z);
+    draw->z = array_create(points, sizeof *draw->z);
+    return draw->cut_z != NULL && draw->z != NULL
+               ? 0
+               : error_memory(err, points * sizeof *draw->z, "a surface");
+}
+
+int like_draw_create(struct like_draw **out, const struct like_case *like,
+                     const struct surface_case *surface, struct error *err) {
+    struct like_draw *draw = array_create(1, sizeof *draw);
+    if (draw == NULL)
+        return error_memory(err, sizeof *draw, "draws of surfaces");
+    draw->like = like;
+    draw->base = surface;
+    draw->cell = cell_of(like);
+    draw->cut = cut_of(like);
+    int status = draw_fill(draw, err);
+    if (status != 0)
+        like_draw_destroy(&draw);
+    *out = draw;
+    return status;
+}
+
+/* --- the parameters --- */
+
+/* Fits a sub-map of another surface of the case, as the map was fitted. */
+static int estimate_draw(struct like_draw *draw, struct random_key key, struct error *err) {
+    const struct like_case *like = draw->like;
+    const struct grid grid = {like->nx, like->ny, like->spacing * (double)like->nx,
+                              like->spacing * (double)like->ny};
+    const struct like_choices choices = {like->spectrum, like->heights, like->detrend, true};
+    const double *heights;
+    key.sequence ^= UINT64_C(1) << SUBMAP_BIT;
+    if (draw->whole == NULL)
+        return error_set(err, ERROR_INPUT,
+                         "the points of the map do not hold the waves of the case");
+    int status = generator_run(draw->whole, key, draw->cut_z, NULL, err);
+    if (status == 0)
+        status = like_patch_cut(draw->patch, draw->cut_z, &heights, err);
+    if (status != 0)
+        return status;
+    const struct measured_map map = {&grid, heights, BOUNDARY_OPEN};
+    return like_estimate_measure(&draw->estimate, &map, &choices, err);
+}
+
+static void set_scale(struct like_draw *draw) {
+    struct spectrum *spectrum = &draw->surface.spectrum;
+    if (draw->like->held[LIKE_HELD_SCALE])
+        return;
+    spectrum->scale = SCALE_RMS_SLOPE;
+    spectrum->scale_value = draw->estimate.rms_slope;
+}
+
+static void set_lay(struct like_draw *draw) {
+    if (draw->like->held[LIKE_HELD_LAY])
+        return;
+    draw->surface.spectrum.anisotropy = draw->estimate.lay.ratio;
+    draw->surface.spectrum.lay_angle = draw->estimate.lay.angle;
+}
+
+static void set_spectrum(struct like_draw *draw) {
+    const struct like_estimate *estimate = &draw->estimate;
+    struct spectrum *spectrum = &draw->surface.spectrum;
+    if (draw->like->spectrum == LIKE_SPECTRUM_GIVEN)
+        return;
+    if (draw->like->spectrum == LIKE_SPECTRUM_TABLE) {
+        spectrum->table_count = estimate->table.count;
+        spectrum->table_wave_number = estimate->table.wave_number;
+        spectrum->table_density = estimate->table.density;
+    } else {
+        const struct spectrum *law = &estimate->self_affine;
+        const double rolloff = spectrum->wavelength_long / spectrum->wavelength_rolloff;
+        spectrum->hurst = law->hurst;
+        spectrum->wavelength_short = law->wavelength_short;
+        spectrum->wavelength_long = law->wavelength_long;
+        spectrum->wavelength_rolloff =
+            draw->like->held[LIKE_HELD_ROLLOFF]
+                ? fmax(law->wavelength_long / rolloff, law->wavelength_short)
+                : law->wavelength_rolloff;
+    }
+    set_scale(draw);
+    set_lay(draw);
+}
+
+static int set_heights(struct like_draw *draw, struct error *err) {
+    const struct like_estimate *estimate = &draw->estimate;
+    struct heights *heights = &draw->surface.options.heights;
+    if (draw->like->heights == LIKE_HEIGHTS_FIT)
+        *heights = (struct heights){.type = estimate->distribution,
+                                    .shape = isnan(estimate->shape) ? 0 : estimate->shape};
+    if (draw->like->heights != LIKE_HEIGHTS_QUANTILES)
+        return 0;
+    int status = height_table_of_quantiles(&draw->heights, estimate->quantile_count,
+                                           estimate->probability, estimate->quantile, err);
+    heights->table = draw->heights;
+    return status;
+}
+
+/* The law of a translation follows from the spectrum and the heights. */
+static int set_translation(struct like_draw *draw, struct error *err) {
+    struct surface_case *surface = &draw->surface;
+    surface->spectrum.translation = NULL;
+    surface->translation = NULL;
+    if (surface->options.law != LAW_TRANSLATION ||
+        surface->options.heights.type == HEIGHTS_GAUSSIAN)
+        return 0;
+    int status = translation_create(&draw->translation, &surface->spectrum, surface->dimension,
+                                    &surface->options.heights, err);
+    surface->spectrum.translation = draw->translation;
+    surface->translation = draw->translation;
+    return status;
+}
+
+/* --- the surface --- */
+
+static int keep_gaussian(struct like_draw *draw, struct error *err) {
+    const size_t points = grid_points(&draw->base->grid);
+    if (draw->gaussian == NULL)
+        draw->gaussian = array_create(points, sizeof *draw->gaussian);
+    if (draw->gaussian == NULL)
+        return error_memory(err, points * sizeof *draw->gaussian, "a Gaussian field");
+    generator_keep_gaussian(draw->generator, draw->gaussian);
+    return 0;
+}
+
+int like_draw_make(struct like_draw *draw, struct random_key key, bool gaussian,
+                   struct like_drawn *out, struct error *err) {
+    struct surface_case *surface = &draw->surface;
+    draw_clear(draw);
+    *surface = *draw->base;
+    *out = (struct like_drawn){.surface = surface, .z = draw->z};
+    int status = estimate_draw(draw, key, err);
+    if (status != 0)
+        return status;
+    set_spectrum(draw);
+    status = set_heights(draw, err);
+    if (status == 0)
+        status = set_translation(draw, err);
+    if (status == 0)
+        status = generator_create(&draw->generator, &surface->spectrum, &surface->grid,
+                                  &surface->options, err);
+    const bool kept = gaussian && surface_case_translated(surface);
+    if (status == 0 && kept)
+        status = keep_gaussian(draw, err);
+    if (status == 0)
+        status = generator_run(draw->generator, key, draw->z, &out->report, err);
+    if (status != 0)
+        return status;
+    out->modes = generator_modes(draw->generator);
+    out->own = generator_drawn(draw->generator);
+    out->gaussian = kept ? draw->gaussian : NULL;
+    modes_moments(out->modes, &out->moments);
+    return 0;
+}
+
+/* --- cost and error --- */
+
+/* Returns the surface that sub-maps are cut from; borrows. */
+static struct surface_case whole_of(const struct like_case *like,
+                                    const struct surface_case *surface) {
+    struct surface_case whole = *surface;
+    whole.grid = cell_of(like);
+    return whole;
+}
+
+static double seconds_of(const struct surface_case *surface) {
+    const double points = (double)grid_points(&surface->grid);
+    return 1e-9 * surface_case_nanoseconds(surface, &surface->grid) * points * cost_caches(points);
+}
+
+double like_draw_bytes(const struct like_case *like, const struct surface_case *surface) {
+    static const double OF_A_FIT = 200; /* bytes of a point of the map */
+    const struct surface_case whole = whole_of(like, surface);
+    const struct like_case cut = cut_of(like);
+    return surface_case_bytes(surface) + surface_case_bytes(&whole) + like_patch_bytes(&cut) +
+           OF_A_FIT * (double)like->nx * (double)like->ny;
+}
+
+double like_draw_seconds(const struct like_case *like, const struct surface_case *surface) {
+    static const double OF_A_FIT = 4; /* times the measuring of a sub-map */
+    const struct surface_case whole = whole_of(like, surface);
+    const struct like_case cut = cut_of(like);
+    return seconds_of(surface) + seconds_of(&whole) + OF_A_FIT * like_patch_seconds(&cut);
+}
+
+struct like_error like_draw_error(double mean, double deviation, size_t n) {
+    static const double QUANTILE = 0.975;
+    if (n < 2)
+        return (struct like_error){(double)NAN, (double)NAN, (double)NAN};
+    const double number = (double)n, student = gsl_cdf_tdist_Pinv(QUANTILE, number - 1);
+    return (struct like_error){mean, student * deviation * sqrt(1 + 1 / number),
+                               deviation / sqrt(number)};
+}

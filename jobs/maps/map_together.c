@@ -1,0 +1,49 @@
+#include "jobs/maps/map_together.h"
+#include <string.h>
+
+static int check_map(const struct map_together *together, const struct height_map *map,
+                     struct error *err) {
+    if (together->count == JOINT_PATCHES_MOST)
+        return error_set(err, ERROR_INPUT, "more than %d maps together", JOINT_PATCHES_MOST);
+    if (together->count == 0)
+        return 0;
+    if (together->profile != grid_is_profile(&map->grid))
+        return error_set(err, ERROR_INPUT, "profiles and surfaces together");
+    if (together->in_metres != (strcmp(map->xy_unit, "m") == 0))
+        return error_set(err, ERROR_INPUT,
+                         "lengths are in \"%s\", and those of the maps before are not",
+                         map->xy_unit);
+    return 0;
+}
+
+int map_together_add(struct map_together *together, const char *file, const struct height_map *map,
+                     enum boundary boundary, struct error *err) {
+    const struct measured_map measured = {&map->grid, map->z, boundary};
+    struct together_map *one = &together->maps[together->count];
+    int status = check_map(together, map, err);
+    if (status != 0)
+        return status;
+    *one = (struct together_map){.file = file, .grid = map->grid};
+    together->profile = grid_is_profile(&map->grid);
+    together->in_metres = strcmp(map->xy_unit, "m") == 0;
+    status = map_spectrum_create(&one->spectrum, &measured, err);
+    if (status == 0)
+        status =
+            spectrum_fit_measure(one->spectrum, &(struct spectrum_fit_request){0}, &one->fit, err);
+    if (status != 0)
+        map_spectrum_destroy(&one->spectrum);
+    else
+        together->patches[together->count++] =
+            (struct joint_patch){.spectrum = one->spectrum, .fit = &one->fit};
+    return status;
+}
+
+int map_together_fit(struct map_together *together, struct error *err) {
+    return joint_fit_measure(together->count, together->patches, &together->fit, err);
+}
+
+void map_together_clear(struct map_together *together) {
+    for (size_t m = 0; m < together->count; m++)
+        map_spectrum_destroy(&together->maps[m].spectrum);
+    *together = (struct map_together){0};
+}

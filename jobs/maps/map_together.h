@@ -1,0 +1,31 @@
+/* Several measured maps of one surface: their spectral densities beside each other, and the one law
+ * that fits them together (FORMULAS.md, F18.48). */
+#ifndef RUGO_JOBS_MAPS_MAP_TOGETHER_H
+#define RUGO_JOBS_MAPS_MAP_TOGETHER_H
+
+#include "core/map/height_map.h"
+#include "core/statistics/spectra/joint_fit.h"
+
+struct together_map {
+    const char *file; /* borrowed */
+    struct grid grid;
+    struct map_spectrum *spectrum; /* owned */
+    struct spectrum_fit fit;       /* of this map alone */
+};
+/* Initialise with {0}. */
+struct map_together {
+    size_t count;
+    struct together_map maps[JOINT_PATCHES_MOST];
+    struct joint_patch patches[JOINT_PATCHES_MOST]; /* borrow from the maps */
+    struct joint_fit fit;
+    bool profile, in_metres;
+};
+/* Measures the spectrum of one more map, in the same unit and of the same dimension. ERROR_INPUT;
+ * ERROR_MEMORY. */
+int map_together_add(struct map_together *together, const char *file, const struct height_map *map,
+                     enum boundary boundary, struct error *err);
+/* Fits all of them. Errors as of joint_fit_measure. */
+int map_together_fit(struct map_together *together, struct error *err);
+void map_together_clear(struct map_together *together);
+
+#endif

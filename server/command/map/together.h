@@ -1,0 +1,14 @@
+/* rugo characterise FILE FILE... --together: several maps of one surface. */
+#ifndef RUGO_SERVER_COMMAND_MAP_TOGETHER_H
+#define RUGO_SERVER_COMMAND_MAP_TOGETHER_H
+
+#include "server/command/map/map_file.h"
+#include "server/show/map/named_values.h"
+
+/* Reads and fits the maps, NULL behind the last, each prepared by the options, and fills all
+ * numbers. report: a file for the picture of their spectra; NULL: none. The caller clears *found in
+ * any case. Errors name the file. */
+int together_run(const char *const *files, const struct map_options *options, const char *report,
+                 struct named_values *found, struct error *err);
+
+#endif
