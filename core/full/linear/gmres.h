@@ -8,8 +8,10 @@
  * change that of a rough one, and the bulk modulus multiplies the change. For them the pressure p
  * of each element is an unknown of its own, with the equation p - k v = 0 beside the forces. Here v
  * is the change of volume by the displacements and k the bulk modulus over the volume (Brezzi &
- * Fortin 1991). The flat block has the same unknowns, so that the two blocks differ by their slopes
- * alone.
+ * Fortin 1991). That equation is multiplied by the shear over the bulk modulus: an error of the
+ * volume then counts as a shear strain does, while its pressure may be thousands of times as large.
+ * The flat block has the same unknowns, and a bulk modulus of its own where that of the rough one
+ * is large (gmres.c).
  *
  * Where this converges too slowly, as for steep blocks, a factorisation of the tangent in the
  * displacements alone (factorisation.h) replaces the flat block as the preconditioner. With the
@@ -46,9 +48,9 @@ struct linear_system {
 
 /* Solves for x, which has tangent_unknowns values. On entry x holds forces (at the first node of
  * the far side the sum of the vertical ones there), on vertical degrees of freedom in contact the
- * prescribed change of the weighted gap, and the excess of the pressures. On return it holds
- * displacements and pressures. Ends when the residual is `tolerance` times that of x = 0;
- * ERROR_NUMERIC when it stays larger. Adds to *iterations. */
+ * prescribed change of the weighted gap, and the excess of the pressures, times volumetric->row. On
+ * return it holds displacements and pressures. Ends when the residual is `tolerance` times that of
+ * x = 0; ERROR_NUMERIC when it stays larger. Adds to *iterations. */
 int gmres_solve(struct gmres *gmres, const struct linear_system *system, double tolerance,
                 double *x, size_t *iterations, struct error *err);
 
