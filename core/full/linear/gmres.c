@@ -9,8 +9,9 @@
 enum { BASIS = HESSENBERG_MOST, RESTARTS = 10, LANES = 8 };
 /* A restart that leaves more than this part of the residual is the last one. */
 static const double STALLED = 0.5;
-/* Bulk over shear modulus above which pressures are unknowns of their own. */
-static const double BULK_RATIO_LEAST = 10;
+/* Part of lambda on the mean dilatation over the shear modulus above which pressures are unknowns
+ * of their own: that of nu = 0.4502. */
+static const double BULK_RATIO_LEAST = 4.8;
 /* Bulk over shear modulus of the flat block, at most. Pressures of alternate signs from one element
  * to the next bear on no forces of a flat block, and on some of a rough one. The flat block answers
  * to them by its bulk modulus alone, far too much where that is large. Of 3 profiles and one

@@ -33,7 +33,7 @@ void gmres_destroy(struct gmres **handle);
 double gmres_bytes(const struct mesh *mesh, const struct material *material, double iterations);
 
 /* Returns whether the pressures of elements must be unknowns of their own, so that the tangent
- * needs its volumetric part: the bulk modulus is more than ten times the shear modulus. */
+ * needs its volumetric part: the ratio of Poisson is above 0.45. */
 bool gmres_needs_pressures(const struct material *material);
 
 /* Applies the gap weighting (F10.5) to values at the face's nodes; in and out may be the same. */
