@@ -275,8 +275,8 @@ struct full_limit cost_full_limit(const struct grid *grid, const struct full_siz
 }
 
 double cost_full_loads(double rms_slope, size_t count, const double *loads) {
-    double all = 0;
-    for (size_t l = 0; l < count; l++) {
+    double all = loads != NULL ? 0 : (double)count;
+    for (size_t l = 0; loads != NULL && l < count; l++) {
         double length = loads[l] - (l > 0 ? loads[l - 1] : 0);
         all += 1 + FAR_STEPS * fmax(0, length * rms_slope - FAR);
     }

@@ -59,7 +59,7 @@ struct full_size cost_full_size(const struct grid *grid, const struct block *blo
  * estimate, on a machine on which the same work took up to 1.5 times as long when it was busy. */
 double cost_full_contact(const struct grid *grid, const struct full_size *size, double loads);
 /* Returns the number of loads near each other whose work these rising ones take, in E* h': those
- * far from the one before are reached in several steps on steep faces. */
+ * far from the one before are reached in several steps on steep faces. NULL: all are near. */
 double cost_full_loads(double rms_slope, size_t count, const double *loads);
 /* What iterations on a mesh of this size count of a limit of so many of these seconds. */
 struct full_limit cost_full_limit(const struct grid *grid, const struct full_size *size,
