@@ -44,8 +44,8 @@ struct strained {
     pointwise
         inverse[3][3]; /* inverse of F: gradients by deformed positions are grad_X F^-1; small: 1 */
     pointwise stress[3][3]; /* Kirchhoff's */
-    /* neo_hooke: strain[0] is ln J, and what else follows is not set */
-    pointwise axis[3][3];   /* axis[p]: principal direction in space */
+    /* of neo_hooke strain[0] is ln J, and other principal values are not set */
+    pointwise axis[3][3];   /* axis[p]: principal direction in space; small, neo_hooke: axis p */
     pointwise principal[3]; /* Kirchhoff's stress along axis p */
     pointwise strain[3];    /* e_p; st_venant: E_p */
     pointwise square[3];    /* of the principal stretch */

@@ -23,6 +23,7 @@ INLINE bool strain(int d, const struct material *material, pointwise h[3][3],
                 out->stress[i][k][q] =
                     material->shear * c[i][k][q] + (i == k ? material->local * logarithm : 0);
                 out->spread[i][k][q] = (i == k) * (1 + out->dilatation[q]);
+                out->axis[i][k][q] = i == k;
             }
     }
     return true;
