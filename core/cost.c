@@ -174,25 +174,42 @@ double cost_linear_loads(const struct linear_work *of) {
 
 /* --- finite elements (bench_full) --- */
 
-/* Iterations of Newton's method a load: NEWTON_LEAST, plus the factor of the dimension for each
- * doubling of nx. */
-static const double NEWTON_LEAST = 2, PROFILE_NEWTON = 0.22, SURFACE_NEWTON = 0.5;
-/* Iterations of the linear equations: LINEAR_LEAST + STEEP h' (1 + h') (0.4 min(B, 10))^0.4, with
- * h' the RMS slope and B = 1/(1 - 2 nu), about the bulk over the shear modulus. With pressures as
- * unknowns there are 0.12 B^0.55 more. */
-static const double LINEAR_LEAST = 2, STEEP = 16, BULK_FRONT = 0.4, BULK_MOST = 10;
-static const double BULK_POWER = 0.4, PRESSURE_FRONT = 0.12, PRESSURE_POWER = 0.55;
+/* Iterations of Newton's method a load, of profiles and of surfaces: `least`, `doubling` for each
+ * doubling of nx, `steep` h' with h' the RMS slope, the share `pressures` of it where these are
+ * unknowns. Materials that give sideways, nu below UPRIGHT, have load steps cut on slopes above
+ * GENTLE, which takes WIDE (h' - GENTLE)(UPRIGHT - nu) more. */
+struct newton_fit {
+    double least, doubling, steep, pressures;
+};
+static const struct newton_fit PROFILE_NEWTON = {1.2, 0.18, 4.5, 0.95},
+                               SURFACE_NEWTON = {1.4, 0.47, 1.8, 0.8};
+static const double GENTLE = 0.3, UPRIGHT = 0.3, WIDE = 25;
+/* A load further than FAR/h' from the one before it is approached in steps: of lengths l in E* h',
+ * FAR_STEPS (l h' - FAR) more loads' work. */
+static const double FAR = 0.09, FAR_STEPS = 33;
+/* Iterations of the linear equations: LINEAR_LEAST + STEEP h' (1 + h') (0.4 min(B, 10))^0.6
+ * (nx/SIDE)^SIDE_POWER, with B = 1/(1 - 2 nu), about the bulk over the shear modulus, and at least
+ * 1 for the power. With pressures as unknowns it is LINEAR_PRESSURES, and there are PRESSURE_TENS
+ * more for each factor of 10 by which B is above that of the flat block (gmres.c). */
+static const double LINEAR_LEAST = 1.6, PROFILE_STEEP = 10, SURFACE_STEEP = 6;
+static const double PROFILE_SIDE = 512, SURFACE_SIDE = 32, SIDE_POWER = 0.15;
+static const double BULK_FRONT = 0.4, BULK_MOST = 10, BULK_POWER = 0.6, LINEAR_PRESSURES = 1.65;
+static const double PROFILE_TENS = 0.65, PROFILE_BULK = 60, SURFACE_TENS = 2.2, SURFACE_BULK = 300;
 /* Equations that need more iterations are factorised (core/full/newton.h), on surfaces only up to
  * SURFACE_FACTORED degrees of freedom. */
-static const double FACTORED_ITERATIONS = 20, SURFACE_FACTORED = 20000;
+static const double FACTORED_ITERATIONS = 30, SURFACE_FACTORED = 20000;
 /* Nanoseconds a degree of freedom: of an iteration of Newton's method without its linear equations,
- * of an iteration of these, of the pressures in such an iteration, and of an iteration of Newton's
- * method with a factorisation. */
-static const double PROFILE_NEWTON_NS = 250, SURFACE_NEWTON_NS = 1100;
-static const double PROFILE_LINEAR_NS = 36, SURFACE_LINEAR_NS = 80, PRESSURE_NS = 50;
-static const double PROFILE_FACTORED_NS = 5000, SURFACE_FACTORED_NS = 7e4;
+ * of an iteration of these, for each iteration before it, of the pressures in it, and of an
+ * iteration of Newton's method with a factorisation. */
+struct full_fit {
+    double newton, linear, each, pressures, factored;
+};
+static const struct full_fit PROFILE_FULL = {400, 55, 2.5, 35, 1e4},
+                             SURFACE_FULL = {1800, 130, 4, 60, 7e4};
 /* Arrays take so many times their bytes, with what heaps keep between them. */
 static const double MEMORY_ROOM = 1.03;
+/* Iterations of the linear equations of a step, over their mean, at most. */
+static const double ITERATIONS_MOST = 2, PRESSURES_MOST = 3;
 /* Bytes a degree of freedom of a factorisation. */
 static const double PROFILE_FACTOR_BYTES = 900, SURFACE_FACTOR_BYTES = 6500;
 /* Number of transforms of a point that take the time of an iteration of Newton's method on a degree
@@ -209,55 +226,78 @@ static const double FRICTION_PRESSURES = 1.9, FRICTION_BYTES = 2100;
 static const double SURFACE_FRICTION_LOADS = 1.15;
 static const double SURFACE_FRICTION_BYTES = 510, SURFACE_PRESSURE_BYTES = 100;
 
+static double newton_iterations(const struct grid *grid, double poisson, bool pressures,
+                                double rms_slope) {
+    const struct newton_fit *fit = grid_is_profile(grid) ? &PROFILE_NEWTON : &SURFACE_NEWTON;
+    double cut = WIDE * fmax(0, rms_slope - GENTLE) * fmax(0, UPRIGHT - poisson);
+    double all = fit->least + fit->doubling * log2(mean_side(grid)) + fit->steep * rms_slope + cut;
+    return pressures ? fit->pressures * all : all;
+}
+
+/* Returns the iterations of the linear equations in one of Newton's. */
+static double linear_iterations(const struct grid *grid, double poisson, bool pressures,
+                                double rms_slope) {
+    bool profile = grid_is_profile(grid);
+    double bulk = 1 / (1 - 2 * poisson);
+    double steep = (profile ? PROFILE_STEEP : SURFACE_STEEP) * rms_slope * (1 + rms_slope) *
+                   pow(mean_side(grid) / (profile ? PROFILE_SIDE : SURFACE_SIDE), SIDE_POWER);
+    if (!pressures)
+        return LINEAR_LEAST + steep * pow(fmax(1, BULK_FRONT * fmin(bulk, BULK_MOST)), BULK_POWER);
+    double above = bulk / (profile ? PROFILE_BULK : SURFACE_BULK);
+    return LINEAR_LEAST + LINEAR_PRESSURES * steep +
+           (profile ? PROFILE_TENS : SURFACE_TENS) * log10(fmax(1, above));
+}
+
 struct full_size cost_full_size(const struct grid *grid, const struct block *block,
                                 const struct full_options *options, double rms_slope) {
     bool profile = grid_is_profile(grid);
-    double bulk_over_shear = 1 / (1 - 2 * block->poisson);
-    double steep = STEEP * rms_slope * (1 + rms_slope) *
-                   pow(BULK_FRONT * fmin(bulk_over_shear, BULK_MOST), BULK_POWER);
     struct material material = material_of(block->poisson, options->kinematics);
-    struct full_size size = {.degrees_of_freedom =
-                                 (double)full_degrees_of_freedom(grid, block, options),
-                             .newton = NEWTON_LEAST + (profile ? PROFILE_NEWTON : SURFACE_NEWTON) *
-                                                          log2(mean_side(grid)),
-                             .linear = LINEAR_LEAST + steep,
-                             .pressures = gmres_needs_pressures(&material)};
+    bool pressures = gmres_needs_pressures(&material);
+    struct full_size size = {
+        .degrees_of_freedom = (double)full_degrees_of_freedom(grid, block, options),
+        .newton = newton_iterations(grid, block->poisson, pressures, rms_slope),
+        .linear = linear_iterations(grid, block->poisson, pressures, rms_slope),
+        .pressures = pressures};
     size.factored = size.linear > FACTORED_ITERATIONS &&
                     (profile || size.degrees_of_freedom <= SURFACE_FACTORED);
-    if (size.pressures)
-        size.linear += PRESSURE_FRONT * pow(bulk_over_shear, PRESSURE_POWER);
     return size;
 }
 
 /* Returns the nanoseconds a degree of freedom of an iteration of the linear equations. */
-static double linear_nanoseconds(const struct grid *grid, const struct full_size *size) {
-    return (grid_is_profile(grid) ? PROFILE_LINEAR_NS : SURFACE_LINEAR_NS) +
-           (size->pressures ? PRESSURE_NS : 0);
+static double linear_nanoseconds(const struct full_fit *fit, const struct full_size *size) {
+    return fit->linear + fit->each * size->linear + (size->pressures ? fit->pressures : 0);
 }
 
 struct full_limit cost_full_limit(const struct grid *grid, const struct full_size *size,
                                   double seconds) {
-    const bool profile = grid_is_profile(grid);
+    const struct full_fit *fit = grid_is_profile(grid) ? &PROFILE_FULL : &SURFACE_FULL;
     const double unit = 1e-9 * size->degrees_of_freedom;
     return (struct full_limit){.seconds = seconds,
-                               .newton = unit * (profile ? PROFILE_NEWTON_NS : SURFACE_NEWTON_NS),
-                               .linear = unit * linear_nanoseconds(grid, size),
-                               .factored =
-                                   unit * (profile ? PROFILE_FACTORED_NS : SURFACE_FACTORED_NS)};
+                               .newton = unit * fit->newton,
+                               .linear = unit * linear_nanoseconds(fit, size),
+                               .factored = unit * fit->factored};
 }
 
-double cost_full_contact(const struct grid *grid, const struct full_size *size, size_t loads) {
-    bool profile = grid_is_profile(grid);
-    double linear = linear_nanoseconds(grid, size);
-    double nanoseconds = (profile ? PROFILE_NEWTON_NS : SURFACE_NEWTON_NS) + linear * size->linear;
-    if (size->factored)
-        nanoseconds = profile ? PROFILE_FACTORED_NS : SURFACE_FACTORED_NS;
-    return 1e-9 * nanoseconds * size->degrees_of_freedom * size->newton * (double)loads;
+double cost_full_loads(double rms_slope, size_t count, const double *loads) {
+    double all = loads != NULL ? 0 : (double)count;
+    for (size_t l = 0; loads != NULL && l < count; l++) {
+        double length = loads[l] - (l > 0 ? loads[l - 1] : 0);
+        all += 1 + FAR_STEPS * fmax(0, length * rms_slope - FAR);
+    }
+    return all;
+}
+
+double cost_full_contact(const struct grid *grid, const struct full_size *size, double loads) {
+    const struct full_fit *fit = grid_is_profile(grid) ? &PROFILE_FULL : &SURFACE_FULL;
+    double nanoseconds =
+        size->factored ? fit->factored : fit->newton + linear_nanoseconds(fit, size) * size->linear;
+    return 1e-9 * nanoseconds * size->degrees_of_freedom * size->newton * loads;
 }
 
 double cost_full_bytes(const struct grid *grid, const struct block *block,
                        const struct full_options *options, const struct full_size *size) {
-    double bytes = MEMORY_ROOM * full_bytes(grid, block, options, 2 * size->linear);
+    double most = (size->pressures ? PRESSURES_MOST : ITERATIONS_MOST) * size->linear;
+    double bytes = MEMORY_ROOM * full_bytes(grid, block, options, most);
     if (size->factored)
         bytes += (grid_is_profile(grid) ? PROFILE_FACTOR_BYTES : SURFACE_FACTOR_BYTES) *
                  size->degrees_of_freedom;

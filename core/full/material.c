@@ -5,6 +5,7 @@ static const struct material_law *const LAWS[] = {
     [KINEMATICS_HENCKY] = &MATERIAL_HENCKY,
     [KINEMATICS_ST_VENANT] = &MATERIAL_ST_VENANT,
     [KINEMATICS_SMALL] = &MATERIAL_SMALL_STRAIN,
+    [KINEMATICS_NEO_HOOKE] = &MATERIAL_NEO_HOOKE,
 };
 
 struct material material_of(double poisson, enum kinematics kinematics) {

@@ -5,9 +5,10 @@
  *   hencky:    shear sum e_p^2 + (local/2) (ln J)^2
  *   st_venant: shear sum E_p^2 + (local/2) (sum E_p)^2,  E_p = (exp(2 e_p) - 1)/2
  *   small:     shear e:e + (local/2) (tr e)^2,  e the symmetric part of the displacement gradient
+ *   neo_hooke: (shear/2) sum (exp(2 e_p) - 1 - 2 e_p) + (local/2) (ln J)^2
  *
  * The rest of lambda acts on the element's mean dilatation (element.h), which is that of ln J, sum
- * E_p or tr e where the strain is uniform. To first order in the gradient all three are the linear
+ * E_p or tr e where the strain is uniform. To first order in the gradient all are the linear
  * material of core/contact/layered.c. Moduli are in E* = E/(1 - nu^2). Each law is a file,
  * material_NAME.c. */
 #ifndef RUGO_CORE_FULL_MATERIAL_H
@@ -15,7 +16,7 @@
 
 #include <stdbool.h>
 
-enum kinematics { KINEMATICS_HENCKY, KINEMATICS_ST_VENANT, KINEMATICS_SMALL };
+enum kinematics { KINEMATICS_HENCKY, KINEMATICS_ST_VENANT, KINEMATICS_SMALL, KINEMATICS_NEO_HOOKE };
 
 struct material_law;
 struct material {
@@ -43,7 +44,8 @@ struct strained {
     pointwise
         inverse[3][3]; /* inverse of F: gradients by deformed positions are grad_X F^-1; small: 1 */
     pointwise stress[3][3]; /* Kirchhoff's */
-    pointwise axis[3][3];   /* axis[p]: principal direction in space */
+    /* of neo_hooke strain[0] is ln J, and other principal values are not set */
+    pointwise axis[3][3];   /* axis[p]: principal direction in space; small, neo_hooke: axis p */
     pointwise principal[3]; /* Kirchhoff's stress along axis p */
     pointwise strain[3];    /* e_p; st_venant: E_p */
     pointwise square[3];    /* of the principal stretch */
@@ -86,6 +88,7 @@ struct material_law {
     void (*moduli)(int dimension, const struct material *material, const struct strained *point,
                    double pull, const pointwise weight, struct moduli *out);
 };
-extern const struct material_law MATERIAL_HENCKY, MATERIAL_ST_VENANT, MATERIAL_SMALL_STRAIN;
+extern const struct material_law MATERIAL_HENCKY, MATERIAL_ST_VENANT, MATERIAL_SMALL_STRAIN,
+    MATERIAL_NEO_HOOKE;
 
 #endif

@@ -33,7 +33,8 @@ int newton_create(struct newton *out, const struct mesh *mesh, const struct mate
     *out = (struct newton){.mesh = mesh, .material = *material, .solver = solver};
     double **const arrays[] = {&out->u, &out->force, &out->before, &out->change};
     double **const faces[] = {&out->gap, &out->opening};
-    int status = tangent_create(&out->tangent, mesh, gmres_needs_pressures(material), err);
+    int status =
+        tangent_create(&out->tangent, mesh, material, gmres_needs_pressures(material), err);
     if (status == 0)
         status = gmres_create(&out->gmres, mesh, material, weighting, err);
     for (size_t a = 0; status == 0 && a < sizeof arrays / sizeof *arrays; a++) {
@@ -201,17 +202,9 @@ static void measure(const struct newton *n, struct newton_end *end) {
     }
 }
 
-/* Computes forces and tangent at u. A factorisation covers the displacements alone, so that
- * pressures are then set to those of the dilatation. */
+/* Computes forces and tangent at u. */
 static bool evaluate(struct newton *n) {
-    size_t degrees_of_freedom = mesh_degrees_of_freedom(n->mesh);
-    n->tangent->bound = n->factored;
     n->evaluated = tangent_evaluate(n->mesh, &n->material, n->u, NULL, n->force, n->tangent);
-    for (size_t f = degrees_of_freedom; n->factored && n->evaluated && f < newton_unknowns(n);
-         f++) {
-        n->u[f] -= n->force[f];
-        n->force[f] = 0;
-    }
     return n->evaluated;
 }
 
@@ -376,8 +369,7 @@ int newton_solve(struct newton *n, double pressure, struct newton_end *end, stru
         status = newton_change(n, off, end, err);
         if (status == ERROR_NUMERIC && !n->factored && factorable(n->mesh)) {
             n->factored = true;
-            if (evaluate(n))
-                continue;
+            continue;
         }
         if (status == 0)
             status = advance(n, err);

@@ -13,8 +13,8 @@ static size_t value_count(const struct mesh *mesh) {
     return mesh_degrees_of_freedom(mesh) * slot_count(mesh) * (size_t)mesh->dimension;
 }
 
-int tangent_create(struct tangent **out, const struct mesh *mesh, bool pressures,
-                   struct error *err) {
+int tangent_create(struct tangent **out, const struct mesh *mesh, const struct material *material,
+                   bool pressures, struct error *err) {
     *out = NULL;
     struct tangent *tangent = array_create(1, sizeof *tangent);
     if (tangent == NULL)
@@ -26,7 +26,8 @@ int tangent_create(struct tangent **out, const struct mesh *mesh, bool pressures
         tangent_destroy(&tangent);
         return error_memory(err, value_count(mesh) * sizeof(double), "a stiffness matrix");
     }
-    int status = pressures ? volumetric_create(&tangent->volumetric, mesh, false, err) : 0;
+    int status =
+        pressures ? volumetric_create(&tangent->volumetric, mesh, material, false, err) : 0;
     if (status != 0)
         tangent_destroy(&tangent);
     *out = tangent;
@@ -187,29 +188,35 @@ INLINE void scatter(int d, const size_t node[8], int parity, struct contribution
         }
 }
 
-/* The pressures of a layer's elements begin with that of the first one. */
+/* The pressures of a layer's elements begin with that of the first one, whose number is `first`. */
 struct layer_pressures {
     const double *pressure;
-    bool bound;
-    struct element_volumetric *volumetric;
     double *force;
+    struct volumetric *volumetric;
+    size_t first;
 };
 
-/* Evaluates one element at the displacements u; e is its number within own. c has its energy and
- * its stiffness only where they are asked for. Returns false where the element is inverted. */
+/* Evaluates element e of a layer at the displacements u. c has its energy and its stiffness only
+ * where they are asked for. Returns false where the element is inverted. */
 INLINE bool evaluate_element(int d, const struct mesh *mesh, const struct material *material,
                              const struct mesh_element *element, const double *u,
                              const struct layer_pressures *own, size_t e, bool energy,
                              bool stiffness, struct contribution *c) {
     struct element_shape shape;
+    struct element_volumetric volumetric;
     double position[8][3], moved[8][3];
     mesh_position(mesh, element, position);
     mesh_corners(mesh, element, u, (size_t)d, moved);
-    return element_shape_make(d, position, &shape) &&
-           element_evaluate(d, material, &shape, moved,
-                            own != NULL && !own->bound ? &own->pressure[e] : NULL,
-                            energy ? &c->energy : NULL, c->force, stiffness ? c->stiffness : NULL,
-                            own != NULL ? &own->volumetric[e] : NULL);
+    if (!element_shape_make(d, position, &shape) ||
+        !element_evaluate(d, material, &shape, moved, own != NULL ? &own->pressure[e] : NULL,
+                          energy ? &c->energy : NULL, c->force, stiffness ? c->stiffness : NULL,
+                          own != NULL ? &volumetric : NULL))
+        return false;
+    if (own != NULL) {
+        own->force[e] = own->volumetric->row * (own->pressure[e] - volumetric.bound);
+        volumetric_store(own->volumetric, own->first + e, element, &volumetric);
+    }
+    return true;
 }
 
 INLINE bool evaluate_layer(int d, const struct mesh *mesh, const struct material *material,
@@ -227,8 +234,6 @@ INLINE bool evaluate_layer(int d, const struct mesh *mesh, const struct material
                 return false;
             if (energy != NULL)
                 sum_add(energy, c.energy);
-            if (own != NULL)
-                own->force[e] = own->pressure[e] - own->volumetric[e].bound;
             if (widens)
                 untie((size_t)d, &element, &c, tangent != NULL);
             int parity = widens ? (int)(i % 2 + j % 2 * 2) : 3;
@@ -252,11 +257,9 @@ bool tangent_evaluate(const struct mesh *mesh, const struct material *material, 
     for (size_t layer = 0; made && layer < mesh->layers; layer++) {
         struct sum *sum = energy != NULL ? &total : NULL;
         struct layer_pressures own = {.pressure = u + degrees_of_freedom + first,
-                                      .force = force + degrees_of_freedom + first};
-        if (apart) {
-            own.volumetric = tangent->volumetric->element + first;
-            own.bound = tangent->bound;
-        }
+                                      .force = force + degrees_of_freedom + first,
+                                      .volumetric = apart ? tangent->volumetric : NULL,
+                                      .first = first};
         made = mesh->dimension == 2 ? evaluate_layer(2, mesh, material, layer, u, sum, force,
                                                      tangent, apart ? &own : NULL)
                                     : evaluate_layer(3, mesh, material, layer, u, sum, force,

@@ -17,12 +17,11 @@ struct tangent {
     double *values;          /* owned */
     struct volumetric
         *volumetric; /* owned: the volumetric part apart, which values hold too; or NULL */
-    bool bound;      /* pressures follow the dilatations, and those given are ignored */
 };
 
 /* Makes a tangent; pressures says whether it has a volumetric part (gmres.h). */
-int tangent_create(struct tangent **out, const struct mesh *mesh, bool pressures,
-                   struct error *err);
+int tangent_create(struct tangent **out, const struct mesh *mesh, const struct material *material,
+                   bool pressures, struct error *err);
 void tangent_destroy(struct tangent **tangent);
 double tangent_bytes(const struct mesh *mesh, bool pressures);
 
@@ -41,8 +40,8 @@ size_t tangent_unknowns(const struct tangent *tangent);
  * the inner forces at displacements u, and the tangent (may be NULL), which contains all forces as
  * functions of u alone. With a volumetric part, u and force have tangent_unknowns values: behind
  * the displacements the elements' pressures, and behind the forces the excess of these pressures
- * over those of the dilatations. Returns false, with undefined outputs, when an element is
- * inverted. */
+ * over those of the dilatations, times volumetric->row. Returns false, with undefined outputs, when
+ * an element is inverted. */
 bool tangent_evaluate(const struct mesh *mesh, const struct material *material, const double *u,
                       double *energy, double *force, struct tangent *tangent);
 

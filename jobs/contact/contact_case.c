@@ -7,6 +7,7 @@
 const struct choice KINEMATICS_CHOICES[] = {{"hencky", KINEMATICS_HENCKY},
                                             {"st_venant_kirchhoff", KINEMATICS_ST_VENANT},
                                             {"small", KINEMATICS_SMALL},
+                                            {"neo_hooke", KINEMATICS_NEO_HOOKE},
                                             {0}};
 
 double contact_case_transition(const struct contact_case *one_case, const struct grid *grid) {

@@ -169,7 +169,7 @@ static const struct parameter ROWS[] = {
      .example_json = "\"small\"",
      .help =
          "full: hencky (finite, logarithmic strain), st_venant_kirchhoff (finite strain, Green's), "
-         "or small (linear strain on the rough geometry)"},
+         "small (linear strain on the rough geometry), or neo_hooke (finite strain, of rubber)"},
     {.path = "/contact/pressures/to",
      .type = PARAMETER_NUMBER,
      .minimum = 0,

@@ -61,7 +61,7 @@ int friction_newton_create(struct friction_newton *out, const struct mesh *mesh,
     int status = out->gmres != NULL ? gmres_add_friction(gmres, weighting, err)
                                     : unsymmetric_create(&out->lu, mesh, err);
     if (status == 0)
-        status = tangent_create(&out->tangent, mesh, pressures, err);
+        status = tangent_create(&out->tangent, mesh, material, pressures, err);
     if (status == 0)
         status = arrays_create(out, err);
     if (status != 0)
@@ -397,8 +397,11 @@ static int newton_step(struct friction_newton *n, const struct friction_goal *go
     for (size_t f = 0; f < n->unknowns; f++)
         n->change[f] = -n->force[f];
     memcpy(x, n->change, solved * sizeof *x);
-    if (eliminated)
-        volumetric_forces(n->tangent->volumetric, n->change + degrees_of_freedom, -1, x);
+    if (eliminated) {
+        double *excess = n->change + degrees_of_freedom;
+        volumetric_scale(n->tangent->volumetric, 1 / n->tangent->volumetric->row, excess, excess);
+        volumetric_forces(n->tangent->volumetric, excess, -1, x);
+    }
     far_rows(n, goal->pressure, x);
     face_rows(n, true, x);
     for (size_t k = 0; k < sideways; k++) {

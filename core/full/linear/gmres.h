@@ -8,8 +8,10 @@
  * change that of a rough one, and the bulk modulus multiplies the change. For them the pressure p
  * of each element is an unknown of its own, with the equation p - k v = 0 beside the forces. Here v
  * is the change of volume by the displacements and k the bulk modulus over the volume (Brezzi &
- * Fortin 1991). The flat block has the same unknowns, so that the two blocks differ by their slopes
- * alone.
+ * Fortin 1991). That equation is multiplied by the shear over the bulk modulus: an error of the
+ * volume then counts as a shear strain does, while its pressure may be thousands of times as large.
+ * The flat block has the same unknowns, and a bulk modulus of its own where that of the rough one
+ * is large (gmres.c).
  *
  * Where this converges too slowly, as for steep blocks, a factorisation of the tangent in the
  * displacements alone (factorisation.h) replaces the flat block as the preconditioner. With the
@@ -36,7 +38,7 @@ size_t gmres_friction_unknowns(const struct gmres *gmres);
 double gmres_bytes(const struct mesh *mesh, const struct material *material, double iterations);
 
 /* Returns whether the pressures of elements must be unknowns of their own, so that the tangent
- * needs its volumetric part: the bulk modulus is more than ten times the shear modulus. */
+ * needs its volumetric part: the ratio of Poisson is above 0.45. */
 bool gmres_needs_pressures(const struct material *material);
 
 /* Applies the gap weighting (F10.5) to values at the face's nodes; in and out may be the same. */
@@ -53,8 +55,8 @@ struct linear_system {
 
 /* Solves for x, which has tangent_unknowns values. On entry x holds forces (at the first node of
  * the far side the sum of the vertical ones there), on vertical degrees of freedom in contact the
- * prescribed change of the weighted gap, and the excess of the pressures. On return it holds
- * displacements and pressures. With friction, rows of nodes in contact are those of
+ * prescribed change of the weighted gap, and the excess of the pressures, times volumetric->row. On
+ * return it holds displacements and pressures. With friction, rows of nodes in contact are those of
  * sliding_face_solve, and x has gmres_friction_unknowns values. Ends when the residual is
  * `tolerance` times that of x = 0; ERROR_NUMERIC when it stays larger. Adds to *iterations. */
 int gmres_solve(struct gmres *gmres, const struct linear_system *system, double tolerance,

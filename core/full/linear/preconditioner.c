@@ -27,13 +27,14 @@ static const double PI = 3.14159265358979323846;
  * its upper level. volumetric may be NULL. */
 static void layer_stiffness_make(const struct mesh *mesh, const struct material *material,
                                  size_t layer, struct layer_stiffness *out,
-                                 struct element_volumetric *volumetric) {
+                                 struct volumetric *volumetric) {
     int d = mesh->dimension;
     const struct level *level = &mesh->level[layer];
     double width = (double)level->width;
     double position[8][3], u[8][3] = {{0}},
                            stiffness[ELEMENT_DEGREES_OF_FREEDOM][ELEMENT_DEGREES_OF_FREEDOM];
     struct element_shape shape;
+    struct element_volumetric own;
     memset(out, 0, sizeof *out);
     for (int a = 0; a < 1 << d; a++) {
         position[a][0] = (a & 1) * width;
@@ -42,7 +43,9 @@ static void layer_stiffness_make(const struct mesh *mesh, const struct material 
     }
     /* A brick without displacements is never inverted. */
     (void)element_shape_make(d, position, &shape);
-    (void)element_evaluate(d, material, &shape, u, NULL, NULL, NULL, stiffness, volumetric);
+    (void)element_evaluate(d, material, &shape, u, NULL, NULL, NULL, stiffness, &own);
+    if (volumetric != NULL)
+        volumetric_store_layer(volumetric, layer, &own);
     for (int a = 0; a < 1 << d; a++)
         for (int b = 0; b < 1 << d; b++) {
             int along = (b & 1) - (a & 1) + 1;
@@ -257,8 +260,7 @@ static int eliminate_all(struct preconditioner *preconditioner, const struct mat
     if (layers == NULL)
         return error_memory(err, mesh->layers * sizeof *layers, "the flat block");
     for (size_t k = 0; k < mesh->layers; k++)
-        layer_stiffness_make(mesh, material, k, &layers[k],
-                             volumetric != NULL ? &volumetric->element[k] : NULL);
+        layer_stiffness_make(mesh, material, k, &layers[k], volumetric);
     for (size_t level = mesh->layers + 1; level-- > 0;)
         for (size_t wave = 0; wave < waves_at(preconditioner, level); wave++)
             eliminate(preconditioner, layers, level, wave);

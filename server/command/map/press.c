@@ -24,8 +24,8 @@
 enum asked { ASKED_AUTO, ASKED_OPEN, ASKED_MIRRORED, ASKED_PERIODIC };
 #define BOUNDARIES "auto|open|mirrored|periodic" /* in this order */
 enum coupling { COUPLING_NONE, COUPLING_FRICTIONLESS, COUPLING_FRICTIONAL };
-#define COUPLINGS "none|frictionless|frictional"      /* in this order */
-#define KINEMATICS "hencky|st_venant_kirchhoff|small" /* as KINEMATICS_CHOICES */
+#define COUPLINGS "none|frictionless|frictional"                /* in this order */
+#define KINEMATICS "hencky|st_venant_kirchhoff|small|neo_hooke" /* as KINEMATICS_CHOICES */
 
 /* From so many points on threads share the work. */
 enum { POINTS_SHARED = 1 << 15 };
@@ -109,8 +109,8 @@ static const struct option_row OPTIONS[] = {
     {"height", 0, OPTION_NUMBER, 1e-3, 1e3, AT(lengths), "LENGTHS", NULL,
      "height of the block in lengths of the map (infinite; of meshes 1.5)"},
     {"kinematics", 0, OPTION_CHOICE, 0, 0, AT(kinematics), KINEMATICS, "hencky",
-     "of the model full: finite strain by Hencky's law or St. Venant and Kirchhoff's, or small "
-     "strain on the rough geometry"},
+     "of the model full: finite strain by Hencky's law, St. Venant and Kirchhoff's or "
+     "neo-Hooke's, or small strain on the rough geometry"},
     {"gap-weighting", 0, OPTION_CHOICE, 0, 0, AT(weighting), "standard|dual", "standard",
      "of meshes: the gap of a node is that over its neighbours, too, or at it alone"},
     {"transition-depth", 0, OPTION_NUMBER, 1, 1e9, AT(transition), "WIDTHS", "8",

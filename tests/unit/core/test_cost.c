@@ -130,11 +130,71 @@ static void contact_costs_what_it_takes(void **state) {
     }
 }
 
+/* Presses one rough block at six loads up to 0.3 E* h', and adds up the iterations. */
+static struct full_report iterations_of(const struct grid *grid, double slope, double poisson,
+                                        struct full_size *expected) {
+    enum { LOADS = 6 };
+    const struct block block = {.poisson = poisson,
+                                .height = 1.5 * grid->lx,
+                                .layer_growth = 1.1,
+                                .weighting = GAP_STANDARD};
+    const struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
+                                      .hurst = 0.8,
+                                      .wavelength_long = fmin(8, grid->lx),
+                                      .wavelength_rolloff = fmin(8, grid->lx),
+                                      .wavelength_short = 1,
+                                      .scale = SCALE_RMS_SLOPE,
+                                      .scale_value = slope};
+    struct full_options options = FULL_DEFAULTS;
+    struct generator *generator;
+    struct full *full;
+    struct contact_state state;
+    struct full_report report, sum = {0};
+    double *z = array_create(grid_points(grid), sizeof *z);
+    options.tolerance = 3e-5;
+    assert_non_null(z);
+    assert_int_equal(generator_create(&generator, &spectrum, grid, &SURFACE_DEFAULTS, NULL), 0);
+    assert_int_equal(generator_run(generator, (struct random_key){7, 0, 0}, z, NULL, NULL), 0);
+    assert_int_equal(full_create(&full, grid, &block, &options, NULL), 0);
+    assert_int_equal(full_begin(full, z, NULL), 0);
+    for (int k = 1; k <= LOADS; k++) {
+        assert_int_equal(full_press(full, 0.05 * k * slope, &state, &report, NULL), 0);
+        sum.newton += report.newton;
+        sum.linear += report.linear;
+        sum.factored += report.factored;
+    }
+    *expected = cost_full_size(grid, &block, &options, slope);
+    expected->linear *= LOADS * expected->newton;
+    expected->newton *= LOADS;
+    full_destroy(&full);
+    generator_destroy(&generator);
+    free(z);
+    return sum;
+}
+
+/* Iterations of finite elements over slope, Poisson's ratio and dimension, within 1.5 of what is
+ * expected; 0.69 to 1.12 of that are seen. */
+static void elements_take_the_iterations_expected(void **state) {
+    (void)state;
+    static const struct grid GRIDS[] = {{256, 1, 32, 32}, {16, 16, 2, 2}};
+    static const double SLOPES[] = {0.05, 0.2, 0.5}, POISSON[] = {0.3, 0.4999};
+    for (size_t c = 0; c < 12; c++) {
+        struct full_size expected;
+        double slope = SLOPES[c / 2 % 3], poisson = POISSON[c / 6];
+        struct full_report sum = iterations_of(&GRIDS[c % 2], slope, poisson, &expected);
+        assert_int_equal(sum.factored, 0);
+        assert_false(expected.factored);
+        check_factor((double)sum.newton, expected.newton, 1.5);
+        check_factor((double)sum.linear, expected.linear, 1.5);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tolerances_cost_what_they_take),
         cmocka_unit_test(sizes_do_not_matter_without_a_tolerance),
         cmocka_unit_test(contact_costs_what_it_takes),
+        cmocka_unit_test(elements_take_the_iterations_expected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,7 +8,9 @@
 #include <string.h>
 
 static const enum kinematics KINEMATICS[] = {KINEMATICS_HENCKY, KINEMATICS_ST_VENANT,
-                                             KINEMATICS_SMALL};
+                                             KINEMATICS_SMALL, KINEMATICS_NEO_HOOKE};
+static const enum kinematics FINITE[] = {KINEMATICS_HENCKY, KINEMATICS_ST_VENANT,
+                                         KINEMATICS_NEO_HOOKE};
 
 static void random_numbers(uint64_t draw, size_t n, double size, double *out) {
     struct random_key key = {.seed = 5, .realisation = draw};
@@ -34,10 +36,10 @@ static void shape(int d, double position[8][3], struct element_shape *out) {
  * rounding, far below the 1e-10 asked. */
 static void patch_test(void **state) {
     (void)state;
-    for (uint64_t draw = 0; draw < 30; draw++) {
+    for (uint64_t draw = 0; draw < 40; draw++) {
         int d = 2 + (int)(draw % 2);
         struct material material =
-            material_of(draw % 5 == 0 ? 0.4999 : 0.3, KINEMATICS[draw / 2 % 3]);
+            material_of(draw % 5 == 0 ? 0.4999 : 0.3, KINEMATICS[draw / 2 % 4]);
         double moved[27][3], h[3][3], sum[3] = {0}, scale = 0;
         random_numbers(draw, 81, 0.2, &moved[0][0]);
         random_numbers(100 + draw, 9, 0.2, &h[0][0]);
@@ -76,15 +78,15 @@ static void patch_test(void **state) {
 static void forces_and_stiffness_are_derivatives(void **state) {
     (void)state;
     static const double STEP = 1e-5;
-    for (uint64_t draw = 0; draw < 36; draw++) {
+    for (uint64_t draw = 0; draw < 48; draw++) {
         int d = 2 + (int)(draw % 2), degrees_of_freedom = d << d;
         struct material material =
-            material_of(draw % 4 == 0 ? 0.49 : 0.3, KINEMATICS[draw / 2 % 3]);
+            material_of(draw % 5 == 0 ? 0.49 : 0.3, KINEMATICS[draw / 2 % 4]);
         double position[8][3], u[8][3], force[24], stiffness[24][24];
         struct element_shape element;
         distorted(d, draw, 0.2, position);
         shape(d, position, &element);
-        random_numbers(200 + draw, 24, draw < 6 ? 0 : 0.1, &u[0][0]);
+        random_numbers(200 + draw, 24, draw < 8 ? 0 : 0.1, &u[0][0]);
         assert_true(
             element_evaluate(d, &material, &element, u, NULL, NULL, force, stiffness, NULL));
         for (int n = 0; n < degrees_of_freedom; n++) {
@@ -108,9 +110,9 @@ static void forces_and_stiffness_are_derivatives(void **state) {
 /* A turned and shifted block: forces turn with it. */
 static void a_rotated_element_gives_rotated_forces(void **state) {
     (void)state;
-    for (uint64_t draw = 0; draw < 20; draw++) {
+    for (uint64_t draw = 0; draw < 24; draw++) {
         int d = 2 + (int)(draw % 2);
-        struct material material = material_of(0.3, KINEMATICS[draw / 2 % 2]);
+        struct material material = material_of(0.3, FINITE[draw / 2 % 3]);
         double position[8][3], u[8][3], turned[8][3], force[24], after[24], energy, same;
         double c = cos(1 + (double)draw), s = sin(1 + (double)draw);
         double r[3][3] = {{c, -s, 0}, {s, c, 0}, {0, 0, 1}};
@@ -155,6 +157,12 @@ static struct uniform uniaxial(int d, enum kinematics k, double mu, double lambd
     for (int i = 0; i < d; i++)
         u.normal[i] = i == d - 1 ? square * (2 * mu + lambda) * e : lambda * e;
     u.energy = (mu + lambda / 2) * e * e;
+    if (k != KINEMATICS_NEO_HOOKE)
+        return u;
+    for (int i = 0; i < d; i++)
+        u.normal[i] = lambda * log(stretch) + (i == d - 1 ? mu * (stretch * stretch - 1) : 0);
+    u.energy = mu / 2 * (stretch * stretch - 1 - 2 * log(stretch)) +
+               lambda / 2 * log(stretch) * log(stretch);
     return u;
 }
 
@@ -168,12 +176,18 @@ static struct uniform swollen(int d, enum kinematics k, double mu, double lambda
         u.normal[i] = square * (2 * mu + d * lambda) * e;
     }
     u.energy = d * (mu + d * lambda / 2) * e * e;
+    if (k != KINEMATICS_NEO_HOOKE)
+        return u;
+    double trace = d * log(stretch);
+    for (int i = 0; i < d; i++)
+        u.normal[i] = mu * (stretch * stretch - 1) + lambda * trace;
+    u.energy = mu / 2 * (d * (stretch * stretch - 1) - 2 * trace) + lambda / 2 * trace * trace;
     return u;
 }
 
 /* The vertical axis stretched by s, then sheared sideways by gamma s: F = [1 gamma; 0 s]. St
  * Venant: tau = F S F^T. Hencky: F F^T is m + D with D traceless and D^2 = r^2, its logarithm
- * ln s + D atanh(r/m)/r. */
+ * ln s + D atanh(r/m)/r. Neo-Hooke: mu (F F^T - 1) + lambda ln s. */
 static struct uniform sheared(int d, enum kinematics k, double mu, double lambda, double s) {
     const double gamma = 0.3;
     int v = d - 1;
@@ -192,6 +206,13 @@ static struct uniform sheared(int d, enum kinematics k, double mu, double lambda
         u.normal[v] = s * s * down;
         u.across = s * (mu * gamma + gamma * down);
         u.energy = (mu + lambda / 2) * e * e + mu / 2 * gamma * gamma;
+    } else if (k == KINEMATICS_NEO_HOOKE) {
+        double l = log(s), square = gamma * gamma;
+        u.normal[1] = lambda * l;
+        u.normal[0] = mu * square + lambda * l;
+        u.normal[v] = mu * (s * s - 1) + lambda * l;
+        u.across = mu * gamma * s;
+        u.energy = mu / 2 * (square + s * s - 1 - 2 * l) + lambda / 2 * l * l;
     } else {
         double m = (1 + gamma * gamma + s * s) / 2, r = sqrt(m * m - s * s), l = log(s);
         double t = atanh(r / m), half = (1 + gamma * gamma - s * s) / 2;
@@ -212,12 +233,12 @@ static void uniform_strain_is_the_solids(void **state) {
     static struct uniform (*const STRAIN[])(int, enum kinematics, double, double,
                                             double) = {uniaxial, swollen, sheared};
     static const double STRETCHES[] = {0.8, 0.95, 1 - 1e-7, 1.3};
-    for (size_t c = 0; c < (size_t)2 * 3 * 3 * 4; c++) {
+    for (size_t c = 0; c < (size_t)2 * 4 * 3 * 4; c++) {
         int d = 2 + (int)(c % 2);
-        enum kinematics kinematics = KINEMATICS[c / 2 % 3];
+        enum kinematics kinematics = KINEMATICS[c / 2 % 4];
         struct material material = material_of(0.3, kinematics);
-        struct uniform expected = STRAIN[c / 6 % 3](
-            d, kinematics, material.shear, material.local + material.mean, STRETCHES[c / 18]);
+        struct uniform expected = STRAIN[c / 8 % 3](
+            d, kinematics, material.shear, material.local + material.mean, STRETCHES[c / 24]);
         double position[8][3], u[8][3], force[ELEMENT_DEGREES_OF_FREEDOM], energy;
         struct element_shape element;
         distorted(d, c, 0.2, position);
@@ -250,13 +271,14 @@ static void small_strains_are_linear(void **state) {
     (void)state;
     for (uint64_t draw = 0; draw < 12; draw++) {
         int d = 2 + (int)(draw % 2), degrees_of_freedom = d << d;
-        struct material material = material_of(draw < 6 ? 0.3 : 0.4999, KINEMATICS_SMALL);
+        double poisson = draw < 6 ? 0.3 : 0.4999;
+        struct material material = material_of(poisson, KINEMATICS_SMALL);
         double position[8][3], u[8][3] = {{0}}, linear[24][24], force[24], stiffness[24][24];
         struct element_shape element;
         distorted(d, draw, 0.2, position);
         shape(d, position, &element);
         assert_true(element_evaluate(d, &material, &element, u, NULL, NULL, NULL, linear, NULL));
-        material.kinematics = KINEMATICS[draw / 2 % 2];
+        material = material_of(poisson, FINITE[draw / 2 % 3]);
         assert_true(element_evaluate(d, &material, &element, u, NULL, NULL, NULL, stiffness, NULL));
         random_numbers(400 + draw, 24, 1e-12, &u[0][0]);
         assert_true(element_evaluate(d, &material, &element, u, NULL, NULL, force, NULL, NULL));

@@ -8,7 +8,9 @@
 
 static const double POISSON[] = {0, 0.3, 0.49, 0.4999};
 static const enum kinematics KINEMATICS[] = {KINEMATICS_HENCKY, KINEMATICS_ST_VENANT,
-                                             KINEMATICS_SMALL};
+                                             KINEMATICS_SMALL, KINEMATICS_NEO_HOOKE};
+static const enum kinematics FINITE[] = {KINEMATICS_HENCKY, KINEMATICS_ST_VENANT,
+                                         KINEMATICS_NEO_HOOKE};
 
 /* A gradient of entries up to size, the same each run. */
 static void random_gradient(uint64_t draw, double size, double h[3][3]) {
@@ -122,6 +124,33 @@ static void st_venant_has_its_closed_forms(void **state) {
     }
 }
 
+/* tau = mu (F F^T - 1) + lambda ln J: uniaxial, and simple shear by gamma, whose stress along the
+ * first axis is mu gamma^2. */
+static void neo_hooke_has_its_closed_forms(void **state) {
+    (void)state;
+    for (size_t n = 0; n < 4; n++) {
+        struct material material = material_of(POISSON[n], KINEMATICS_NEO_HOOKE);
+        double mu = material.shear, a = material.local;
+        for (double stretch = 0.5; stretch < 2.1; stretch += 0.25)
+            for (int d = 2; d <= 3; d++) {
+                double square = stretch * stretch, logarithm = log(stretch);
+                double uniaxial[3][3] = {{stretch - 1}}, shear[3][3] = {{0, stretch}};
+                struct strained_point p = strain(d, &material, uniaxial);
+                check_close(p.stress[0][0], mu * (square - 1) + a * logarithm, 1e-13);
+                check_close(p.stress[1][1], a * logarithm, 1e-13);
+                check_close(p.energy,
+                            mu / 2 * (square - 1 - 2 * logarithm) + a / 2 * logarithm * logarithm,
+                            1e-13);
+                check_close(p.dilatation, stretch - 1, 1e-14);
+                p = strain(d, &material, shear);
+                check_close(p.stress[0][0], mu * square, 1e-13);
+                check_close(p.stress[0][1], mu * stretch, 1e-13);
+                check_close(p.stress[1][1], 0, 1e-13);
+                check_close(p.energy, mu / 2 * square, 1e-13);
+            }
+    }
+}
+
 /* Small gradients: all kinematics are one, with digits left in the strain itself. */
 static void small_strains_are_linear(void **state) {
     (void)state;
@@ -130,7 +159,7 @@ static void small_strains_are_linear(void **state) {
     for (int d = 2; d <= 3; d++) {
         struct material small = material_of(0.3, KINEMATICS_SMALL);
         struct strained_point linear = strain(d, &small, h);
-        for (size_t k = 0; k < 2; k++) {
+        for (size_t k = 0; k < 4; k++) {
             struct material material = material_of(0.3, KINEMATICS[k]);
             struct strained_point p = strain(d, &material, h);
             for (int i = 0; i < d; i++)
@@ -146,7 +175,7 @@ static void sizes_do_not_mix(void **state) {
     (void)state;
     static const double SIZES[] = {1e-9, 0.3, 0, 1e-12, 1e-300, 1e-30, 3e-151, 1e-160};
     for (int d = 2; d <= 3; d++)
-        for (size_t k = 0; k < 2; k++) {
+        for (size_t k = 0; k < 4; k++) {
             struct material material = material_of(0.3, KINEMATICS[k]);
             struct material small = material_of(0.3, KINEMATICS_SMALL);
             struct strained p, linear;
@@ -218,11 +247,11 @@ static void check_differences(int d, const struct material *material, double h[3
 static void moduli_are_the_second_derivative(void **state) {
     (void)state;
     static const double SIZES[] = {0, 1e-12, 1e-8, 1e-3, 0.05, 0.3};
-    for (uint64_t draw = 0; draw < 72; draw++) {
+    for (uint64_t draw = 0; draw < 96; draw++) {
         int d = 2 + (int)(draw % 2);
-        struct material material = material_of(0.3, KINEMATICS[draw / 2 % 3]);
+        struct material material = material_of(0.3, KINEMATICS[draw / 2 % 4]);
         double h[3][3], g[3][3];
-        random_gradient(draw, SIZES[draw / 12 % 6], h);
+        random_gradient(draw, SIZES[draw / 16 % 6], h);
         random_gradient(1000 + draw, 0.2, g);
         check_differences(d, &material, h, g);
     }
@@ -259,7 +288,7 @@ static void a_rotation_turns_the_stress(void **state) {
     (void)state;
     for (uint64_t draw = 0; draw < 20; draw++)
         for (int d = 2; d <= 3; d++) {
-            struct material material = material_of(0.3, KINEMATICS[draw % 2]);
+            struct material material = material_of(0.3, FINITE[draw % 3]);
             double c = cos((double)draw), s = sin((double)draw), h[3][3], turned[3][3];
             double r[3][3] = {{c, -s, 0}, {s, c, 0}, {0, 0, 1}};
             random_gradient(draw, 0.25, h);
@@ -289,17 +318,17 @@ static void convex_moduli_lead_downhill(void **state) {
     (void)state;
     for (uint64_t draw = 0; draw < 200; draw++) {
         int d = 2 + (int)(draw % 2);
-        struct material material = material_of(0.3, KINEMATICS[draw / 2 % 2]), convex = material;
+        struct material material = material_of(0.3, FINITE[draw / 2 % 3]), convex = material;
         double h[3][3], g[3][3], moduli[9][9], energy = 0;
         convex.convex = true;
-        random_gradient(draw, draw < 4 ? 0 : 0.3, h);
+        random_gradient(draw, draw < 6 ? 0 : 0.3, h);
         random_gradient(2000 + draw, 1, g);
-        moduli_of(d, &convex, h, draw < 4 ? 0 : 0.5 * (double)(draw % 7) - 1.5, moduli);
+        moduli_of(d, &convex, h, draw < 6 ? 0 : 0.5 * (double)(draw % 7) - 1.5, moduli);
         for (int m = 0; m < d * d; m++)
             for (int n = 0; n < d * d; n++)
                 energy += moduli[m][n] * g[m / d][m % d] * g[n / d][n % d];
         assert_true(energy > -1e-12);
-        if (draw < 4) {
+        if (draw < 6) {
             double tangent[9][9];
             moduli_of(d, &material, h, 0, tangent);
             for (int m = 0; m < d * d; m++)
@@ -325,6 +354,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(hencky_has_its_closed_forms),
         cmocka_unit_test(st_venant_has_its_closed_forms),
+        cmocka_unit_test(neo_hooke_has_its_closed_forms),
         cmocka_unit_test(small_strains_are_linear),
         cmocka_unit_test(sizes_do_not_mix),
         cmocka_unit_test(moduli_are_the_second_derivative),

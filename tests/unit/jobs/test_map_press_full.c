@@ -137,6 +137,14 @@ static void maps_are_pressed_as_studies_do(void **state) {
                                              .kinematics = KINEMATICS_ST_VENANT,
                                              .weighting = GAP_DUAL,
                                              .transition = 4});
+    compare_with_study("neo_hooke", "dual",
+                       &(struct press_block){.model = full_model(),
+                                             .poisson = 0.3,
+                                             .lengths = 1.5,
+                                             .tolerance = 1e-9,
+                                             .kinematics = KINEMATICS_NEO_HOOKE,
+                                             .weighting = GAP_DUAL,
+                                             .transition = 4});
 }
 
 /* --- boundaries --- */

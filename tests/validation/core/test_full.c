@@ -321,6 +321,65 @@ static void nearly_incompressible_blocks_do_not_lock(void **state) {
     close_both(&p);
 }
 
+/* Presses a wave with slopes of up to 0.4 on n nodes, and returns its mean gap. */
+static double gap_of_wave(size_t n, double poisson) {
+    struct pressed p;
+    struct block block = BLOCK;
+    block.poisson = poisson;
+    open_both(&p, line(n), block);
+    fill_wave(&p.scene, 0.4 / (2 * M_PI));
+    begin_both(&p);
+    press_both(&p, 0.05);
+    double gap = p.state.mean_gap;
+    close_both(&p);
+    return gap;
+}
+
+/* Where slopes are not small, either, elements do not lock. The mean gap on 32, 64 and 128 nodes is
+ * within 0.4, 0.04 and 0.05 % of that on 256, whatever nu; 0.49 and 0.4999 differ by 0.01 %. */
+static void gaps_converge_whatever_poissons_ratio(void **state) {
+    (void)state;
+    static const double POISSON[] = {0.3, 0.49, 0.4999};
+    double finest[3];
+    for (size_t c = 0; c < 3; c++) {
+        double gap[4];
+        for (size_t l = 0; l < 4; l++)
+            gap[l] = gap_of_wave((size_t)32 << l, POISSON[c]);
+        check_relative(gap[0], gap[3], 5e-3);
+        check_relative(gap[1], gap[3], 1e-3);
+        check_relative(gap[2], gap[3], 1e-3);
+        finest[c] = gap[3];
+    }
+    check_relative(finest[2], finest[1], 1e-3);
+}
+
+/* Counted work of rough profiles: linear iterations of six loads. The bounds are those asked of
+ * CPU time; 1.6 and 1.9 times as many are seen, none factorised. */
+static void nearly_incompressible_blocks_cost_little_more(void **state) {
+    (void)state;
+    static const double SLOPES[] = {0.3, 0.5}, LOADS[] = {0.02, 0.05, 0.1, 0.2, 0.3, 0.6};
+    for (size_t c = 0; c < 2; c++) {
+        size_t linear[2] = {0}, newton[2] = {0};
+        for (size_t soft = 0; soft < 2; soft++) {
+            struct pressed p;
+            struct block block = BLOCK;
+            block.poisson = soft == 1 ? 0.4999 : 0.3;
+            open_both(&p, line(128), block);
+            fill_rough(&p.scene, SLOPES[c]);
+            begin_both(&p);
+            for (size_t l = 0; l < 6; l++) {
+                press_both(&p, LOADS[l] * SLOPES[c]);
+                linear[soft] += p.report.linear;
+                newton[soft] += p.report.newton;
+                assert_int_equal(p.report.factored, 0);
+            }
+            close_both(&p);
+        }
+        assert_true(linear[0] > 0 && linear[1] < 3 * linear[0]);
+        assert_true(newton[1] < 2 * newton[0]);
+    }
+}
+
 static void first_touch_and_full_contact(void **state) {
     (void)state;
     struct pressed p;
@@ -403,8 +462,8 @@ static void plateaus_and_twins_touch_at_once(void **state) {
     }
 }
 
-/* Rough and nearly incompressible, where the flat block is no guide: factorisations take over, and
- * stress outweighs stiffness in between. At slope 1 edges are up to 2.3 steep. */
+/* Steep or nearly incompressible, where the flat block is less of a guide. Factorisations take
+ * over, and stress outweighs stiffness in between. At slope 1 edges are up to 2.3 steep. */
 static void stiff_profiles_find_their_answer(void **state) {
     (void)state;
     static const struct {
@@ -434,9 +493,9 @@ static void sets_that_come_back_are_taken_apart(void **state) {
     block.poisson = 0.4999;
     block.weighting = GAP_STANDARD;
     open_both(&p, line(128), block);
-    fill_waves(&p.scene, 0.6, 4, 4);
+    fill_waves(&p.scene, 0.6, 4, 33);
     begin_both(&p);
-    press_both(&p, 0.2);
+    press_both(&p, 0.3);
     assert_true(p.report.cycles > 0 && p.report.cuts >= 4);
     assert_true(p.report.steps < (size_t)1 << (p.report.cuts - 1));
     close_both(&p);
@@ -618,6 +677,8 @@ int main(void) {
         cmocka_unit_test(newton_converges_quadratically),
         cmocka_unit_test(units_do_not_matter),
         cmocka_unit_test(nearly_incompressible_blocks_do_not_lock),
+        cmocka_unit_test(gaps_converge_whatever_poissons_ratio),
+        cmocka_unit_test(nearly_incompressible_blocks_cost_little_more),
         cmocka_unit_test(first_touch_and_full_contact),
         cmocka_unit_test(light_loads_end_where_rounding_does),
         cmocka_unit_test(a_flat_block_is_all_in_contact),
