@@ -532,7 +532,7 @@ static int draw_scene(uint64_t *seed) {
  * and slopes to 0.5 a quarter may. */
 static void drawn_scenes(void **state) {
     (void)state;
-    uint64_t seed = seed_or(20261128), scenes = 3 * effort(), failed = 0;
+    uint64_t seed = seed_or(20261128), scenes = 2 * effort(), failed = 0;
     for (uint64_t scene = 0; scene < scenes; scene++)
         failed += draw_scene(&seed) != 0;
     printf("[   INFO   ] %d of %d scenes failed\n", (int)failed, (int)scenes);
