@@ -54,7 +54,7 @@ struct full_size cost_full_size(const struct grid *grid, const struct block *blo
 /* CPU seconds for a series of loads of one surface, and bytes of the solver; 0 bytes where the
  * block takes too many layers. On profiles of 1024 to 65536 points and surfaces of 32 x 32 to
  * 192 x 192, the measured peak, with the surface and the program, was 0.96 to 1.05 of the estimate;
- * 0.45 for steep profiles, not all of which are factorised in the end. The time of 32 studies
+ * 0.45 for steep profiles, not all of which are factorised in the end. The time of 26 studies
  * of both dimensions, slopes to 0.5 and Poisson's ratios of 0 to 0.4999 was 0.8 to 1.65 of the
  * estimate, on a machine on which the same work took up to 1.5 times as long when it was busy. */
 double cost_full_contact(const struct grid *grid, const struct full_size *size, double loads);
