@@ -2,9 +2,9 @@
  * surface that the patch was cut from. Patches are cut from surfaces of known laws, one each. A
  * study like each has 95 % intervals, with the error and without it, of values of the surface and
  * of contact areas, at the same pressures. Measured with RUGO_EFFORT=1 on 64 patches of each
- * Gaussian law: with it 95 to 98 % hold the truth, without it 11 to 20 %; of areas, on 40 patches,
- * 98 and 30 %. Without RUGO_EFFORT four patches of one law are tried, and no areas, which take
- * three minutes. */
+ * law, all with Gaussian heights: with it 95 to 98 % hold the truth, without it 11 to 20 %; of
+ * areas, on 40 patches of the first law, 98 and 30 %. Without RUGO_EFFORT four patches of one law
+ * are tried, and no areas, which take minutes. */
 #include "jobs/like/like_fit.h"
 #include "jobs/merger.h"
 #include "jobs/runner.h"
@@ -19,33 +19,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE = 96, SEED = 34, TRUTH_SEED = 35, LOADS = 9, MEASURES = 6 };
-static const char *const SCALARS[MEASURES] = {"rms_height",     "rms_slope", "rms_curvature",
-                                              "summit_density", "skewness",  "nayak_alpha"};
+enum { SIDE = 96, SEED = 34, TRUTH_SEED = 35, LOADS = 9, MEASURES = 5 };
+static const char *const SCALARS[MEASURES] = {"rms_height", "rms_slope", "rms_curvature",
+                                              "summit_density", "nayak_alpha"};
 /* By how many lengths of the map each grows. */
-static const int POWERS[MEASURES] = {1, 0, -1, -2, 0, 0};
+static const int POWERS[MEASURES] = {1, 0, -1, -2, 0};
 
 /* A law, in units of its shortest wave. The cell has twice the sides of a patch. */
 struct law {
     const char *name, *surface;
-    bool gaussian;
-    uint64_t patches; /* tried with RUGO_EFFORT */
 };
 static const struct law LAWS[] = {
     {"H = 0.8, roll-off at a sixth of a side",
      "\"hurst\": 0.8, \"wavelength_ratio\": 16, \"rolloff_ratio\": 4, \"length_ratio\": 3,"
-     " \"points_per_wavelength\": 4, \"rms_slope\": 0.1, \"amplitudes\": \"random\"",
-     true, 64},
+     " \"points_per_wavelength\": 4, \"rms_slope\": 0.1, \"amplitudes\": \"random\""},
     {"H = 0.3",
      "\"hurst\": 0.3, \"wavelength_ratio\": 16, \"rolloff_ratio\": 2, \"length_ratio\": 3,"
-     " \"points_per_wavelength\": 4, \"rms_slope\": 0.1, \"amplitudes\": \"random\"",
-     true, 64},
-    {"Weibull, shape 2",
-     "\"hurst\": 0.7, \"wavelength_ratio\": 16, \"rolloff_ratio\": 4,"
-     " \"length_ratio\": 3, \"points_per_wavelength\": 4, \"rms_slope\": 0.1,"
-     " \"amplitudes\": \"random\", \"heights\": {\"distribution\":"
-     " \"weibull_min\", \"shape\": 2, \"law\": \"translation\"}",
-     false, 16}};
+     " \"points_per_wavelength\": 4, \"rms_slope\": 0.1, \"amplitudes\": \"random\""}};
 
 static cJSON *parameters_of(const char *surface, const char *rest) {
     char text[2000];
@@ -80,7 +70,7 @@ static cJSON *like_patch(const struct law *law, uint64_t realisation) {
         .prepared = "",
         .sha256 = "00112233445566778899aabbccddeeff00112233445566778899aabbccddeeff",
         .detrend = DETREND_PLANE,
-        .heights = law->gaussian ? LIKE_HEIGHTS_GAUSSIAN : LIKE_HEIGHTS_QUANTILES,
+        .heights = LIKE_HEIGHTS_GAUSSIAN,
         .uncertainty = LIKE_UNCERTAINTY_POSTERIOR,
         .off_stated = true};
     cJSON *truth = parameters_of(law->surface, ""), *surface = NULL;
@@ -104,8 +94,6 @@ static cJSON *like_patch(const struct law *law, uint64_t realisation) {
     surface = cJSON_AddObjectToObject(parameters, "surface");
     if (like_fit(surface, &map, &source, &err) != 0)
         fail_msg("%s", err.text);
-    if (!law->gaussian)
-        cJSON_AddStringToObject(cJSON_GetObjectItem(surface, "heights"), "law", "translation");
     free(z);
     height_map_clear(&map);
     surface_case_clear(&one);
@@ -152,14 +140,12 @@ static void statistics(void **state) {
         cJSON *parameters = parameters_of(LAWS[l].surface, "");
         run("statistics", parameters, TRUTH_SEED, TRUTHS, &truth);
         cJSON_Delete(parameters);
-        for (uint64_t r = 0; r < (every_case() ? LAWS[l].patches : 4); r++) {
+        for (uint64_t r = 0; r < (every_case() ? 64 : 4); r++) {
             parameters = like_patch(&LAWS[l], r);
             const double length = json_number_at(parameters, "/surface/like/wavelength", NAN);
             run("statistics", parameters, r, REALISATIONS, &result);
             for (size_t m = 0; m < MEASURES; m++) {
                 const struct scalar *scalar = scalar_of(&result, SCALARS[m]);
-                if (m == 4 && LAWS[l].gaussian)
-                    continue;
                 count(&of[m], scalar_of(&truth, SCALARS[m])->value, pow(length, POWERS[m]),
                       scalar->value, scalar->standard_error, &scalar->errors[ERROR_PATCH]);
             }
@@ -168,7 +154,7 @@ static void statistics(void **state) {
         }
         result_clear(&truth);
         for (size_t m = 0; m < MEASURES; m++)
-            well = (of[m].n == 0 || holds(&LAWS[l], SCALARS[m], &of[m])) && well;
+            well = holds(&LAWS[l], SCALARS[m], &of[m]) && well;
     }
     assert_true(well);
 }
@@ -191,7 +177,7 @@ static void areas(void **state) {
     const double pressure = 0.1; /* over E* h' of the fit */
     char rest[400];
     bool well = true;
-    for (size_t l = 0; l < 2; l += case_step()) {
+    for (size_t l = 0; l < 1; l++) {
         struct coverage of = {0};
         struct case_result truth, result;
         snprintf(rest, sizeof rest, CONTACT, "0.06, 0.075, 0.09, 0.1, 0.11, 0.125, 0.14, 0.17");
