@@ -143,7 +143,7 @@ static double length_of(const double *a) {
 /* Fills the integrals of the shape functions over a cell. */
 static void true_areas(const struct mesh *mesh, const double *u, size_t j, size_t i, double *area) {
     static const double POINT[2] = {0.21132486540518712, 0.78867513459481288};
-    double c[4][3], along[3], back[3], normal[3];
+    double c[4][3] = {{0}}, along[3], back[3], normal[3];
     corners_of(mesh, u, j, i, c);
     if (mesh->dimension == 2) {
         area[0] = area[1] = hypot(c[1][0] - c[0][0], c[1][2] - c[0][2]) / 2;
@@ -205,7 +205,7 @@ double face_mean_gap_current(const struct mesh *mesh, const double *u, const dou
 
 /* Adds the unit normal of a cell, which points up where the cell is not turned over. */
 static void add_normal(const struct mesh *mesh, const double *u, size_t j, size_t i, double *sum) {
-    double c[4][3], one[3], other[3] = {0, 1, 0}, normal[3];
+    double c[4][3] = {{0}}, one[3], other[3] = {0, 1, 0}, normal[3];
     bool surface = mesh->dimension == 3;
     corners_of(mesh, u, j, i, c);
     for (int k = 0; k < 3; k++) {
