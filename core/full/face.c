@@ -117,3 +117,117 @@ double face_mean_gap_change(const struct mesh *mesh, const double *u, const doub
         }
     return sum_value(&sum) / ((double)mesh->face * mesh->across);
 }
+
+/* --- the face with its slopes --- */
+
+/* Fills the positions of a cell's corners, in the order of element.h. */
+static void corners_of(const struct mesh *mesh, const double *u, size_t j, size_t i,
+                       double corner[4][3]) {
+    for (size_t a = 0; a < (size_t)1 << (mesh->dimension - 1); a++) {
+        size_t node = level_node(&mesh->level[0], j + (a >> 1), i + (a & 1));
+        corner[a][0] = (double)(a & 1) + sideways(mesh, u, node, 0);
+        corner[a][1] = (double)(a >> 1) * mesh->across + sideways(mesh, u, node, 1);
+        corner[a][2] = mesh->height[node] + u[mesh_vertical(mesh, node)];
+    }
+}
+
+static void cross(const double *a, const double *b, double *out) {
+    for (int k = 0; k < 3; k++)
+        out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+static double length_of(const double *a) {
+    return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+}
+
+/* Fills the integrals of the shape functions over a cell. */
+static void true_areas(const struct mesh *mesh, const double *u, size_t j, size_t i, double *area) {
+    static const double POINT[2] = {0.21132486540518712, 0.78867513459481288};
+    double c[4][3] = {{0}}, along[3], back[3], normal[3];
+    corners_of(mesh, u, j, i, c);
+    if (mesh->dimension == 2) {
+        area[0] = area[1] = hypot(c[1][0] - c[0][0], c[1][2] - c[0][2]) / 2;
+        return;
+    }
+    area[0] = area[1] = area[2] = area[3] = 0;
+    for (int q = 0; q < 4; q++) {
+        double s = POINT[q & 1], t = POINT[q >> 1];
+        for (int k = 0; k < 3; k++) {
+            along[k] = (1 - t) * (c[1][k] - c[0][k]) + t * (c[3][k] - c[2][k]);
+            back[k] = (1 - s) * (c[2][k] - c[0][k]) + s * (c[3][k] - c[1][k]);
+        }
+        cross(along, back, normal);
+        for (int a = 0; a < 4; a++)
+            area[a] += length_of(normal) / 4 * ((a & 1) != 0 ? s : 1 - s) * (a > 1 ? t : 1 - t);
+    }
+}
+
+struct face_tilt face_measure_tilt(const struct mesh *mesh, const double *u, const bool *active) {
+    const struct level *face = &mesh->level[0];
+    const size_t corners = (size_t)1 << (mesh->dimension - 1);
+    struct sum all = {0}, touching = {0}, projected = {0};
+    double area[4];
+    for (size_t j = 0; j < face->ny; j++)
+        for (size_t i = 0; i < face->nx; i++) {
+            size_t count = 0;
+            true_areas(mesh, u, j, i, area);
+            for (size_t a = 0; a < corners; a++) {
+                sum_add(&all, area[a]);
+                if (!active[level_node(face, j + (a >> 1), i + (a & 1))])
+                    continue;
+                count++;
+                sum_add(&touching, area[a]);
+            }
+            sum_add(&projected, (double)count * mesh_stretch(mesh, u, j, i));
+        }
+    double cell = mesh->across / (double)corners;
+    return (struct face_tilt){.face = sum_value(&all) / ((double)mesh->face * mesh->across) - 1,
+                              .contact =
+                                  sum_value(&projected) != 0
+                                      ? sum_value(&touching) / (cell * sum_value(&projected)) - 1
+                                      : (double)NAN};
+}
+
+double face_mean_gap_current(const struct mesh *mesh, const double *u, const double *gap) {
+    const struct level *face = &mesh->level[0];
+    struct sum all = {0}, sum = {0};
+    double area[4];
+    for (size_t j = 0; j < face->ny; j++)
+        for (size_t i = 0; i < face->nx; i++) {
+            true_areas(mesh, u, j, i, area);
+            for (size_t a = 0; a < (size_t)1 << (mesh->dimension - 1); a++) {
+                sum_add(&all, area[a]);
+                sum_add(&sum, area[a] * gap[level_node(face, j + (a >> 1), i + (a & 1))]);
+            }
+        }
+    return sum_value(&sum) / sum_value(&all);
+}
+
+/* Adds the unit normal of a cell, which points up where the cell is not turned over. */
+static void add_normal(const struct mesh *mesh, const double *u, size_t j, size_t i, double *sum) {
+    double c[4][3] = {{0}}, one[3], other[3] = {0, 1, 0}, normal[3];
+    bool surface = mesh->dimension == 3;
+    corners_of(mesh, u, j, i, c);
+    for (int k = 0; k < 3; k++) {
+        one[k] = surface ? c[3][k] - c[0][k] : c[1][k] - c[0][k];
+        other[k] = surface ? c[2][k] - c[1][k] : other[k];
+    }
+    cross(one, other, normal);
+    double length = length_of(normal);
+    for (int k = 0; k < 3; k++)
+        sum[k] += normal[k] / length;
+}
+
+void face_turn_gaps(const struct mesh *mesh, const double *u, const bool *active, double *gap) {
+    const size_t nx = mesh->level[0].nx, ny = mesh->level[0].ny;
+    for (size_t j = 0; j < ny; j++)
+        for (size_t i = 0; i < nx; i++) {
+            double normal[3] = {0};
+            if (active[j * nx + i])
+                continue;
+            for (size_t a = 0; a < (size_t)1 << (mesh->dimension - 1); a++)
+                add_normal(mesh, u, (j + ny - (a >> 1)) % ny, (i + nx - (a & 1)) % nx, normal);
+            double cosine = normal[2] / length_of(normal);
+            gap[j * nx + i] /= cosine > 0 ? cosine : (double)NAN;
+        }
+}

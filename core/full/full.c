@@ -337,10 +337,26 @@ static void fill_report(const struct full *f, const struct newton_end *end,
     report->weighted_penetration = state->penetration;
     report->stretch = face_contact_stretch(f->mesh, f->newton.u, f->newton.active);
     report->open_stretch = open_stretch(f, state->nodes, report->stretch);
+    if (f->options.current_areas) {
+        struct face_tilt tilt = face_measure_tilt(f->mesh, f->newton.u, f->newton.active);
+        report->face_tilt = tilt.face;
+        report->contact_tilt = state->nodes > 0 ? tilt.contact : 0;
+    }
     report->slope = f->mesh->slope;
     report->quality = f->mesh->quality;
     report->unchanged = end->unchanged;
     memcpy(report->history, end->history, sizeof report->history);
+}
+
+/* Returns the mean gap, and turns the gaps of nodes, where it is not the usual one. */
+static double measure_gap(struct full *f) {
+    const struct full_options *options = &f->options;
+    if (!options->current_areas && !options->normal_gaps)
+        return newton_mean_gap(&f->newton) * f->mesh->unit;
+    if (options->normal_gaps)
+        face_turn_gaps(f->mesh, f->newton.u, f->newton.active, f->gap);
+    return options->current_areas ? face_mean_gap_current(f->mesh, f->newton.u, f->gap)
+                                  : face_mean_gap(f->mesh, f->newton.u, f->gap);
 }
 
 static int fill_state(struct full *f, const struct newton_end *end, struct contact_state *out,
@@ -358,7 +374,7 @@ static int fill_state(struct full *f, const struct newton_end *end, struct conta
         out->nodes += n->active[node];
     }
     double compliance = 0;
-    out->mean_gap = newton_mean_gap(n) * f->mesh->unit;
+    out->mean_gap = measure_gap(f);
     out->approach = out->unload_stiffness = NAN;
     out->penetration = end->penetration / height_scale(f);
     out->violation = fmax(end->inside, end->penetration) / height_scale(f);

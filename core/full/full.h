@@ -34,6 +34,15 @@ struct full_options {
     size_t max_iterations; /* iterations of Newton's method a load step */
     double least_step;     /* smallest load step over the change of load asked; smaller ones fail */
     struct full_limit limit; /* {0}: none */
+    /* What is measured of a solution, which stays the same (face.h). current_areas: tilts of areas
+     * are reported, and the mean gap is that over the face as it stands. normal_gaps: gaps of nodes
+     * out of contact, and so their mean, are along the normal of the face. The conditions of
+     * contact are those of vertical gaps: in both directions a gap is 0 alike, and has the same
+     * sign, so that conditions node by node, those of dual functions, are the same. Standard
+     * functions average gaps around a node, which cosines would weight otherwise by the little that
+     * they differ near an edge of contact. The stiffness is that of the vertical gap over the flat,
+     * by which the load does its work. */
+    bool current_areas, normal_gaps;
 };
 extern const struct full_options FULL_DEFAULTS;
 
@@ -56,8 +65,10 @@ struct full_report {
     double stretch; /* deformed over undeformed tributary area of the nodes in contact; NaN without
                        contact */
     double open_stretch; /* as stretch, of the nodes out of contact; 1 where there are none */
-    double slope;        /* steepest edge of the face */
-    double quality;      /* smallest quality of an element (element_quality); 1 for bricks */
+    /* As struct face_tilt with current_areas, else 0; 0 without contact. */
+    double face_tilt, contact_tilt;
+    double slope;   /* steepest edge of the face */
+    double quality; /* smallest quality of an element (element_quality); 1 for bricks */
     double history[NEWTON_HISTORY]; /* residuals of Newton's method, the latest last */
     size_t unchanged;               /* residuals in history since the active set last changed */
 };

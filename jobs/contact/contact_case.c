@@ -24,6 +24,8 @@ struct full_options contact_case_full_options(const struct contact_case *one_cas
     options.kinematics = one_case->kinematics;
     options.transition = contact_case_transition(one_case, grid);
     options.tolerance = one_case->tolerance;
+    options.current_areas = one_case->current_areas;
+    options.normal_gaps = one_case->normal_gaps;
     return options;
 }
 

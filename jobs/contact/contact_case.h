@@ -68,6 +68,8 @@ struct contact_case {
     bool unloads;                  /* the loads fall again, from the highest */
     bool slip_measured;            /* its stiffness, of each contact: where faces have lay */
     bool slip_pressing;            /* friction acts while the block is pressed: coupled slip */
+    bool current_areas;            /* of full, as the next: over the face as it stands (full.h) */
+    bool normal_gaps;              /* along its normal */
     double hardness;               /* over E* h', above all loads; 0: the contact is elastic */
     double yield;                  /* the same over E* */
     double friction;               /* coefficient; 0: nothing slips */

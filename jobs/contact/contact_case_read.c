@@ -101,6 +101,30 @@ static void read_block(struct contact_case *out, struct asked *asked, struct val
     asked->block = values_fault_count(values) == before;
 }
 
+/* Reads a choice of what is measured on the face as it stands: whether it is not the usual one. */
+static bool read_face(const struct contact_case *one_case, const char *path, const char *name,
+                      struct values *values) {
+    bool stretches = false, chosen = values_choice(values, path) == 1;
+    for (size_t m = 0; m < one_case->model_count; m++)
+        stretches = stretches || one_case->models[m]->stretches;
+    if (!chosen || one_case->model_count == 0)
+        return false;
+    if (!stretches)
+        values_fault(values, path, "\"%s\" belongs to the model full, which is not asked for",
+                     name);
+    else if (one_case->kinematics == KINEMATICS_SMALL)
+        values_fault(values, path,
+                     "\"%s\" is of the face as it stands under load, which small strains leave "
+                     "as it was; take other kinematics",
+                     name);
+    else if (one_case->friction > 0)
+        values_fault(values, path,
+                     "\"%s\" and friction: curves by sliding are over the flat grid, of vertical "
+                     "gaps; leave one of them out",
+                     name);
+    return true;
+}
+
 static void check_rising(struct values *values, const char *path, size_t n, const double *numbers) {
     for (size_t a = 1; a < n; a++) {
         if (!(numbers[a] > numbers[a - 1])) {
@@ -411,6 +435,8 @@ static int read_alone(struct contact_case *out, struct asked *asked, struct valu
     read_block(out, asked, values);
     double friction = values_number(values, "/contact/friction");
     out->friction = friction > 0 ? friction : 0;
+    out->current_areas = read_face(out, "/contact/areas", "current", values);
+    out->normal_gaps = read_face(out, "/contact/gap_direction", "normal", values);
     contact_quantities_read(out, values);
     check_counter(out, asked, values);
     read_load_unit(asked, values);

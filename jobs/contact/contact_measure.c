@@ -40,26 +40,27 @@ static const struct measure NO_MEASURE = {.shown = never_shown, .kept = never_ke
  * fits need them. */
 /* clang-format off */
 #define LIST(ROW)                                                                                  \
-    ROW(EDGES, one_case->edges, true, stretch_fraction(area.edges, open_now),                      \
+    ROW(EDGES, one_case->edges, true, stretch_fraction(area.edges, open_now) / face,               \
         "contact_area", "edges", "A/A0", AREA, 2, SMOOTH, PRESSURE, FALLS, SAME, ALL, AREA)        \
     ROW(EDGES_STRETCHED, has_stretched(one_case) && !contact_case_stretches(one_case, model),      \
         has_stretched(one_case),                                                                   \
-        context->scaled ? stretched(context, area.edges, pressed->open_stretch) : (double)NAN,     \
+        context->scaled ? stretched(context, area.edges, pressed->open_stretch) / face             \
+                        : (double)NAN,                                                             \
         "contact_area", "edges_stretched", "A/A0", NONE,                                           \
         2, SMOOTH, PRESSURE, FALLS, SAME, SOME, AREA)                                              \
-    ROW(NODES, one_case->nodes, one_case->nodes, now * area.nodes,                                 \
+    ROW(NODES, one_case->nodes, one_case->nodes, share * area.nodes,                                 \
         "contact_area", "nodes", "A/A0", AREA, 1, COUNTED, PRESSURE, FALLS, SAME, ALL, AREA)       \
-    ROW(NODES_LOWER, one_case->nodes, false, now * area.lower,                                     \
+    ROW(NODES_LOWER, one_case->nodes, false, share * area.lower,                                     \
         "contact_area", "nodes_lower", "A/A0", AREA,                                               \
         1, COUNTED, PRESSURE, FALLS, SAME, SOME, AREA)                                             \
-    ROW(NODES_UPPER, one_case->nodes, false, now * area.upper,                                     \
+    ROW(NODES_UPPER, one_case->nodes, false, share * area.upper,                                     \
         "contact_area", "nodes_upper", "A/A0", AREA,                                               \
         1, COUNTED, PRESSURE, FALLS, SAME, SOME, AREA)                                             \
-    ROW(EDGES_UNKNOWN, false, false, now * area.edges_unknown,                                     \
+    ROW(EDGES_UNKNOWN, false, false, share * area.edges_unknown,                                     \
         "contact_area", "edges_unknown", "A/A0", NONE, 1, COUNTED, PRESSURE, FALLS, SAME, SOME,    \
         AREA)                                                                                      \
     ROW(PERIMETER, one_case->perimeter, one_case->perimeter,                                       \
-        stretch_fraction(area.perimeter, open_now),                                                \
+        stretch_fraction(area.perimeter, open_now) / face,                                         \
         "contact_area", "perimeter", "A/A0", AREA, 1, COUNTED, PRESSURE, FALLS, SAME, SOME, AREA)  \
     ROW(GAP, true, true, area.mean_gap / context->rms_height,                                      \
         "mean_gap", "", "mean gap/sqrt(m0)", GAP, 2, GAP, GAP, STAYS, SAME, ALL, HEIGHT)        \
@@ -69,10 +70,10 @@ static const struct measure NO_MEASURE = {.shown = never_shown, .kept = never_ke
         2, STIFFNESS, GAP, FALLS, SAME, REPORTED, STIFFNESS)                                         \
     ROW(PATCHES, true, false, (double)patches.count,                                               \
         "patch_count", "cell", "patches", NONE, 1, PATCHES, PRESSURE, STAYS, GROWS, SOME, ONE)     \
-    ROW(PATCH_MEAN, true, false, now * patches.mean / context->points,                             \
+    ROW(PATCH_MEAN, true, false, share * patches.mean / context->points,                             \
         "patch_mean_area", "", "mean patch", NONE,                                                 \
         1, PATCHES, PRESSURE, FALLS, SHRINKS, SOME, AREA)                                          \
-    ROW(PATCH_LARGEST, true, false, now * (double)patches.largest / context->points,               \
+    ROW(PATCH_LARGEST, true, false, share * (double)patches.largest / context->points,               \
         "patch_largest_area", "", "largest patch/cell", NONE,                                      \
         1, PATCHES, PRESSURE, FALLS, UNLIMITED, SOME, AREA)                                        \
     ROW(KAPPA, false, false, NAN,                                                                  \
@@ -141,13 +142,15 @@ _Static_assert(sizeof((enum contact_measure[]){LIST(NAME)}) +
 int contact_measure(const struct measure_context *context, const struct contact_pressed *pressed,
                     double values[MEASURE_OWN], struct error *err) {
     const struct contact_state *state = &pressed->state;
-    double now = pressed->stretch;
+    double now = pressed->stretch, face = 1 + pressed->face_tilt;
+    double share = now * ((1 + pressed->contact_tilt) / face);
     struct contact_area area;
     struct patches patches;
     contact_area(context->area, state, &area);
     patch_finder_lend(context->finder, state->scratch);
     patches_find(context->finder, state->p, &patches, NULL);
-    /* Edges lie within the cells of outer nodes in contact, near which hardly any pressure acts. */
+    /* Edges lie within the cells of outer nodes in contact, near which hardly any pressure acts.
+     * Within them the face lies on the flat, without slopes. */
     double open_now = area.nodes < 1 ? (1 - now * area.nodes) / (1 - area.nodes) : 1;
 #define VALUE(name, shown, kept, value, ...) values[MEASURE_##name] = value;
     LIST(VALUE)

@@ -10,6 +10,8 @@ static const struct choice FINE_HEIGHTS[] = {{"whole", 0}, {0}};
 static const struct choice FINE_UNITS[] = {
     {"rms_heights", HEIGHT_RMS_HEIGHTS}, {"wavelengths", HEIGHT_WAVELENGTHS}, {0}};
 static const struct choice WEIGHTINGS[] = {{"standard", GAP_STANDARD}, {"dual", GAP_DUAL}, {0}};
+static const struct choice AREAS[] = {{"flat", false}, {"current", true}, {0}};
+static const struct choice GAP_DIRECTIONS[] = {{"vertical", false}, {"normal", true}, {0}};
 static const struct choice COMPANION_CHOICES[] = {
     {"probed", COMPANION_PROBED}, {"none", COMPANION_NONE}, {0}};
 static const struct choice PAIRS[] = {{"counted", PAIRS_COUNTED}, {"omitted", PAIRS_OMITTED}, {0}};
@@ -148,6 +150,26 @@ static const struct parameter ROWS[] = {
      .example_json = "[\"standard\", \"dual\"]",
      .help = "layered, full: shape functions that weight the gap of a node: standard ones, over it "
              "and its neighbours, or dual ones, at it alone; multipliers are dual in both"},
+    {.path = "/contact/areas",
+     .type = PARAMETER_CHOICE,
+     .choices = AREAS,
+     .sweep = true,
+     .target_refusal = "a target compares models over the flat grid",
+     .target_choice = "flat",
+     .later = true,
+     .example_json = "\"current\"",
+     .help = "full: what areas, mean gaps and densities of pressure are over: the flat grid "
+             "(unless given), or the rough face as it stands under load, with its slopes"},
+    {.path = "/contact/gap_direction",
+     .type = PARAMETER_CHOICE,
+     .choices = GAP_DIRECTIONS,
+     .sweep = true,
+     .target_refusal = "a target compares vertical gaps of models",
+     .target_choice = "vertical",
+     .later = true,
+     .example_json = "\"normal\"",
+     .help = "full: direction in which gaps are measured: vertical (unless given), or along the "
+             "normal of the face as it stands, to the flat; what touches does not depend on it"},
     {.path = "/contact/time_limit",
      .type = PARAMETER_NUMBER,
      .minimum = 0,

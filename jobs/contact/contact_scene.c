@@ -164,17 +164,19 @@ static int measure(struct contact_scene *scene, size_t model, size_t level,
 }
 
 /* Tallies areas by pressure, by edges and as they are under load. Forces are over undeformed
- * areas. */
+ * areas. Of the face as it stands, which has more area than the cell, the mean is as much lower. */
 static int count_pressures(struct contact_scene *scene, size_t model, size_t level, size_t load,
-                           const struct contact_state *state, struct contact_tally *tally,
+                           const struct contact_pressed *pressed, struct contact_tally *tally,
                            struct error *err) {
     const struct contact_case *one_case = scene->one_case;
+    struct contact_state state = pressed->state;
+    state.pressure /= 1 + pressed->face_tilt;
     size_t cell = contact_case_cell(one_case, model, level, load);
     double area = contact_tally_values(tally, MEASURE_EDGES)[cell];
     for (size_t a = 0; a < one_case->pdf_count; a++) {
         if (one_case->pdf_loads[a] != load)
             continue;
-        int status = pressures_share(scene->pressures[model][level], state, area,
+        int status = pressures_share(scene->pressures[model][level], &state, area,
                                      &one_case->pressure, scene->rms_slope, scene->shares, err);
         if (status != 0)
             return status;
@@ -243,7 +245,7 @@ static int solve_loads(struct contact_scene *scene, size_t m, size_t level,
             status = measure(scene, m, level, &pressed, tally,
                              contact_case_cell(one_case, m, level, k), err);
         if (status == 0 && contact_tally_counts(one_case, level))
-            status = count_pressures(scene, m, level, k, &pressed.state, tally, err);
+            status = count_pressures(scene, m, level, k, &pressed, tally, err);
     }
     return status != 0 ? status : solve_back(scene, m, level, tally, stopper, err);
 }

@@ -214,6 +214,8 @@ struct contact_case map_press_case(const struct map_press *press, const struct g
                                            .weighting = block->weighting,
                                            .coating = block->coating}},
                                .kinematics = block->kinematics,
+                               .current_areas = block->current_areas,
+                               .normal_gaps = block->normal_gaps,
                                .transition_depth = block->transition > 0 ? block->transition
                                                                          : FULL_DEFAULTS.transition,
                                .rms_slope = press->slope,

@@ -34,6 +34,7 @@ struct press_block {
     enum gap_weighting weighting;
     enum kinematics kinematics;
     double transition;
+    bool current_areas, normal_gaps; /* as of struct contact_case */
     /* With friction, where a model has it at finite strain: where the flat is, over the RMS height,
      * at so many points, so many to each turn, all of it at the last load. Borrowed; NULL: nothing
      * slides, and friction is that of lighter loads. */

@@ -24,8 +24,11 @@ struct contact_pressed {
     struct contact_state state; /* its work in points x transforms */
     double stretch; /* nodes in contact: area under load over that undeformed; 1 where areas are
                      * reported undeformed */
-    double open_stretch;             /* the same of the open face, also if not reported; NaN: not
-                                      * known */
+    double open_stretch; /* the same of the open face, also if not reported; NaN: not
+                          * known */
+    /* Areas of the face as it stands over the same on the flat, less 1 (core/full/face.h): of all
+     * of it, and of the nodes in contact; 0 where areas are reported on the flat. */
+    double face_tilt, contact_tilt;
     double own[MODEL_MEASURES_MOST]; /* the model's own measures; NaN: none */
     double reached;                  /* without a solution: the load reached; NaN: not known */
 };
@@ -124,7 +127,7 @@ struct contact_model {
     int (*begin)(struct contact_solver *solver, const double *z, int (*stop)(void *context),
                  void *context, double *facts, struct error *err);
     /* Presses to a mean pressure in E*. ERROR_NUMERIC without a solution. Of *out, stretch is 1,
-     * open_stretch, reached and own are NaN before the call. */
+     * tilts are 0, and open_stretch, reached and own NaN before the call. */
     int (*press)(struct contact_solver *solver, double pressure, struct contact_pressed *out,
                  struct error *err);
     /* Returns the least mean pressure of full contact of the surface begun, in E*. NULL: not

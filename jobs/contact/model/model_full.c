@@ -197,6 +197,8 @@ static int press(struct contact_solver *solver, double pressure, struct contact_
     if (report.kinematics != KINEMATICS_SMALL && isfinite(report.stretch))
         out->stretch = report.stretch;
     out->open_stretch = report.open_stretch;
+    out->face_tilt = report.face_tilt;
+    out->contact_tilt = report.contact_tilt;
     out->own[FULL_CUTS] = (double)report.cuts;
     out->own[FULL_CHANGES] = (double)report.changes;
     out->own[FULL_DEEPEST] = report.penetration;

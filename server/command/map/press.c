@@ -47,6 +47,7 @@ struct press_options {
     int boundary, format, without_error, along_y;
     int coupling; /* enum coupling */
     int kinematics, weighting;
+    int current_areas, normal_gaps; /* 0: over the flat, vertical */
     double transition, seconds_most;
     bool leak, estimate;
     const char *slide_to;
@@ -113,6 +114,12 @@ static const struct option_row OPTIONS[] = {
      "neo-Hooke's, or small strain on the rough geometry"},
     {"gap-weighting", 0, OPTION_CHOICE, 0, 0, AT(weighting), "standard|dual", "standard",
      "of meshes: the gap of a node is that over its neighbours, too, or at it alone"},
+    {"areas", 0, OPTION_CHOICE, 0, 0, AT(current_areas), "flat|current", "flat",
+     "of the model full: what areas and mean gaps are over, the flat grid or the face as it stands "
+     "under load, with its slopes"},
+    {"gap-direction", 0, OPTION_CHOICE, 0, 0, AT(normal_gaps), "vertical|normal", "vertical",
+     "of the model full: direction in which gaps are measured, vertical or along the face's "
+     "normal"},
     {"transition-depth", 0, OPTION_NUMBER, 1, 1e9, AT(transition), "WIDTHS", "8",
      "of the model full: depth from which columns of elements are twice as wide, and twice again; "
      "1e9: all as wide as those of the face"},
@@ -688,6 +695,31 @@ static int check_mesh(const struct press_order *order, struct error *err) {
     return 0;
 }
 
+/* Checks what is measured on the face as it stands. */
+static int check_face(const struct press_order *order, struct error *err) {
+    const struct press_options *options = order->options;
+    const char *name = options->current_areas != 0 ? "areas current" : "gap-direction normal";
+    bool stretches = false;
+    if (options->current_areas == 0 && options->normal_gaps == 0)
+        return 0;
+    for (size_t m = 0; m < order->model_count; m++)
+        stretches = stretches || order->blocks[m].model->stretches;
+    if (!stretches)
+        return error_set(err, ERROR_INPUT,
+                         "--%s belongs to --model full, which presses the rough face itself", name);
+    if (options->kinematics == KINEMATICS_SMALL)
+        return error_set(err, ERROR_INPUT,
+                         "--%s is of the face as it stands under load, which --kinematics small "
+                         "leaves as it was",
+                         name);
+    if (options->words.friction > 0)
+        return error_set(err, ERROR_INPUT,
+                         "--%s and --friction: curves by sliding are over the flat grid, of "
+                         "vertical gaps; leave one of them out",
+                         name);
+    return 0;
+}
+
 /* Sets the models and their blocks. */
 static int order_models(struct press_order *order, struct error *err) {
     const struct press_options *options = order->options;
@@ -706,8 +738,10 @@ static int order_models(struct press_order *order, struct error *err) {
                                  .kinematics = (enum kinematics)options->kinematics,
                                  .weighting = (enum gap_weighting)options->weighting,
                                  .transition = options->transition,
+                                 .current_areas = options->current_areas != 0,
+                                 .normal_gaps = options->normal_gaps != 0,
                                  .leaks = options->leak};
-    if (order_friction(order, err) != 0)
+    if (check_face(order, err) != 0 || order_friction(order, err) != 0)
         return err->code;
     if (order->loads.resistivity > 0 && options->coating != NULL)
         return error_set(err, ERROR_INPUT,

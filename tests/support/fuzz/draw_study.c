@@ -315,6 +315,12 @@ static void give_partners(cJSON *document) {
         {"/contact/pressures/unit", "/contact/pressure_pdf", "{}"},
         {"/contact/time_limit", "/surface/rms_slope", "0.1"},
         {"/contact/time_limit", "/contact/model", "\"full\""},
+        {"/contact/areas", "/surface/rms_slope", "0.1"},
+        {"/contact/areas", "/contact/model", "\"full\""},
+        {"/contact/areas", "/contact/kinematics", "\"hencky\""},
+        {"/contact/gap_direction", "/surface/rms_slope", "0.1"},
+        {"/contact/gap_direction", "/contact/model", "\"full\""},
+        {"/contact/gap_direction", "/contact/kinematics", "\"hencky\""},
         {"/contact/block_fine_height", "/surface/rms_slope", "0.1"},
         {"/contact/block_fine_height", "/contact/model", "\"full\""},
         {"/contact/block_fine_height", "/contact/block_height", "{\"lengths\": 1}"},
@@ -346,6 +352,8 @@ static void part_pairs(cJSON *document) {
         {"/surface/heights/shape", "/surface/heights/skewness"},
         {"/contact/pressures/values", "/contact/pressures/steps"},
         {"/contact/pressures/values", "/contact/pressures/to"},
+        {"/contact/friction", "/contact/areas"},
+        {"/contact/friction", "/contact/gap_direction"},
     };
     for (size_t p = 0; p < sizeof PAIRS / sizeof *PAIRS; p++) {
         char name[NAME_SIZE];

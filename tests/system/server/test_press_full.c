@@ -1,6 +1,6 @@
 /* Protects: `rugo press --model full`: the numbers of a study on the same heights, without friction
- * and with it; open maps are mirrored; what a load without a solution leaves; the block as a file;
- * what it takes is printed before; what is refused. */
+ * and with it, and over the face as it stands; open maps are mirrored; what a load without a
+ * solution leaves; the block as a file; what it takes is printed before; what is refused. */
 #include "schema/json/json.h"
 #include "tests/support/check.h"
 #include "tests/support/process.h"
@@ -32,9 +32,9 @@ static cJSON *read_json(const char *path) {
 
 /* The values of a map's member are those of the study's curve: the slope of the heights is the
  * prescribed one to rounding, and solutions are to 1e-9. */
-static void compare(const cJSON *values, const char *name) {
+static void compare(const char *named, const cJSON *values, const char *name) {
     char line[200];
-    snprintf(line, sizeof line, "$RUGO curves steep --quantity %s > curve.json", name);
+    snprintf(line, sizeof line, "$RUGO curves %s --quantity %s > curve.json", named, name);
     check_shell(line);
     cJSON *study = read_json("curve.json");
     const cJSON *y = json_at(study, "/cases/0/curves/0/y");
@@ -51,14 +51,35 @@ static void a_map_is_pressed_as_in_a_study(void **state) {
     check_shell("$RUGO run steep.json && sh ./press --model full --loads 0.05,0.2 --error none "
                 "--friction 0.3 --slide-to 0.8 --slide-steps 4 --format json > map.json");
     cJSON *map = read_json("map.json");
-    compare(json_at(map, "/mean_gap"), "mean_gap");
-    compare(json_at(map, "/sliding/force"), "sliding_force");
-    compare(json_at(map, "/sliding/stick_load"), "sliding_stick_load");
-    compare(json_at(map, "/sliding/dissipation"), "sliding_dissipation");
+    compare("steep", json_at(map, "/mean_gap"), "mean_gap");
+    compare("steep", json_at(map, "/sliding/force"), "sliding_force");
+    compare("steep", json_at(map, "/sliding/stick_load"), "sliding_stick_load");
+    compare("steep", json_at(map, "/sliding/dissipation"), "sliding_dissipation");
     assert_string_equal(json_at(map, "/kinematics")->valuestring, "hencky");
     assert_true(json_at(map, "/mesh/nodes")->valuedouble > 500);
     assert_null(json_at(map, "/note"));
     cJSON_Delete(map);
+}
+
+/* Over the face as it stands, and along its normal, as in studies. */
+static void faces_are_measured_as_in_a_study(void **state) {
+    (void)state;
+    check_shell(
+        "sed 's/\"steep\"/\"stands\"/; s/\"friction.*steps\": 4}/\"areas\": \"current\", "
+        "\"gap_direction\": \"normal\"/' steep.json > stands.json && $RUGO run stands.json && sh "
+        "./press --model full --loads 0.05,0.2 --error none --format json > plain.json && sh "
+        "./press --model full --loads 0.05,0.2 --error none --areas current --gap-direction "
+        "normal --format json > map.json");
+    cJSON *map = read_json("map.json"), *plain = read_json("plain.json");
+    compare("stands", json_at(map, "/mean_gap"), "mean_gap");
+    for (int i = 0; i < 2; i++) {
+        const cJSON *one = cJSON_GetArrayItem(json_at(map, "/edges"), i);
+        const cJSON *other = cJSON_GetArrayItem(json_at(plain, "/edges"), i);
+        assert_true(one->valuedouble < 0.99 * other->valuedouble);
+        assert_true(one->valuedouble > 0.9 * other->valuedouble);
+    }
+    cJSON_Delete(map);
+    cJSON_Delete(plain);
 }
 
 /* A load without a solution leaves those before: their table, and as files the last of them. */
@@ -134,6 +155,10 @@ static void what_has_no_meaning_is_refused(void **state) {
         {"--model full --height 0.02", "the model full needs 4 or more, as layers of lower"},
         {"--model full --kinematics linear", "--kinematics"},
         {"--model full --transition-depth 0.5", "--transition-depth"},
+        {"--model layered --areas current", "--areas current belongs to --model full"},
+        {"--model halfspace --gap-direction normal", "--gap-direction normal belongs to --model"},
+        {"--model full --areas current --kinematics small", "which --kinematics small leaves"},
+        {"--model full --areas current --friction 0.2", "--areas current and --friction: curves"},
         {"--model halfspace,full --mesh m.vtu", "--mesh: the model halfspace, the first, has no"},
         {"--model full --limit 0.001", "no map of this shape with 16 points along a side is small"},
         {"--model full --mesh no/such.vtu", "cannot write no/such.vtu"}};
@@ -173,6 +198,7 @@ static void surfaces_slide(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_map_is_pressed_as_in_a_study),
+        cmocka_unit_test(faces_are_measured_as_in_a_study),
         cmocka_unit_test(loads_without_values_are_noted),
         cmocka_unit_test(the_block_is_written),
         cmocka_unit_test(open_maps_are_mirrored),

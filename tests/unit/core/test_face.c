@@ -1,5 +1,6 @@
 /* Protects the volume between the deformed face and the flat: against the volume of the block,
- * which fills the rest of the cell, and its change against differences. */
+ * which fills the rest of the cell, and its change against differences. True areas, means over them
+ * and gaps along normals are those of faces made of planes. */
 #include "tests/support/check.h"
 
 #include "core/full/face.h"
@@ -137,11 +138,117 @@ static void stretch_is_of_the_cells_around_touching_nodes(void **state) {
     close_face(&w);
 }
 
+/* --- faces of planes --- */
+
+static const double RISE = 0.4, RISE_ACROSS = 0.25; /* per column; per length */
+
+/* Returns the slope of step i of n: three quarters rise, and the last one falls as much. */
+static double slope_at(size_t i, size_t n, double rise) {
+    return n == 1 ? 0 : i < n - n / 4 ? rise : -3 * rise;
+}
+
+/* Returns the area of the plane cell in a row and column over its projection. */
+static double plane_area(const struct mesh *mesh, size_t j, size_t i) {
+    double x = slope_at(i, mesh->level[0].nx, RISE);
+    double y = slope_at(j, mesh->level[0].ny, RISE_ACROSS);
+    return sqrt(1 + x * x + y * y);
+}
+
+/* Puts the face on planes by displacements, whatever its mesh is. Sideways all moves alike. */
+static void lay_planes(struct face_work *w) {
+    const struct level *face = &w->mesh->level[0];
+    double down = 0;
+    memset(w->u, 0, mesh_degrees_of_freedom(w->mesh) * sizeof *w->u);
+    for (size_t j = 0; j < face->ny; j++) {
+        double height = down;
+        for (size_t i = 0; i < face->nx; i++) {
+            size_t node = j * face->nx + i;
+            w->u[node * (size_t)w->mesh->dimension] += 0.3;
+            w->u[mesh_vertical(w->mesh, node)] = height - w->mesh->height[node];
+            w->gap[node] = height - w->flat;
+            height += slope_at(i, face->nx, RISE);
+        }
+        down += w->mesh->across * slope_at(j, face->ny, RISE_ACROSS);
+    }
+}
+
+/* Areas of one node are those of the cells around it. */
+static void areas_of_planes_are_exact(void **state) {
+    (void)state;
+    bool active[64] = {false};
+    for (size_t c = 0; c < CASE_COUNT; c++) {
+        struct face_work w;
+        open_face(&w, CASES[c].grid, CASES[c].transition);
+        lay_planes(&w);
+        const struct level *face = &w.mesh->level[0];
+        double area = 0, volume = 0;
+        for (size_t j = 0; j < face->ny; j++)
+            for (size_t i = 0; i < face->nx; i++) {
+                double here = plane_area(w.mesh, j, i);
+                area += here;
+                size_t right = level_node(face, j, i + 1);
+                size_t back = level_node(face, j + 1, i);          /* of profiles the node itself */
+                volume += here * (w.gap[right] + w.gap[back]) / 2; /* at the middle of a plane */
+            }
+        assert_true(isnan(face_measure_tilt(w.mesh, w.u, active).contact));
+        active[0] = true;
+        struct face_tilt tilt = face_measure_tilt(w.mesh, w.u, active);
+        check_close(tilt.face, area / (double)w.mesh->face - 1, 1e-13);
+        double around = (plane_area(w.mesh, 0, 0) + plane_area(w.mesh, 0, face->nx - 1)) / 2;
+        if (face->ny > 1)
+            around = around / 2 + (plane_area(w.mesh, face->ny - 1, 0) +
+                                   plane_area(w.mesh, face->ny - 1, face->nx - 1)) /
+                                      4;
+        check_close(tilt.contact, around - 1, 1e-13);
+        active[0] = false;
+        check_relative(face_mean_gap_current(w.mesh, w.u, w.gap), volume / area, 1e-13);
+        for (size_t i = 0; i < w.mesh->face; i++)
+            w.gap[i] = 0.7;
+        check_relative(face_mean_gap_current(w.mesh, w.u, w.gap), 0.7, 1e-14);
+        close_face(&w);
+    }
+}
+
+/* On a plane the gap along the normal is the vertical one times the root of 1 + slope^2. On the
+ * ridge at node 0 the unit normals of both sides, and of all four planes, are averaged. Nodes in
+ * contact keep their gaps. */
+static void gaps_turn_with_the_normal(void **state) {
+    (void)state;
+    const bool active[64] = {[4] = true};
+    for (size_t c = 0; c < CASE_COUNT; c++) {
+        struct face_work w;
+        open_face(&w, CASES[c].grid, CASES[c].transition);
+        lay_planes(&w);
+        const size_t nx = w.mesh->level[0].nx, ny = w.mesh->level[0].ny;
+        size_t inner = (ny > 1 ? nx : 0) + 1;
+        double before = w.gap[inner], ridge = w.gap[0], normal[3] = {0};
+        w.gap[2] = 0;
+        w.gap[3] = -0.1;
+        w.gap[4] = 0.1;
+        face_turn_gaps(w.mesh, w.u, active, w.gap);
+        check_relative(w.gap[inner], before * plane_area(w.mesh, 0, 0), 1e-14);
+        for (size_t a = 0; a < 4; a++) {
+            size_t j = a < 2 ? 0 : ny - 1, i = a % 2 == 0 ? 0 : nx - 1;
+            double area = plane_area(w.mesh, j, i);
+            normal[0] += slope_at(i, nx, RISE) / area;
+            normal[1] += slope_at(j, ny, RISE_ACROSS) / area;
+            normal[2] += 1 / area;
+        }
+        double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+        check_relative(w.gap[0], ridge * length / normal[2], 1e-14);
+        assert_true(w.gap[0] > 1.001 * ridge);
+        assert_true(w.gap[2] == 0 && w.gap[3] < -0.1 && w.gap[4] == 0.1);
+        close_face(&w);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(gap_and_block_fill_the_cell),
         cmocka_unit_test(changes_are_those_of_differences),
         cmocka_unit_test(stretch_is_of_the_cells_around_touching_nodes),
+        cmocka_unit_test(areas_of_planes_are_exact),
+        cmocka_unit_test(gaps_turn_with_the_normal),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
