@@ -72,6 +72,9 @@ struct map_options {
                 NULL, "Gaussian filters: S keeps waves longer than this, L takes them out"),       \
         MAP_ROW(type, member, "resample", OPTION_TEXT, words.resample, "NX[,NY]|SPACING", NULL,    \
                 "other points: so many, or so far apart, such as 0.5um or dx=0.5"),                \
+        MAP_ROW(                                                                                   \
+            type, member, "extend", OPTION_OPTIONAL, words.extend, "[DRAW]", MAP_EXTEND,           \
+            "hold the map in one of twice its sides that repeats, by the law of the spectrum"),    \
         MAP_ROW(type, member, "window", OPTION_CHOICE, words.window, MAP_WINDOWS, "none",          \
                 "let heights fall towards the sides, so that the map repeats")
 
