@@ -60,14 +60,14 @@ static double ring_density(const struct map_spectrum *rings, double wave_number)
 }
 
 double map_law_whole_density(const struct map_law *law, double wave_number) {
-    const double longest = law->fit.long_wavelength.value; /* NaN: not seen */
-    if (wave_number * longest < 2 * M_PI * (1 - GUARD))
-        return 0;
-    if (!is_shorter(law, wave_number) || law->fit.noise > 0)
-        return map_law_density(law, wave_number);
+    const struct spectrum_fit *fit = &law->fit;
     const struct map_spectrum *rings = law->ellipses != NULL ? law->ellipses : law->circles;
-    const double end = 2 * M_PI / law->fit.shortest, ring = 2 * M_PI / rings->side;
-    if (law->fit.to_end != SPECTRUM_END_CUTOFF)
+    const double ring = 2 * M_PI / rings->side, end = 2 * M_PI / fit->shortest;
+    if (wave_number * fit->trusted_from < 2 * M_PI * (1 - GUARD))
+        return ring_density(rings, fmax(wave_number, ring));
+    if (!is_shorter(law, wave_number) || fit->noise > 0)
+        return map_law_density(law, wave_number);
+    if (fit->to_end != SPECTRUM_END_CUTOFF)
         return ring_density(rings, wave_number);
     /* A sharp end is known to within a ring, and blurred in those behind. */
     if (wave_number < end + ring)

@@ -17,9 +17,10 @@ void map_law_clear(struct map_law *law);
 /* Returns the density of the law at a wave number across the lay. Longer waves than the law's have
  * that of its longest, shorter ones 0. */
 double map_law_density(const struct map_law *law, double wave_number);
-/* Does likewise, but shorter waves than the law's, where no noise hides them, have the densities of
- * the map's rings, and behind a sharp end those of three rings further. Longer waves than one that
- * the fit saw as the longest have 0. */
+/* Does likewise between the trusted wavelengths. Longer waves have the densities of the map's
+ * rings, and those longer than its shorter side that of this. Shorter waves than the law's, where
+ * no noise hides them, have those of the rings, too, and behind a sharp end those of three rings
+ * further. */
 double map_law_whole_density(const struct map_law *law, double wave_number);
 
 /* Fills one value a wave of the half spectrum of transform.h: of_wave at its wave number across the

@@ -29,6 +29,10 @@ struct map_options {
 #define MAP_BOUNDARY_ROW(type, member)                                                             \
     MAP_ROW(type, member, "boundary", OPTION_CHOICE, words.boundary, MAP_BOUNDARIES, "auto",       \
             "whether the map repeats; auto: where its seam is no rougher than its inside")
+/* For commands that take the map as it is, and fit no surfaces to it. */
+#define MAP_EXTEND_ROW(type, member)                                                               \
+    MAP_ROW(type, member, "extend", OPTION_OPTIONAL, words.extend, "[DRAW]", MAP_EXTEND,           \
+            "to a map of twice its sides that repeats, holds it and goes on by its law")
 #define MAP_OPTION_ROWS(type, member) MAP_OPTION_ROWS_DETREND(type, member, "auto")
 /* The same for commands that take out no trend unless it is asked for. */
 #define MAP_OPTION_ROWS_DETREND(type, member, standard)                                            \
@@ -72,9 +76,6 @@ struct map_options {
                 NULL, "Gaussian filters: S keeps waves longer than this, L takes them out"),       \
         MAP_ROW(type, member, "resample", OPTION_TEXT, words.resample, "NX[,NY]|SPACING", NULL,    \
                 "other points: so many, or so far apart, such as 0.5um or dx=0.5"),                \
-        MAP_ROW(                                                                                   \
-            type, member, "extend", OPTION_OPTIONAL, words.extend, "[DRAW]", MAP_EXTEND,           \
-            "hold the map in one of twice its sides that repeats, by the law of the spectrum"),    \
         MAP_ROW(type, member, "window", OPTION_CHOICE, words.window, MAP_WINDOWS, "none",          \
                 "let heights fall towards the sides, so that the map repeats")
 

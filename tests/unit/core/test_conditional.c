@@ -1,7 +1,7 @@
 /* Protects: surfaces that hold a patch are draws from those of their law, given the patch: their
  * means and covariances are those of a dense solution, with holes too; where the patch is itself of
  * the law, they have the law's spectrum, and the patch is held to its noise within few steps; a
- * patch of another law is told. */
+ * patch of another law is noticed. */
 #include "core/surface/conditional.h"
 #include "core/surface/transform.h"
 #include "tests/support/check.h"
@@ -240,7 +240,7 @@ static void they_have_the_spectrum_of_the_law(void **state) {
     free(power);
 }
 
-static void another_law_is_told(void **state) {
+static void another_law_is_noticed(void **state) {
     (void)state;
     enum { SIDE = 48 };
     static const struct grid GRID = {2 * SIDE, 2 * SIDE, 2 * SIDE, 2 * SIDE};
@@ -290,7 +290,7 @@ int main(void) {
         cmocka_unit_test(draws_are_those_of_a_dense_solution),
         cmocka_unit_test(patches_of_the_law_are_held),
         cmocka_unit_test(they_have_the_spectrum_of_the_law),
-        cmocka_unit_test(another_law_is_told),
+        cmocka_unit_test(another_law_is_noticed),
         cmocka_unit_test(what_cannot_be_held_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
