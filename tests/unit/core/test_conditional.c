@@ -66,7 +66,8 @@ enum { NX = 4, NY = 3, MEASURED_MOST = NX * NY, CELL = 4 * NX * NY };
 static double covariance(const struct conditional_law *law, size_t a, size_t b) {
     const struct grid *cell = law->cell;
     const double x = (double)(a % cell->nx) - (double)(b % cell->nx);
-    const double y = (double)(a / cell->nx) - (double)(b / cell->nx);
+    const size_t row_a = a / cell->nx, row_b = b / cell->nx;
+    const double y = (double)row_a - (double)row_b;
     double total = 0;
     for (size_t mx = 0; mx <= cell->nx / 2; mx++)
         for (size_t row = 0; row < cell->ny; row++)

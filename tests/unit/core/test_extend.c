@@ -39,7 +39,8 @@ static void cut(struct height_map *map, const double *z, double noise, uint64_t 
     *map = (struct height_map){.grid = {NX, NY, NX, NY}};
     double *white = malloc(sizeof *white * NX * NY);
     map->z = malloc(sizeof *map->z * NX * NY);
-    assert_true(map->z != NULL && white != NULL);
+    assert_non_null(map->z);
+    assert_non_null(white);
     noise_fill(&seed, (size_t)NX * NY, white);
     for (size_t p = 0; p < (size_t)NX * NY; p++)
         map->z[p] = 5 + z[p / NX * CELL + p % NX] + noise * white[p];
