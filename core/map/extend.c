@@ -2,6 +2,7 @@
 #include "core/error.h"
 #include "core/map/map_law.h"
 #include "core/map/membrane.h"
+#include "core/statistics/heights/normal_scores.h"
 #include "core/statistics/heights/roughness.h"
 #include <math.h>
 #include <stdlib.h>
@@ -9,6 +10,8 @@
 
 /* A map is held to within this share of its RMS height where no noise is seen. */
 static const double NOISE_LEAST = 1e-3;
+/* Heights are Gaussian up to this skewness, and to a kurtosis so far from 3. */
+static const double SKEWNESS_MOST = 0.5, KURTOSIS_MOST = 1;
 
 /* Fills the powers of the waves of the cell. */
 static int powers_create(double **out, const struct grid *cell, const struct map_law *law,
@@ -25,32 +28,91 @@ static int powers_create(double **out, const struct grid *cell, const struct map
     return 0;
 }
 
-/* Replaces the heights of the map, whose mean is given, by those of a draw on the cell. */
-static int draw(struct height_map *map, const struct conditional_law *law, double mean,
-                uint64_t seed, struct extend_result *out, struct error *err) {
-    const struct grid *grid = &map->grid, *cell = law->cell;
-    const size_t points = grid_points(grid);
-    double *z = array_create(grid_points(cell), sizeof *z), *held = array_create(points, sizeof *z);
-    int status = z != NULL && held != NULL
-                     ? 0
-                     : error_memory(err, grid_points(cell) * sizeof *z, "a map of twice the sides");
+/* Draws on the cell. *out is the caller's to free. */
+static int draw(double **out, const struct height_map *map, const struct conditional_law *law,
+                double mean, uint64_t seed, struct conditional_report *report, struct error *err) {
+    const struct grid *grid = &map->grid;
+    const size_t points = grid_points(grid), cell_points = grid_points(law->cell);
+    double *z = array_create(cell_points, sizeof *z), *held = array_create(points, sizeof *z);
+    int status = z != NULL && held != NULL ? 0
+                                           : error_memory(err, (cell_points + points) * sizeof *z,
+                                                          "a map of twice the sides");
     if (status == 0) {
         for (size_t p = 0; p < points; p++)
             held[p] = map->z[p] - mean;
         status = conditional_draw(law, &(struct conditional_patch){grid->nx, grid->ny, held},
-                                  (struct random_key){seed, 0, 0}, z, &out->draw, err);
+                                  (struct random_key){seed, 0, 0}, z, report, err);
     }
     free(held);
     if (status != 0) {
         free(z);
         return status;
     }
-    for (size_t p = 0; p < grid_points(cell); p++)
+    for (size_t p = 0; p < cell_points; p++)
         z[p] += mean;
-    free(map->z);
-    map->z = z;
-    map->grid = *cell;
+    *out = z;
     return 0;
+}
+
+/* --- heights that are not Gaussian --- */
+
+static int rising(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Returns the height of a score, between those of the map: straight, and beyond them as over the
+ * outermost thousandth of them. */
+static double height_of(const double *score, const double *height, size_t count, double at) {
+    const size_t outermost = count / 1000 > 0 ? count / 1000 : 1;
+    size_t low = 0, high = count - 1;
+    if (at <= score[low])
+        high = outermost;
+    else if (at >= score[high])
+        low = high - outermost;
+    else
+        while (high - low > 1) {
+            const size_t middle = low + (high - low) / 2;
+            *(score[middle] <= at ? &low : &high) = middle;
+        }
+    const size_t base = at <= score[0] ? low : high;
+    const double slope = (height[high] - height[low]) / (score[high] - score[low]);
+    return height[base] + slope * (at - score[base]);
+}
+
+/* Replaces the scores of a draw by heights, in the order that those of the map have. */
+static int translate(double *z, size_t points, const struct height_map *map, const double *scores,
+                     struct error *err) {
+    const size_t most = grid_points(&map->grid);
+    double *height = array_create(2 * most, sizeof *height), *score = NULL;
+    size_t count = 0;
+    if (height == NULL)
+        return error_memory(err, 2 * most * sizeof *height, "heights of scores");
+    score = height + most;
+    for (size_t p = 0; p < most; p++)
+        if (!isnan(map->z[p])) {
+            height[count] = map->z[p];
+            score[count++] = scores[p];
+        }
+    qsort(height, count, sizeof *height, rising);
+    qsort(score, count, sizeof *score, rising);
+    for (size_t p = 0; p < points; p++)
+        z[p] = height_of(score, height, count, z[p]);
+    free(height);
+    return 0;
+}
+
+/* Returns the RMS difference of the map and its part of the cell. */
+static double difference_of(const struct height_map *map, const double *z) {
+    double total = 0;
+    size_t count = 0;
+    for (size_t j = 0; j < map->grid.ny; j++)
+        for (size_t i = 0; i < map->grid.nx; i++) {
+            const double less = map->z[j * map->grid.nx + i] - z[j * 2 * map->grid.nx + i];
+            total += isnan(less) ? 0 : less * less;
+            count += isnan(less) ? 0 : 1;
+        }
+    return sqrt(total / (double)count);
 }
 
 /* Fits the law to the map with its holes filled: what a spectrum leaves at the rims of holes looks
@@ -83,6 +145,58 @@ static int fit(struct map_law *out, const struct height_map *map, struct error *
     return status;
 }
 
+/* Extends the map of heights, or of their scores, which have the same RMS. */
+static int extend(double **out, const struct height_map *map, const struct roughness *roughness,
+                  const struct grid *cell, uint64_t seed, struct extend_result *result,
+                  struct error *err) {
+    const struct grid *grid = &map->grid;
+    const double x = 2 * M_PI / grid_dx(grid), y = 2 * M_PI / grid_dy(grid);
+    struct map_law law;
+    double *power = NULL;
+    int status = fit(&law, map, err);
+    if (status != 0)
+        return status;
+    status = powers_create(&power, cell, &law, err);
+    map_law_clear(&law);
+    if (status != 0)
+        return status;
+    const double seen = sqrt(law.fit.noise * (grid_is_profile(grid) ? x : x * y));
+    const double least = NOISE_LEAST * roughness->rms_height;
+    result->noise_seen = seen > least;
+    result->noise = fmax(seen, least);
+    result->law_holds = law.fit.deviance <= law.fit.deviance_limit;
+    const struct conditional_law conditional = {cell, power, result->noise * result->noise};
+    status = draw(out, map, &conditional, roughness->mean, seed, &result->draw, err);
+    free(power);
+    return status;
+}
+
+/* Does likewise by normal scores. */
+static int extend_translated(double **out, const struct height_map *map,
+                             const struct roughness *roughness, const struct grid *cell,
+                             uint64_t seed, struct extend_result *result, struct error *err) {
+    const struct measured_map measured = {&map->grid, map->z, BOUNDARY_OPEN};
+    struct roughness of_scores = *roughness;
+    struct height_map scores = *map;
+    double *z = NULL;
+    of_scores.mean = 0;
+    scores.z = array_create(grid_points(&map->grid), sizeof *scores.z);
+    if (scores.z == NULL)
+        return error_memory(err, grid_points(&map->grid) * sizeof *scores.z, "normal scores");
+    int status = normal_scores_fill(&measured, scores.z, err);
+    if (status == 0)
+        status = extend(&z, &scores, &of_scores, cell, seed, result, err);
+    if (status == 0)
+        status = translate(z, grid_points(cell), map, scores.z, err);
+    if (status == 0) {
+        result->draw.difference = difference_of(map, z);
+        *out = z;
+    } else
+        free(z);
+    free(scores.z);
+    return status;
+}
+
 int map_extend(struct height_map *map, uint64_t seed, struct extend_result *out,
                struct error *err) {
     const struct grid *grid = &map->grid;
@@ -90,10 +204,8 @@ int map_extend(struct height_map *map, uint64_t seed, struct extend_result *out,
     const struct grid cell = {2 * grid->nx, profile ? 1 : 2 * grid->ny, 2 * grid->lx,
                               profile ? grid->ly : 2 * grid->ly};
     const struct measured_map measured = {grid, map->z, BOUNDARY_OPEN};
-    const double whole = 4 * M_PI * M_PI / (grid_dx(grid) * grid_dy(grid));
-    struct map_law law;
     struct roughness roughness;
-    double *power = NULL;
+    double *z = NULL;
     *out = (struct extend_result){.noise = 0};
     if (grid_points(&cell) > (size_t)1 << 31)
         return error_set(err, ERROR_INPUT,
@@ -103,24 +215,14 @@ int map_extend(struct height_map *map, uint64_t seed, struct extend_result *out,
     map_roughness_measure(&measured, &roughness);
     if (!(roughness.rms_height > 0))
         return error_set(err, ERROR_INPUT, "the map has no heights that differ");
-    int status = fit(&law, map, err);
+    out->translated =
+        fabs(roughness.skewness) > SKEWNESS_MOST || fabs(roughness.kurtosis - 3) > KURTOSIS_MOST;
+    int status =
+        (out->translated ? extend_translated : extend)(&z, map, &roughness, &cell, seed, out, err);
     if (status != 0)
         return status;
-    status = powers_create(&power, &cell, &law, err);
-    map_law_clear(&law);
-    if (status != 0)
-
-        if (status != 0)
-            return status;
-    const double seen = sqrt(law.fit.noise * (profile ? 2 * M_PI / grid_dx(grid) : whole));
-    const double least = NOISE_LEAST * roughness.rms_height;
-    out->noise_seen = seen > least;
-    out->noise = fmax(seen, least);
-    out->law_holds = law.fit.deviance <= law.fit.deviance_limit;
-    out->skewness = roughness.skewness;
-    out->kurtosis = roughness.kurtosis;
-    status = draw(map, &(struct conditional_law){&cell, power, out->noise * out->noise},
-                  roughness.mean, seed, out, err);
-    free(power);
-    return status;
+    free(map->z);
+    map->z = z;
+    map->grid = cell;
+    return 0;
 }

@@ -12,7 +12,8 @@ struct extend_result {
     bool noise_seen; /* in the spectrum of the map, so that it governs slopes (denoise.h); false: it
                         is a thousandth of the RMS height */
     bool law_holds;  /* the deviance of the fit (spectrum_fit.h) is within its limit */
-    double skewness, kurtosis; /* of the map; the rest is Gaussian */
+    bool translated; /* heights are not Gaussian: normal scores (normal_scores.h) are extended, in
+                        which all of the above but draw.difference is, and have the map's heights */
 };
 /* The map, open and with holes or none, is then in the first rows and columns. Holes are filled by
  * the law. A number of the seed is one draw. ERROR_INPUT, the map untouched, for maps to which no

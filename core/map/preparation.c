@@ -644,8 +644,7 @@ static int filter(struct preparation_record *record, struct height_map *map,
 
 static int extend(struct preparation_record *record, struct height_map *map,
                   const struct preparation *asked, struct error *err) {
-    /* the skewness up to which heights are called Gaussian, and the power that is no misfit */
-    static const double GAUSSIAN = 0.5, USUAL = 1.2;
+    static const double USUAL = 1.2; /* power that is no misfit */
     struct extend_result done;
     char noise[40], power[40] = "";
     if (!asked->extend)
@@ -670,7 +669,7 @@ static int extend(struct preparation_record *record, struct height_map *map,
         map->grid.nx, map->grid.ny, (unsigned long long)asked->extend_seed,
         height_text(map, done.draw.difference, noise), done.draw.held,
         done.noise_seen ? "its noise" : "1/1000 RMS", power, done.law_holds ? "" : "; no law holds",
-        fabs(done.skewness) > GAUSSIAN ? "; skewed, goes on Gaussian" : "");
+        done.translated ? "; by normal scores" : "");
     return 0;
 }
 

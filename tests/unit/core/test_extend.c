@@ -1,6 +1,6 @@
 /* Protects: an extended map holds the patch to its noise, fills its holes by the law, has the RMS
- * slope of the surface that the patch was cut from, without the noise, everywhere, with a lay too;
- * one number is one draw; a map without a law is refused and stays. */
+ * slope of the surface that the patch was cut from, without the noise, everywhere, with a lay too,
+ * and its skewness; one number is one draw; a map without a law is refused and stays. */
 #include "core/map/extend.h"
 #include "core/statistics/heights/roughness.h"
 #include "core/surface/surface.h"
@@ -117,6 +117,34 @@ static void one_number_is_one_draw(void **state) {
     free(z);
 }
 
+/* Heights exp(z/2) - 1 have a skewness of 1.75; those that are added have it, too. */
+static void skewed_heights_stay_skewed(void **state) {
+    (void)state;
+    double *z = surface_of(1, 31);
+    const struct grid whole = {CELL, CELL, CELL, CELL};
+    struct roughness truth, found;
+    struct height_map map;
+    struct extend_result done;
+    for (size_t p = 0; p < (size_t)CELL * CELL; p++)
+        z[p] = exp(z[p] / 2) - 1;
+    roughness_measure(&whole, z, &truth);
+    cut(&map, z, 0, 3);
+    map.z[500] = (double)NAN;
+    assert_int_equal(map_extend(&map, 2, &done, NULL), 0);
+    roughness_measure(&map.grid, map.z, &found);
+    print_message("skewness %.3f of %.3f, RMS slope %.4f of %.4f, height %.3f of %.3f; off by "
+                  "%.2g, %.3f of the noise in scores\n",
+                  found.skewness, truth.skewness, found.rms_slope, truth.rms_slope,
+                  found.rms_height, truth.rms_height, done.draw.difference, done.draw.held);
+    assert_true(done.translated && truth.skewness > 1);
+    check_relative(found.skewness, truth.skewness, 0.35);
+    check_relative(found.rms_slope, truth.rms_slope, 0.12);
+    assert_true(done.draw.difference > 0 && done.draw.difference < 0.01 * truth.rms_height);
+    check_relative(rms_difference(&map, z, CELL, 5), done.draw.difference, 0.01);
+    height_map_clear(&map);
+    free(z);
+}
+
 static void a_map_without_law_stays(void **state) {
     (void)state;
     double heights[] = {1, 2, 4, 3, 2, 2, 1, 5, 4, 4, 3, 1, 2, 3, 4, 5};
@@ -136,6 +164,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_patch_is_held),
         cmocka_unit_test(one_number_is_one_draw),
+        cmocka_unit_test(skewed_heights_stay_skewed),
         cmocka_unit_test(a_map_without_law_stays),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
