@@ -2,6 +2,7 @@
 #include "core/error.h"
 #include "core/map/denoise.h"
 #include "core/map/despike.h"
+#include "core/map/extend.h"
 #include "core/map/gaussian_filter.h"
 #include "core/map/height_map.h"
 #include "core/map/length_unit.h"
@@ -641,6 +642,37 @@ static int filter(struct preparation_record *record, struct height_map *map,
     return status == 0 ? filter_one(record, map, second, false, asked->robust, err) : status;
 }
 
+static int extend(struct preparation_record *record, struct height_map *map,
+                  const struct preparation *asked, struct error *err) {
+    static const double USUAL = 1.2; /* power that is no misfit */
+    struct extend_result done;
+    char noise[40], power[40] = "";
+    if (!asked->extend)
+        return 0;
+    if (asked->window != MAP_WINDOW_NONE)
+        return error_set(err, ERROR_INPUT,
+                         "--extend and --window both make a map repeat; allowed: one of them");
+    if (record->boundary == BOUNDARY_PERIODIC)
+        return error_set(err, ERROR_INPUT,
+                         "--extend: the map repeats already (by %s); --boundary open says that it "
+                         "does not",
+                         record->boundary_by);
+    int status = map_extend(map, asked->extend_seed, &done, err);
+    if (status != 0)
+        return error_context(err, "--extend");
+    record->boundary = BOUNDARY_PERIODIC;
+    record->boundary_by = "extension";
+    if (done.draw.power > USUAL)
+        snprintf(power, sizeof power, "; %.3g times the law's power", done.draw.power);
+    preparation_note(
+        record, "extend", "to %zu by %zu points, draw %llu, %s off the map, %.3g of %s%s%s%s",
+        map->grid.nx, map->grid.ny, (unsigned long long)asked->extend_seed,
+        height_text(map, done.draw.difference, noise), done.draw.held,
+        done.noise_seen ? "its noise" : "1/1000 RMS", power, done.law_holds ? "" : "; no law holds",
+        done.translated ? "; by normal scores" : "");
+    return 0;
+}
+
 static int taper(struct preparation_record *record, struct height_map *map, enum map_window window,
                  struct error *err) {
     int status = height_map_check_whole(map, err);
@@ -689,6 +721,8 @@ int preparation_run(struct preparation_record *record, struct height_map *map,
         status = filter(record, map, asked, err);
     if (status == 0)
         status = preparation_resample(record, map, asked, err);
+    if (status == 0)
+        status = extend(record, map, asked, err);
     if (status == 0 && asked->window != MAP_WINDOW_NONE)
         status = taper(record, map, asked->window, err);
     return status;

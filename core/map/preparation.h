@@ -14,14 +14,16 @@
  *   denoise   takes out noise by the law of the spectrum
  *   filter    S-filter, which keeps long waves, then L-filter, which removes long waves
  *   resample  other points of the same surface
+ *   extend    goes on as the law says, to a periodic map of twice the sides
  *   window    lets heights about their mean fall to 0 towards the sides
  *
  * Whether the map is open or periodic is decided after the crop and a trend that was requested by
- * name, and holds for all later steps; after a window a map is periodic. Holes stay holes in every
- * step but `fill`; steps that need all heights refuse them. What an instrument leaves along its
- * scan lines, single wrong points and its tip comes first, while rows are as they were scanned:
- * spikes are found beside lines without offsets, and a tip meets no spikes. The map is turned next,
- * so that trend, boundary and all later steps are those of the rectangle that is measured. */
+ * name, and holds for all later steps; after `extend` or a window a map is periodic. Holes stay
+ * holes in every step but `fill` and `extend`; steps that need all heights refuse them. What an
+ * instrument leaves along its scan lines, single wrong points and its tip comes first, while rows
+ * are as they were scanned: spikes are found beside lines without offsets, and a tip meets no
+ * spikes. The map is turned next, so that trend, boundary and all later steps are those of the
+ * rectangle that is measured. */
 #ifndef RUGO_CORE_MAP_PREPARATION_H
 #define RUGO_CORE_MAP_PREPARATION_H
 
@@ -32,6 +34,7 @@
 #include "core/statistics/measured_map.h"
 #include "core/statistics/uncertainty/seam.h"
 #include "core/surface/grid.h"
+#include <stdint.h>
 
 /* Lets the heights of a map fall to one height towards its sides, so that it is periodic
  * (FORMULAS.md, F18.23). */
@@ -86,6 +89,8 @@ struct preparation {
     struct asked_length resample_dx; /* spacing; 0: not requested */
     enum map_window window;
     bool artefacts; /* what the instrument left is sought */
+    bool extend;
+    uint64_t extend_seed; /* of the draw */
 };
 
 enum { PREPARATION_STEPS_MOST = 28, PREPARATION_TEXT = 160 };
@@ -93,7 +98,7 @@ enum { PREPARATION_STEPS_MOST = 28, PREPARATION_TEXT = 160 };
 /* The steps that were done, and what was measured in them. */
 struct preparation_record {
     enum boundary boundary;  /* how the map is to be treated */
-    const char *boundary_by; /* "option", "holes", "seam" or "window"; static */
+    const char *boundary_by; /* "option", "holes", "seam", "extension" or "window"; static */
     struct seam seam;        /* when the boundary was decided */
     double holes;            /* as a share of the points, before any were filled */
     enum detrend detrend;

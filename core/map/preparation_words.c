@@ -1,6 +1,7 @@
 #include "core/map/preparation_words.h"
 #include "core/map/length_unit.h"
 #include <ctype.h>
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -208,6 +209,19 @@ static int parse_turn(struct preparation *out, const char *text, struct error *e
                      "--rotate %.60s: allowed are degrees, -360 to 360, counter-clockwise", text);
 }
 
+static int parse_extend(struct preparation *out, const char *text, struct error *err) {
+    char *end = NULL;
+    if (text == NULL)
+        return 0;
+    errno = 0;
+    out->extend = true;
+    out->extend_seed = isdigit((unsigned char)*text) ? strtoull(text, &end, 10) : 0;
+    if (end != NULL && *end == '\0' && errno == 0)
+        return 0;
+    return error_set(err, ERROR_INPUT,
+                     "--extend %.60s: allowed is the number of a draw, 0 to 2^64 - 1", text);
+}
+
 int preparation_parse(struct preparation *out, const struct preparation_words *words,
                       struct error *err) {
     struct preparation asked = {.boundary = (enum asked_boundary)words->boundary,
@@ -233,6 +247,8 @@ int preparation_parse(struct preparation *out, const struct preparation_words *w
         status = parse_filter(&asked, words->filter, err);
     if (status == 0)
         status = parse_resample(&asked, words->resample, err);
+    if (status == 0)
+        status = parse_extend(&asked, words->extend, err);
     if (status == 0)
         *out = asked;
     return status;

@@ -13,6 +13,7 @@
 #define MAP_LINES_ALONG "x|y"
 
 #define MAP_DESPIKE "8" /* deviations, unless others are given */
+#define MAP_EXTEND "1"  /* draw, likewise */
 
 /* NULL: not requested. */
 struct preparation_words {
@@ -26,6 +27,7 @@ struct preparation_words {
     const char *despike;  /* "8": robust deviations */
     const char *tip;      /* "tip=10nm", "tip=10nm,holes" */
     const char *rotate;   /* "30": degrees */
+    const char *extend;   /* "1": number of the draw */
     int boundary, detrend, window, lines, lines_along; /* the enums of preparation.h */
     bool fill, denoise, transpose;
 };

@@ -26,6 +26,7 @@ struct characterise_options {
 #define AT(member) offsetof(struct characterise_options, member)
 static const struct option_row OPTIONS[] = {
     MAP_OPTION_ROWS(struct characterise_options, map),
+    MAP_EXTEND_ROW(struct characterise_options, map),
     MAP_BOUNDARY_ROW(struct characterise_options, map),
     {"trust-from", 0, OPTION_TEXT, 0, 0, AT(trust_from), "LENGTH", NULL,
      "the longest waves whose spectrum is fitted, such as 50um (by the map)"},

@@ -8,6 +8,7 @@ struct convert_options {
 };
 static const struct option_row OPTIONS[] = {
     MAP_OPTION_ROWS_DETREND(struct convert_options, map, "none"),
+    MAP_EXTEND_ROW(struct convert_options, map),
     MAP_BOUNDARY_ROW(struct convert_options, map),
     {0}};
 

@@ -29,6 +29,10 @@ struct map_options {
 #define MAP_BOUNDARY_ROW(type, member)                                                             \
     MAP_ROW(type, member, "boundary", OPTION_CHOICE, words.boundary, MAP_BOUNDARIES, "auto",       \
             "whether the map repeats; auto: where its seam is no rougher than its inside")
+/* For commands that take the map as it is, and fit no surfaces to it. */
+#define MAP_EXTEND_ROW(type, member)                                                               \
+    MAP_ROW(type, member, "extend", OPTION_OPTIONAL, words.extend, "[DRAW]", MAP_EXTEND,           \
+            "to a map of twice its sides that repeats, holds it and goes on by its law")
 #define MAP_OPTION_ROWS(type, member) MAP_OPTION_ROWS_DETREND(type, member, "auto")
 /* The same for commands that take out no trend unless it is asked for. */
 #define MAP_OPTION_ROWS_DETREND(type, member, standard)                                            \

@@ -60,6 +60,7 @@ struct press_options {
 #define AT(member) offsetof(struct press_options, member)
 static const struct option_row OPTIONS[] = {
     MAP_OPTION_ROWS(struct press_options, map),
+    MAP_EXTEND_ROW(struct press_options, map),
     {"boundary", 0, OPTION_CHOICE, 0, 0, AT(boundary), BOUNDARIES, "auto",
      "open: in free space; mirrored: with its mirror images; auto: periodic where its seam is no "
      "rougher than its inside, else open, or mirrored for a model that needs a map that repeats"},
@@ -191,7 +192,7 @@ static enum press_boundary boundary_of(const struct press_order *order) {
 }
 
 static const char *boundary_by(const struct press_order *order) {
-    if (order->options->boundary != ASKED_AUTO)
+    if (order->options->boundary != ASKED_AUTO && order->options->map.words.extend == NULL)
         return "option";
     return order->boundary == PRESS_MIRRORED ? "model" : order->record.boundary_by;
 }
@@ -298,6 +299,22 @@ static int take_counter(struct press_order *order, struct height_map *map,
     return status;
 }
 
+/* An extended map repeats, and a number is one draw. */
+static int check_extension(const struct press_options *options, struct error *err) {
+    if (options->map.words.extend == NULL)
+        return 0;
+    if (options->boundary == ASKED_MIRRORED)
+        return error_set(err, ERROR_INPUT,
+                         "--extend makes a map that repeats, and --boundary mirrored another; "
+                         "allowed: one of them");
+    if (options->counter != NULL)
+        return error_set(err, ERROR_INPUT,
+                         "--extend %.60s with --counter: both faces would go on by the same draw; "
+                         "rugo convert --extend writes each with its own",
+                         options->map.words.extend);
+    return 0;
+}
+
 static int read_map(struct height_map *map, struct press_order *order, struct error *err) {
     static const int ASKED[] = {[ASKED_AUTO] = ASK_BOUNDARY_AUTO,
                                 [ASKED_OPEN] = ASK_BOUNDARY_OPEN,
@@ -305,7 +322,9 @@ static int read_map(struct height_map *map, struct press_order *order, struct er
                                 [ASKED_PERIODIC] = ASK_BOUNDARY_PERIODIC};
     struct map_options options = order->options->map;
     options.words.boundary = ASKED[order->options->boundary];
-    int status = read_whole(map, &order->record, order->path, order, &options, err);
+    int status = check_extension(order->options, err);
+    if (status == 0)
+        status = read_whole(map, &order->record, order->path, order, &options, err);
     if (status == 0 && order->options->counter != NULL)
         status = take_counter(order, map, &options, err);
     if (status == 0)

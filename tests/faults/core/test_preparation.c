@@ -47,6 +47,8 @@ static void all_steps(void **state) {
                                        .rotate = "25",
                                        .fill = true};
     each_allocation(&(struct failing_call){.name = "turned", prepare, &turned});
+    struct preparation_words extended = {.boundary = ASK_BOUNDARY_OPEN, .extend = MAP_EXTEND};
+    each_allocation(&(struct failing_call){.name = "extended", prepare, &extended});
     each_allocation(&(struct failing_call){.name = "coarser", prepare, &coarser});
     each_allocation(&(struct failing_call){.name = "periodic", prepare, &periodic});
 }

@@ -291,6 +291,35 @@ static void a_map_is_converted(void **state) {
     assert_true(contains("shell.err", "--z-unit"));
 }
 
+/* A patch becomes a map that repeats, of twice its sides and one draw a number; a map that repeats
+ * already does not. */
+static void a_patch_is_extended(void **state) {
+    (void)state;
+    assert_int_equal(
+        run_shell("$RUGO generate one.json -o whole.npy && $RUGO convert whole.npy part.npy --crop "
+                  "0,0,24,20 --detrend plane && $RUGO convert part.npy first.npy --boundary open "
+                  "--extend && $RUGO convert part.npy again.npy --boundary open --extend 1 && "
+                  "$RUGO convert part.npy other.npy --boundary open --extend 2 && cmp first.npy "
+                  "again.npy && ! cmp -s first.npy other.npy"),
+        0);
+    assert_true(contains("shell.out", "extend: to 48 by 40 points, draw 1, "));
+    assert_int_equal(run_shell("$RUGO press part.npy --boundary mirrored --extend"), 2);
+    assert_true(contains("shell.err", "allowed: one of them"));
+    assert_int_equal(run_shell("$RUGO press part.npy --counter part.npy --extend"), 2);
+    assert_true(contains("shell.err", "by the same draw"));
+    assert_int_equal(
+        run_shell("$RUGO press part.npy --boundary open --extend --error none --loads 0.1 --format "
+                  "json > part.json"),
+        0);
+    assert_true(contains("part.json", "\"boundary_by\":\"extension\""));
+    assert_int_equal(run_shell("$RUGO convert whole.npy first.npy --extend"), 2);
+    assert_true(contains("shell.err", "the map repeats already (by seam)"));
+    assert_int_equal(run_shell("$RUGO convert part.npy first.npy --extend=-1"), 2);
+    assert_true(contains("shell.err", "--extend -1: allowed is the number of a draw"));
+    assert_int_equal(run_shell("$RUGO convert part.npy first.npy --extend --window hann"), 2);
+    assert_true(contains("shell.err", "allowed: one of them"));
+}
+
 /* Lines with offsets and two spikes, exchanged and turned; options by what people type, and
  * --despike with and without its number before a file. */
 static void what_instruments_leave_is_removed(void **state) {
@@ -531,6 +560,7 @@ int main(void) {
         cmocka_unit_test(a_measured_map_does_not_repeat),
         cmocka_unit_test(lengths_have_units),
         cmocka_unit_test(a_map_is_converted),
+        cmocka_unit_test(a_patch_is_extended),
         cmocka_unit_test(what_instruments_leave_is_removed),
         cmocka_unit_test(columns_are_a_trace),
         cmocka_unit_test(groups_are_printed),
