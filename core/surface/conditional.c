@@ -8,7 +8,7 @@
  * steps are allowed. */
 static const double ACCURACY = 1e-3, ACCURACY_LEAST = 1e-2;
 /* Noise in the approximate inverse, over that of the equations: waves beyond the law's shortest
- * have more power by mirror images. 10 to 100 take half the steps of 1, and fewer than 1000. */
+ * have more power by mirror images. 10 to 100 take half the steps of 1. */
 static const double NOISE_SHARE = 30;
 enum { STEPS_MOST = 10000, UNIFORMS = 1024 };
 

@@ -32,10 +32,10 @@ struct conditional_report {
 };
 
 /* Fills z[grid_points] with one draw. Patch and law have the same mean, 0 unless the law's power of
- * wave 0 lets it be another. Time: 20 to 1300 steps of four transforms of the
- * cell each, most where the law ends far before the points' shortest waves and noise is low.
- * Memory: about five cells. ERROR_INPUT for a cell of other sides, a patch of holes alone or noise
- * that is not above 0; ERROR_NUMERIC where the equations are not solved; ERROR_MEMORY. */
+ * wave 0 lets it be another. Time: 20 to 2200 steps of four transforms of the cell each, most where
+ * the law ends far before the points' shortest waves, noise is low and there are holes. Memory:
+ * about five cells. ERROR_INPUT for a cell of other sides, a patch of holes alone or noise that is
+ * not above 0; ERROR_NUMERIC where the equations are not solved; ERROR_MEMORY. */
 int conditional_draw(const struct conditional_law *law, const struct conditional_patch *patch,
                      struct random_key key, double *z, struct conditional_report *report,
                      struct error *err);
