@@ -44,7 +44,7 @@ static int write_drawn(const char *path, const char *svg, size_t size, FILE *fil
     return 0;
 }
 
-int output_file_drawn(const char *path, const char *svg, size_t size, struct error *err) {
+static int write_file(const char *path, const char *svg, size_t size, struct error *err) {
     FILE *file;
     int status = output_file_check_drawn(path, err);
     if (status == 0)
@@ -60,6 +60,22 @@ int output_file_drawn(const char *path, const char *svg, size_t size, struct err
     return status;
 }
 
+int output_file_draw(const char *path, output_drawing *draw, const void *context,
+                     struct error *err) {
+    struct memory_file memory;
+    size_t size = 0;
+    if (!memory_file_open(&memory))
+        return error_memory(err, 0, "a picture");
+    int status = draw(context, memory.file, err);
+    char *text = memory_file_close(&memory, &size);
+    if (status == 0 && text == NULL)
+        status = error_memory(err, 0, "a picture");
+    if (status == 0)
+        status = write_file(path, text, size, err);
+    free(text);
+    return status;
+}
+
 /* A map in PNG has a pixel a point, which is no drawing of an SVG. */
 static int write_pixels(const char *path, const struct map_picture *picture, struct error *err) {
     FILE *file;
@@ -68,19 +84,11 @@ static int write_pixels(const char *path, const struct map_picture *picture, str
                        : file_close(file, path, map_png(file, picture->grid, picture->z, err), err);
 }
 
+static int draw_map(const void *context, FILE *file, struct error *err) {
+    return plot_map(context, file, err);
+}
+
 int output_file_picture(const char *path, const struct map_picture *picture, struct error *err) {
-    struct memory_file memory;
-    size_t size = 0;
-    if (output_file_is_png(path))
-        return write_pixels(path, picture, err);
-    if (!memory_file_open(&memory))
-        return error_memory(err, 0, "a picture");
-    int status = plot_map(picture, memory.file, err);
-    char *text = memory_file_close(&memory, &size);
-    if (status == 0 && text == NULL)
-        status = error_memory(err, 0, "a picture");
-    if (status == 0)
-        status = output_file_drawn(path, text, size, err);
-    free(text);
-    return status;
+    return output_file_is_png(path) ? write_pixels(path, picture, err)
+                                    : output_file_draw(path, draw_map, picture, err);
 }

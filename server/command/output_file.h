@@ -11,12 +11,15 @@ int output_file_check(const char *path, struct error *err);
 /* Whether a file of this name is to hold a PNG. */
 bool output_file_is_png(const char *path);
 /* Writes a picture into a file of its own: a pixel a point where its name ends in .png, else as
- * output_file_drawn. */
+ * output_file_draw. */
 int output_file_picture(const char *path, const struct map_picture *picture, struct error *err);
 /* Returns ERROR_INPUT for a name that ends in none of .svg, .png, .pdf and .eps. */
 int output_file_check_drawn(const char *path, struct error *err);
-/* Writes a drawn SVG into a file of its own, in the format that its name ends in: but for .svg by
- * rsvg-convert. No file is left after a failure. */
-int output_file_drawn(const char *path, const char *svg, size_t size, struct error *err);
+/* Prints what is to be drawn, an SVG. context: as given to output_file_draw. */
+typedef int output_drawing(const void *context, FILE *file, struct error *err);
+/* Draws in memory first, then writes a file of its own in the format that its name ends in: but for
+ * .svg by rsvg-convert. No file is left after a failure, which is that of `draw` or of the file. */
+int output_file_draw(const char *path, output_drawing *draw, const void *context,
+                     struct error *err);
 
 #endif

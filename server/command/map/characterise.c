@@ -1,5 +1,4 @@
 /* rugo characterise FILE: what a height map in a file is like. */
-#include "core/memory_file.h"
 #include "jobs/maps/map_planes.h"
 #include "server/command/command.h"
 #include "server/command/map/like_study.h"
@@ -126,19 +125,8 @@ static int check_report(const char *path, struct error *err) {
     return status;
 }
 
-static int report(const char *path, const struct map_figure *figure, struct error *err) {
-    struct memory_file memory;
-    size_t size = 0;
-    if (!memory_file_open(&memory))
-        return error_memory(err, 0, "a page");
-    int status = map_figure_draw(figure, memory.file, err);
-    char *text = memory_file_close(&memory, &size);
-    if (status == 0 && text == NULL)
-        status = error_memory(err, 0, "a page");
-    if (status == 0)
-        status = output_file_drawn(path, text, size, err);
-    free(text);
-    return status;
+static int draw_page(const void *figure, FILE *file, struct error *err) {
+    return map_figure_draw(figure, file, err);
 }
 
 /* --- the autocorrelation and the spectrum over the plane --- */
@@ -315,7 +303,7 @@ static int run(const void *values, const char *const *arguments) {
         status = write_planes(options, &map, record.boundary, &err);
     const struct map_figure figure = {&measured, &found, &map, &record};
     if (status == 0 && options->report != NULL)
-        status = report(options->report, &figure, &err);
+        status = output_file_draw(options->report, draw_page, &figure, &err);
     if (status == 0)
         status = keep_groups(&found, options->group, &err);
     if (status == 0)

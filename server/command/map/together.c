@@ -1,5 +1,4 @@
 #include "server/command/map/together.h"
-#include "core/memory_file.h"
 #include "server/command/output_file.h"
 #include "server/show/map/together_report.h"
 #include <stdlib.h>
@@ -16,19 +15,8 @@ static int add_file(struct map_together *together, const char *file,
     return status == 0 ? 0 : error_context(err, "%s", file);
 }
 
-static int draw(const char *path, const struct map_together *together, struct error *err) {
-    struct memory_file memory;
-    size_t size = 0;
-    if (!memory_file_open(&memory))
-        return error_memory(err, 0, "a picture");
-    int status = together_draw(together, memory.file, err);
-    char *text = memory_file_close(&memory, &size);
-    if (status == 0 && text == NULL)
-        status = error_memory(err, 0, "a picture");
-    if (status == 0)
-        status = output_file_drawn(path, text, size, err);
-    free(text);
-    return status;
+static int draw(const void *together, FILE *file, struct error *err) {
+    return together_draw(together, file, err);
 }
 
 int together_run(const char *const *files, const struct map_options *options, const char *report,
@@ -42,7 +30,7 @@ int together_run(const char *const *files, const struct map_options *options, co
     if (status == 0)
         status = together_report_fill(found, together, err);
     if (status == 0 && report != NULL)
-        status = draw(report, together, err);
+        status = output_file_draw(report, draw, together, err);
     if (together != NULL)
         map_together_clear(together);
     free(together);

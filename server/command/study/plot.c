@@ -1,5 +1,4 @@
 /* `rugo plot`: one picture of a study's results, or of a map in a file, as SVG or PNG. */
-#include "core/memory_file.h"
 #include "server/command/access/access_source.h"
 #include "server/command/map/map_file.h"
 #include "server/command/output_file.h"
@@ -80,27 +79,23 @@ static int draw(struct access *access, const char *id, const struct options *opt
     return picture_draw(&source, &request, file, err);
 }
 
-/* Draws in memory first, so that a picture that cannot be drawn leaves no file. */
-static int draw_file(struct access *access, const char *id, const struct options *options,
-                     struct error *err) {
-    struct memory_file memory;
-    size_t size = 0;
-    if (!memory_file_open(&memory))
-        return error_memory(err, 0, "a picture");
-    int status = draw(access, id, options, memory.file, err);
-    char *text = memory_file_close(&memory, &size);
-    if (status == 0 && text == NULL)
-        status = error_memory(err, 0, "a picture");
-    if (status == 0)
-        status = output_file_drawn(options->out, text, size, err);
-    free(text);
-    return status;
+/* What a file is drawn of. */
+struct drawing {
+    struct access *access;
+    const char *id;
+    const struct options *options;
+};
+
+static int draw_drawing(const void *context, FILE *file, struct error *err) {
+    const struct drawing *of = context;
+    return draw(of->access, of->id, of->options, file, err);
 }
 
 static int show(struct access *access, const char *id, const struct options *options,
                 struct error *err) {
+    struct drawing drawing = {access, id, options};
     if (options->out != NULL)
-        return draw_file(access, id, options, err);
+        return output_file_draw(options->out, draw_drawing, &drawing, err);
     int status = draw(access, id, options, stdout, err);
     return status == 0 ? output_flush(err) : status;
 }
