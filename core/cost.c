@@ -209,7 +209,7 @@ static const struct full_fit PROFILE_FULL = {400, 55, 2.5, 35, 1e4},
 /* Arrays take so many times their bytes, with what heaps keep between them. */
 static const double MEMORY_ROOM = 1.03;
 /* Iterations of the linear equations of a step, over their mean, at most. */
-static const double ITERATIONS_MOST = 2, PRESSURES_MOST = 3;
+static const double ITERATIONS_MOST = 3;
 /* Bytes a degree of freedom of a factorisation. */
 static const double PROFILE_FACTOR_BYTES = 900, SURFACE_FACTOR_BYTES = 6500;
 /* Number of transforms of a point that take the time of an iteration of Newton's method on a degree
@@ -296,7 +296,7 @@ double cost_full_contact(const struct grid *grid, const struct full_size *size, 
 
 double cost_full_bytes(const struct grid *grid, const struct block *block,
                        const struct full_options *options, const struct full_size *size) {
-    double most = (size->pressures ? PRESSURES_MOST : ITERATIONS_MOST) * size->linear;
+    double most = ITERATIONS_MOST * size->linear;
     double bytes = MEMORY_ROOM * full_bytes(grid, block, options, most);
     if (size->factored)
         bytes += (grid_is_profile(grid) ? PROFILE_FACTOR_BYTES : SURFACE_FACTOR_BYTES) *

@@ -2,8 +2,6 @@
 #include "core/vectors.h"
 #include <stdlib.h>
 
-#define INLINE static inline __attribute__((always_inline))
-
 enum { PARITIES = 4 };
 
 static size_t count_of(const struct mesh *mesh, bool one_per_layer) {
