@@ -31,12 +31,12 @@ enum { LAYERED, FULL, MODELS };
 
 /* A study, and one surface pressed by the scene and, beside it, by a solver of its own. */
 struct scene_fixture {
-    struct contact_case one_case;
-    struct contact_compliances compliances;
-    struct contact_scene *scene;
     struct contact_tally tally;
-    struct moments moments;
+    struct contact_scene *scene;
     double *z;
+    struct moments moments;
+    struct contact_compliances compliances;
+    struct contact_case one_case;
 };
 
 static void fixture_surface(struct scene_fixture *f) {
