@@ -12,6 +12,7 @@
 #include "server/command/command.h"
 #include "server/command/map/map_file.h"
 #include "server/command/map/press_coating.h"
+#include "server/command/map/press_face.h"
 #include "server/command/map/press_files.h"
 #include "server/command/map/press_loads.h"
 #include "server/command/map/press_path.h"
@@ -714,31 +715,6 @@ static int check_mesh(const struct press_order *order, struct error *err) {
     return 0;
 }
 
-/* Checks what is measured on the face as it stands. */
-static int check_face(const struct press_order *order, struct error *err) {
-    const struct press_options *options = order->options;
-    const char *name = options->current_areas != 0 ? "areas current" : "gap-direction normal";
-    bool stretches = false;
-    if (options->current_areas == 0 && options->normal_gaps == 0)
-        return 0;
-    for (size_t m = 0; m < order->model_count; m++)
-        stretches = stretches || order->blocks[m].model->stretches;
-    if (!stretches)
-        return error_set(err, ERROR_INPUT,
-                         "--%s belongs to --model full, which presses the rough face itself", name);
-    if (options->kinematics == KINEMATICS_SMALL)
-        return error_set(err, ERROR_INPUT,
-                         "--%s is of the face as it stands under load, which --kinematics small "
-                         "leaves as it was",
-                         name);
-    if (options->words.friction > 0)
-        return error_set(err, ERROR_INPUT,
-                         "--%s and --friction: curves by sliding are over the flat grid, of "
-                         "vertical gaps; leave one of them out",
-                         name);
-    return 0;
-}
-
 /* Sets the models and their blocks. */
 static int order_models(struct press_order *order, struct error *err) {
     const struct press_options *options = order->options;
@@ -760,7 +736,8 @@ static int order_models(struct press_order *order, struct error *err) {
                                  .current_areas = options->current_areas != 0,
                                  .normal_gaps = options->normal_gaps != 0,
                                  .leaks = options->leak};
-    if (check_face(order, err) != 0 || order_friction(order, err) != 0)
+    if (press_face_check(order->blocks, order->model_count, err) != 0 ||
+        order_friction(order, err) != 0)
         return err->code;
     if (order->loads.resistivity > 0 && options->coating != NULL)
         return error_set(err, ERROR_INPUT,
