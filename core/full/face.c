@@ -68,6 +68,9 @@ static struct cell cell_of(const struct mesh *mesh, const double *u, const doubl
     return cell;
 }
 
+/* Two Gauss points along an axis of the unit square, of weight 1/2 each. */
+static const double POINT[2] = {0.21132486540518712, 0.78867513459481288};
+
 /* Integrates a value, linear along the cell, over positions x. */
 static double line_integral(const double *x, const double *value) {
     return (x[1] - x[0]) * (value[0] + value[1]) / 2;
@@ -76,7 +79,6 @@ static double line_integral(const double *x, const double *value) {
 /* Returns the integral over the unit square of value (dx/ds dy/dt - dy/ds dx/dt), all three
  * bilinear in s and t: of degree 2 in each, which two Gauss points along each integrate exactly. */
 static double square_integral(const double *x, const double *y, const double *value) {
-    static const double POINT[2] = {0.21132486540518712, 0.78867513459481288};
     double sum = 0;
     for (int q = 0; q < 4; q++) {
         double s = POINT[q & 1], t = POINT[q >> 1];
@@ -142,7 +144,6 @@ static double length_of(const double *a) {
 
 /* Fills the integrals of the shape functions over a cell. */
 static void true_areas(const struct mesh *mesh, const double *u, size_t j, size_t i, double *area) {
-    static const double POINT[2] = {0.21132486540518712, 0.78867513459481288};
     double c[4][3] = {{0}}, along[3], back[3], normal[3];
     corners_of(mesh, u, j, i, c);
     if (mesh->dimension == 2) {

@@ -87,10 +87,7 @@ INLINE void moduli(int d, const struct material *material, const struct strained
     struct principal_moduli m;
     principal_moduli(d, material, point, pull, &m);
     turn_moduli(d, &m, point, weight, out->material);
-    if (material->convex)
-        clear_stress(d, out);
-    else
-        weigh_stress(d, point, pull, weight, out);
+    weigh_stress(d, material, point, pull, weight, out);
 }
 
 WIDE_VECTORS static void hencky_moduli(int dimension, const struct material *material,

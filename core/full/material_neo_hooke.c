@@ -53,10 +53,7 @@ INLINE void moduli(int d, const struct material *material, const struct strained
                     row[k * d + i][q] += shear;
             }
     }
-    if (material->convex)
-        clear_stress(d, out);
-    else
-        weigh_stress(d, point, pull, weight, out);
+    weigh_stress(d, material, point, pull, weight, out);
 }
 
 WIDE_VECTORS static void neo_hooke_moduli(int dimension, const struct material *material,

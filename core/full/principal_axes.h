@@ -218,23 +218,27 @@ INLINE void turn_moduli(int d, const struct principal_moduli *m, const struct st
                 }
 }
 
+INLINE void clear_stress(int d, struct moduli *out) {
+    for (int i = 0; i < d; i++)
+        for (int k = 0; k < d; k++)
+            for (int q = 0; q < 1 << d; q++)
+                out->stress[i][k][q] = 0;
+}
+
 /* Sets the stress part of the second variation (material.h): Kirchhoff's stress and pull x spread,
- * times the weight. */
-INLINE void weigh_stress(int d, const struct strained *point, double pull, const pointwise weight,
-                         struct moduli *out) {
+ * times the weight; 0 of convex moduli, which leave it out. */
+INLINE void weigh_stress(int d, const struct material *material, const struct strained *point,
+                         double pull, const pointwise weight, struct moduli *out) {
+    if (material->convex) {
+        clear_stress(d, out);
+        return;
+    }
     for (int i = 0; i < d; i++)
         for (int k = 0; k < d; k++)
             for (int q = 0; q < 1 << d; q++) {
                 double whole = point->stress[i][k][q] + pull * point->spread[i][k][q];
                 out->stress[i][k][q] = weight[q] * whole;
             }
-}
-
-INLINE void clear_stress(int d, struct moduli *out) {
-    for (int i = 0; i < d; i++)
-        for (int k = 0; k < d; k++)
-            for (int q = 0; q < 1 << d; q++)
-                out->stress[i][k][q] = 0;
 }
 
 #endif
