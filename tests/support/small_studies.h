@@ -2,9 +2,10 @@
 #ifndef RUGO_TESTS_SUPPORT_SMALL_STUDIES_H
 #define RUGO_TESTS_SUPPORT_SMALL_STUDIES_H
 
-/* Two cases, Gaussian and Weibull profiles, twelve blocks each (a block holds at most 1000). */
+/* Two cases, Gaussian and Weibull profiles, six blocks each (a block holds at most 1000). */
+enum { SEVERAL_BLOCKS_JOBS = 12 };
 #define SEVERAL_BLOCKS                                                                             \
-    "{\"name\":\"blocks\",\"kind\":\"statistics\",\"seed\":7,\"realisations\":12000,\"surface\":{" \
+    "{\"name\":\"blocks\",\"kind\":\"statistics\",\"seed\":7,\"realisations\":6000,\"surface\":{"  \
     "\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":4,\"length_ratio\":4,"                     \
     "\"points_per_wavelength\":8,\"heights\":{\"distribution\":[\"gaussian\",\"weibull_max\"],"    \
     "\"shape\":2,\"max_iterations\":10}},\"statistics\":{\"bins\":{\"height\":[-4,4,20],"          \

@@ -31,7 +31,7 @@ struct program {
 /* Allocations of a command that fail, spread over all of them, times RUGO_EFFORT, unless
  * RUGO_FAULTS=all; each alone, and with all behind it, or where workers wait until there is memory
  * again, with some. */
-enum { FAILURES = 24, SOME = 10 };
+enum { FAILURES = 12, SOME = 10 };
 
 static uint64_t allocations(const char *path) {
     char *text = slurp(path);

@@ -10,7 +10,7 @@
 
 /* CPU time that one loop may take, unless all allocations are asked for, and the least number of
  * them, a third of it without RUGO_EFFORT, which multiplies both. */
-static const double SECONDS = 0.5;
+static const double SECONDS = 0.2;
 enum { LEAST = 24 };
 
 /* Of the leak checker, where there is one. */

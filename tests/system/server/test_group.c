@@ -39,7 +39,7 @@ static int ask(const char *token, const char *method, const char *path, const ch
     return http_exchange(port, method, path, headers, body, answer);
 }
 
-/* SEVERAL_BLOCKS, of six jobs, with a seed of its own. */
+/* SEVERAL_BLOCKS with a seed of its own. */
 static void submit(const char *token, int seed, char id[17]) {
     char text[sizeof SEVERAL_BLOCKS + 20], *answer;
     const char *rest = strstr(SEVERAL_BLOCKS, "\"seed\":7");
@@ -55,7 +55,7 @@ static void check_answer(const char *token, const char *method, const char *id, 
                          int status, const char *text) {
     char path[128], *answer;
     snprintf(path, sizeof path, "/v1/studies/%s%s", id, rest);
-    const char *body = strstr(rest, "extend") != NULL ? "{\"realisations\":12001}" : NULL;
+    const char *body = strstr(rest, "extend") != NULL ? "{\"realisations\":6001}" : NULL;
     int got = ask(token, method, path, body, &answer);
     if (got != status || strstr(answer, text) == NULL)
         fail_msg("%s %s of %s: %d %s", method, path, token, got, answer);

@@ -45,7 +45,7 @@ static int undisturbed(void **state) {
                                                       "study.json", NULL}),
                      0);
     expected = curves_of("one.db");
-    assert_int_equal(sql_integer("one.db", "SELECT count(*) FROM job_log"), 24);
+    assert_int_equal(sql_integer("one.db", "SELECT count(*) FROM job_log"), SEVERAL_BLOCKS_JOBS);
     assert_int_equal(in_vain("one.db"), 0);
     return 0;
 }
@@ -150,7 +150,8 @@ static void with_workers_killed(void **state) {
     print_message("blocks lost: %ld\n", lost);
     assert_int_equal(in_vain("killed.db"), lost);
     assert_int_equal(
-        sql_integer("killed.db", "SELECT sum(count) FROM job_log WHERE state = 'done'"), 24000);
+        sql_integer("killed.db", "SELECT sum(count) FROM job_log WHERE state = 'done'"),
+        1000 * SEVERAL_BLOCKS_JOBS);
 }
 
 /* A worker that is asked to end hands its block back: it is no attempt, nobody waits for a
@@ -199,10 +200,10 @@ static void over_http_with_the_server_killed(void **state) {
     assert_int_equal(process_wait(&server, 20), 0);
     check_same("http.db");
     assert_int_equal(sql_integer("http.db", "SELECT sum(count) FROM job_log WHERE state = 'done'"),
-                     24000);
+                     1000 * SEVERAL_BLOCKS_JOBS);
     /* Finished results are kept and sent again; only what a claim took whose answer was lost is in
      * vain, at most every block once. */
-    assert_true(in_vain("http.db") <= 24);
+    assert_true(in_vain("http.db") <= SEVERAL_BLOCKS_JOBS);
 }
 
 /* Waits until a server has done with all that a worker sent before it was killed: a block that was

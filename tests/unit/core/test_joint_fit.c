@@ -88,7 +88,7 @@ static bool inside(const struct interval *interval, double truth) {
 /* Of 95 % intervals at least 7 of 8 hold the truth in 94 % of all such tests, and 6 in 99.4 %. */
 static void holds_the_law(void **state) {
     (void)state;
-    const uint64_t surfaces = every_case() ? 100 : 8;
+    const uint64_t surfaces = every_case() ? 100 : 4;
     size_t hurst = 0, rolloff = 0, narrower = 0;
     for (uint64_t r = 0; r < surfaces; r++) {
         struct joint_patch patches[PATCHES];

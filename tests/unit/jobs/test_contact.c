@@ -240,8 +240,9 @@ static void malicious(void **state) {
     struct block_result good = run(runner, 0, 2);
     unsigned char *copy = malloc(good.size);
     assert_non_null(copy);
+    const uint64_t trials = cases_of(5000);
     size_t taken = 0;
-    for (int trial = 0; trial < 5000; trial++) {
+    for (uint64_t trial = 0; trial < trials; trial++) {
         struct block_result bad = good;
         memcpy(copy, good.data, good.size);
         bad.data = copy;
@@ -258,7 +259,7 @@ static void malicious(void **state) {
             merge_and_show(&bad);
         taken += status == 0;
     }
-    assert_true(taken > 300); /* the unchanged ones at least: their checksum is right */
+    assert_true(taken > trials / 16); /* the unchanged ones at least: their checksum is right */
     free(copy);
     block_result_clear(&good);
     merger_destroy(&merger);

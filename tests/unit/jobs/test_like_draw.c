@@ -13,6 +13,7 @@
 #include "schema/json/json.h"
 #include "schema/result/total.h"
 #include "tests/support/check.h"
+#include "tests/support/effort.h"
 #include "tests/support/scalar_of.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -201,7 +202,7 @@ static void draws_are_reproducible(void **state) {
         {LIKE_SPECTRUM_FIT, LIKE_HEIGHTS_GAUSSIAN, "{}"},
         {LIKE_SPECTRUM_FIT, LIKE_HEIGHTS_FIT, "{}"},
         {LIKE_SPECTRUM_TABLE, LIKE_HEIGHTS_QUANTILES, "{\"heights\": {\"law\": \"translation\"}}"}};
-    for (size_t w = 0; w < sizeof CASES / sizeof *CASES; w++) {
+    for (size_t w = 0; w < sizeof CASES / sizeof *CASES; w += case_step()) {
         const struct like_source source = source_of(CASES[w].spectrum, CASES[w].heights);
         cJSON *parameters = case_of(CASES[w].surface, &source);
         struct statistics_case one_case = {0};

@@ -151,7 +151,7 @@ static void check_curves(const struct ran *ran, const struct ran *own, const str
 
 static void curves_follow_from_the_pairs(void **state) {
     (void)state;
-    enum { COUNT = 40 };
+    enum { COUNT = 20 };
     static const char *const LAWS[] = {SURFACE ", " SKEWED "}",
                                        SURFACE ", " SKEWED ", \"law\": \"translation\"}"};
     for (size_t law = 0; law < 2; law++) {
