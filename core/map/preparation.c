@@ -538,13 +538,17 @@ static int check_holes(const struct height_map *map, const struct preparation *a
     return 0;
 }
 
+/* Formats that are converted are those of instruments, whose maps do not repeat; spikes inside can
+ * make the seam look smooth. */
 static void decide_boundary(struct preparation_record *record, enum asked_boundary asked) {
-    bool rough = seam_is_rough(&record->seam);
-    bool open =
-        asked == ASK_BOUNDARY_OPEN || (asked == ASK_BOUNDARY_AUTO && (rough || record->holes > 0));
+    bool instrument = preparation_text(record, "converted") != NULL;
+    bool open = record->holes > 0 || instrument || seam_is_rough(&record->seam);
+    if (asked != ASK_BOUNDARY_AUTO)
+        open = asked == ASK_BOUNDARY_OPEN;
     record->boundary = open ? BOUNDARY_OPEN : BOUNDARY_PERIODIC;
     record->boundary_by = asked != ASK_BOUNDARY_AUTO ? "option"
                           : record->holes > 0        ? "holes"
+                          : instrument               ? "instrument"
                                                      : "seam";
 }
 

@@ -52,7 +52,7 @@ struct asked_length {
 };
 
 /* auto: periodic where the map is whole and its seam no rougher than the roughest part inside
- * (F18.3), else open. */
+ * (F18.3), else open; of a file that was converted from an instrument's format, open. */
 enum asked_boundary { ASK_BOUNDARY_AUTO, ASK_BOUNDARY_OPEN, ASK_BOUNDARY_PERIODIC };
 /* auto: none of a periodic map, a plane of an open one. */
 enum asked_detrend {
@@ -98,7 +98,8 @@ enum { PREPARATION_STEPS_MOST = 28, PREPARATION_TEXT = 160 };
 /* The steps that were done, and what was measured in them. */
 struct preparation_record {
     enum boundary boundary;  /* how the map is to be treated */
-    const char *boundary_by; /* "option", "holes", "seam", "extension" or "window"; static */
+    const char *boundary_by; /* "option", "holes", "instrument", "seam", "extension" or "window";
+                                static */
     struct seam seam;        /* when the boundary was decided */
     double holes;            /* as a share of the points, before any were filled */
     enum detrend detrend;

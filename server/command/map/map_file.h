@@ -28,7 +28,8 @@ struct map_options {
     }
 #define MAP_BOUNDARY_ROW(type, member)                                                             \
     MAP_ROW(type, member, "boundary", OPTION_CHOICE, words.boundary, MAP_BOUNDARIES, "auto",       \
-            "whether the map repeats; auto: where its seam is no rougher than its inside")
+            "whether the map repeats; auto: where its seam is smooth, and Gwyddion did not "       \
+            "convert it")
 /* For commands that take the map as it is, and fit no surfaces to it. */
 #define MAP_EXTEND_ROW(type, member)                                                               \
     MAP_ROW(type, member, "extend", OPTION_OPTIONAL, words.extend, "[DRAW]", MAP_EXTEND,           \

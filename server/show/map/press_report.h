@@ -10,7 +10,7 @@ struct press_report {
     const struct map_press *press;
     const struct preparation_record *record;
     const char *boundary;    /* "open", "mirrored", "periodic" */
-    const char *boundary_by; /* "option", "seam", "holes", "window", "model" */
+    const char *boundary_by; /* "option", "seam", "instrument", "holes", "window", "model" */
     size_t model_count;
     const struct press_series *series; /* one a model */
     double modulus;                    /* E* in Pa; 0: not known */

@@ -246,6 +246,26 @@ static void holes_are_filled_where_asked(void **state) {
     height_map_clear(&map);
 }
 
+/* No instrument measures what repeats, however smooth the seam. */
+static void converted_maps_are_open(void **state) {
+    (void)state;
+    for (int converted = 0; converted < 2; converted++) {
+        struct height_map map;
+        struct preparation_record record = {0};
+        const struct preparation none = {0};
+        make(&map);
+        for (size_t i = 0; i < (size_t)NX * NY; i++)
+            map.z[i] =
+                sin(2 * M_PI * (double)(i % NX) / NX) + cos(2 * M_PI * (double)(i / NX) / NY);
+        if (converted)
+            preparation_note(&record, "converted", "by a program");
+        assert_int_equal(preparation_run(&record, &map, &none, NULL), 0);
+        assert_int_equal(record.boundary, converted ? BOUNDARY_OPEN : BOUNDARY_PERIODIC);
+        assert_string_equal(record.boundary_by, converted ? "instrument" : "seam");
+        height_map_clear(&map);
+    }
+}
+
 /* The S-filter is first; the L-filter takes out what it leaves of long waves. */
 static void filters_are_told(void **state) {
     (void)state;
@@ -566,6 +586,7 @@ int main(void) {
         cmocka_unit_test(a_crop_is_a_part_bit_for_bit),
         cmocka_unit_test(a_crop_beyond_the_map_is_refused),
         cmocka_unit_test(holes_are_filled_where_asked),
+        cmocka_unit_test(converted_maps_are_open),
         cmocka_unit_test(filters_are_told),
         cmocka_unit_test(holes_are_refused_with_a_word),
         cmocka_unit_test(a_window_is_told),
