@@ -2,6 +2,7 @@
 #include "core/cost.h"
 #include "core/surface/acf_spectrum.h"
 #include "jobs/surface/surface_parameters.h"
+#include "jobs/surface/surface_plateau.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -543,6 +544,8 @@ int surface_case_fill(struct surface_case *out, struct values *values,
         status = surface_law_fill(&out->translation, &out->spectrum, out->dimension, &out->options,
                                   values, err);
     if (status == 0 && values_fault_count(values) == before)
+        status = surface_plateau_fill(out, values, err);
+    if (status == 0 && values_fault_count(values) == before)
         *whole = out;
     else
         surface_case_clear(out);
@@ -577,6 +580,7 @@ void surface_case_clear(struct surface_case *surface) {
         face_clear(surface->counter);
     free(surface->counter);
     free(surface->counter_face);
+    free(surface->plateau);
     *surface = (struct surface_case){0};
 }
 
@@ -598,12 +602,18 @@ static struct surface_band band_of(const struct spectrum *spectrum, const struct
                                  dimension == 1 ? 0 : side_band(spectrum, grid->ny, grid->ly)};
 }
 
+static const struct spectrum *second_spectrum(const struct surface_case *surface) {
+    if (surface->plateau != NULL)
+        return &surface->plateau->spectrum;
+    return surface->counter != NULL ? &surface->counter->spectrum : NULL;
+}
+
 struct surface_band surface_case_band(const struct surface_case *surface) {
     struct surface_band band = band_of(&surface->spectrum, &surface->grid, surface->dimension);
-    if (surface->counter == NULL)
+    const struct spectrum *second = second_spectrum(surface);
+    if (second == NULL)
         return band;
-    struct surface_band other =
-        band_of(&surface->counter->spectrum, &surface->grid, surface->dimension);
+    struct surface_band other = band_of(second, &surface->grid, surface->dimension);
     return (struct surface_band){other.x > band.x ? other.x : band.x,
                                  other.y > band.y ? other.y : band.y};
 }
@@ -623,14 +633,18 @@ double surface_case_bytes(const struct surface_case *surface) {
     const struct grid *grid = &surface->grid;
     struct surface_band band = surface_case_band(surface);
     double bytes = generator_bytes(grid, band.x, band.y, &surface->options);
-    if (surface->counter == NULL)
+    if (surface->counter == NULL && surface->plateau == NULL)
         return bytes;
-    return bytes + generator_bytes(grid, band.x, band.y, &surface->counter->options) +
+    const struct surface_options *second =
+        surface->plateau != NULL ? &surface->plateau->options : &surface->counter->options;
+    return bytes + generator_bytes(grid, band.x, band.y, second) +
            generator_sum_bytes(grid, band.x, band.y);
 }
 
 double surface_case_nanoseconds(const struct surface_case *surface, const struct grid *grid) {
     double own = cost_generation(&surface->options, grid);
+    if (surface->plateau != NULL)
+        return own + cost_generation(&surface->plateau->options, grid);
     return surface->counter == NULL ? own : own + cost_generation(&surface->counter->options, grid);
 }
 
@@ -645,12 +659,22 @@ static struct height_moments add_heights(const struct height_moments *a, double 
     return out;
 }
 
+struct stratified_heights surface_case_stratified(const struct surface_case *surface) {
+    return stratified_heights_of(1, surface->plateau->rms_ratio, surface->plateau->offset);
+}
+
 int surface_case_heights(const struct surface_case *surface, struct height_moments *out,
                          bool *known, struct error *err) {
     const struct surface_case *counter = surface->counter;
     struct height_moments own, other;
     struct moments of_own, of_other;
     struct spectrum face = surface->spectrum;
+    if (surface->plateau != NULL) {
+        const struct stratified_heights heights = surface_case_stratified(surface);
+        *out = stratified_moments(&heights);
+        *known = true;
+        return 0;
+    }
     *known = heights_moments(&surface->options.heights, &own, NULL) == 0 &&
              (counter == NULL || heights_moments(&counter->options.heights, &other, NULL) == 0);
     if (*known && surface_case_gaussian(surface))
