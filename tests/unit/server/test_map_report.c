@@ -108,7 +108,8 @@ static void functional_values_by_name(void **state) {
         found = (struct named_values){0};
         noise_fill(&seed, POINTS, z);
         assert_int_equal(
-            map_functional_measure(&measured, &map, profile == 1 ? NULL : &hills, 7, NULL), 0);
+            map_functional_measure(&measured, &map, profile == 1 ? NULL : &hills, 7, NULL, NULL),
+            0);
         functional_report_values(&found, &measured, profile == 1);
         assert_int_equal(functional_report_table(&found, &measured, NULL), 0);
         for (size_t n = 0; n < 8; n++)
