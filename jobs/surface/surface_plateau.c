@@ -35,8 +35,8 @@ static bool is_asked(struct values *values) {
 static void check_valleys(const struct surface_case *valleys, struct values *values) {
     if (valleys->options.heights.type != HEIGHTS_GAUSSIAN)
         values_fault(values, "/surface/heights/distribution",
-                     "a stratified face is the lower of two Gaussian surfaces; allowed with "
-                     "/surface/plateau: \"gaussian\"");
+                     "a stratified face is the lower of two Gaussian surfaces; allowed beside a "
+                     "plateau: \"gaussian\"");
 }
 
 /* Reads how high the plateau is, by one of two rows. */
