@@ -534,6 +534,25 @@ static int read_surface(struct surface_case *out, struct values *values, struct 
     return status;
 }
 
+/* Reads the plateau of a stratified face, whose grid becomes that of both surfaces. */
+static int read_plateau(struct surface_case *out, struct values *values, struct error *err) {
+    static const char POINTS[] = "/surface/points_per_wavelength";
+    const struct valley_face valleys = {.dimension = out->dimension,
+                                        .lx = out->grid.lx,
+                                        .ly = out->grid.ly,
+                                        .length_ratio = out->length_ratio,
+                                        .wavelength_ratio = out->wavelength_ratio,
+                                        .spectrum = &out->spectrum,
+                                        .options = &out->options};
+    int status = surface_plateau_fill(&out->plateau, &valleys, values, err);
+    if (status != 0 || out->plateau == NULL)
+        return status;
+    out->spectrum.plateau = out->plateau;
+    out->heights_name = "stratified";
+    surface_case_grid(out, values_number(values, POINTS), POINTS, values, &out->grid);
+    return 0;
+}
+
 int surface_case_fill(struct surface_case *out, struct values *values,
                       const struct surface_case **whole, struct error *err) {
     size_t before = values_fault_count(values);
@@ -544,7 +563,7 @@ int surface_case_fill(struct surface_case *out, struct values *values,
         status = surface_law_fill(&out->translation, &out->spectrum, out->dimension, &out->options,
                                   values, err);
     if (status == 0 && values_fault_count(values) == before)
-        status = surface_plateau_fill(out, values, err);
+        status = read_plateau(out, values, err);
     if (status == 0 && values_fault_count(values) == before)
         *whole = out;
     else
@@ -602,15 +621,9 @@ static struct surface_band band_of(const struct spectrum *spectrum, const struct
                                  dimension == 1 ? 0 : side_band(spectrum, grid->ny, grid->ly)};
 }
 
-static const struct spectrum *second_spectrum(const struct surface_case *surface) {
-    if (surface->plateau != NULL)
-        return &surface->plateau->spectrum;
-    return surface->counter != NULL ? &surface->counter->spectrum : NULL;
-}
-
 struct surface_band surface_case_band(const struct surface_case *surface) {
     struct surface_band band = band_of(&surface->spectrum, &surface->grid, surface->dimension);
-    const struct spectrum *second = second_spectrum(surface);
+    const struct spectrum *second = surface_case_second_spectrum(surface);
     if (second == NULL)
         return band;
     struct surface_band other = band_of(second, &surface->grid, surface->dimension);
@@ -633,19 +646,17 @@ double surface_case_bytes(const struct surface_case *surface) {
     const struct grid *grid = &surface->grid;
     struct surface_band band = surface_case_band(surface);
     double bytes = generator_bytes(grid, band.x, band.y, &surface->options);
-    if (surface->counter == NULL && surface->plateau == NULL)
+    const struct surface_options *second = surface_case_second_options(surface);
+    if (second == NULL)
         return bytes;
-    const struct surface_options *second =
-        surface->plateau != NULL ? &surface->plateau->options : &surface->counter->options;
     return bytes + generator_bytes(grid, band.x, band.y, second) +
            generator_sum_bytes(grid, band.x, band.y);
 }
 
 double surface_case_nanoseconds(const struct surface_case *surface, const struct grid *grid) {
     double own = cost_generation(&surface->options, grid);
-    if (surface->plateau != NULL)
-        return own + cost_generation(&surface->plateau->options, grid);
-    return surface->counter == NULL ? own : own + cost_generation(&surface->counter->options, grid);
+    const struct surface_options *second = surface_case_second_options(surface);
+    return second == NULL ? own : own + cost_generation(second, grid);
 }
 
 /* Adds the cumulants of independent heights: moments of their sum. */
@@ -657,10 +668,6 @@ static struct height_moments add_heights(const struct height_moments *a, double 
     out.skewness = a->skewness * pow(x, 3) + b->skewness * pow(y, 3);
     out.kurtosis = 3 + (a->kurtosis - 3) * pow(x, 4) + (b->kurtosis - 3) * pow(y, 4);
     return out;
-}
-
-struct stratified_heights surface_case_stratified(const struct surface_case *surface) {
-    return stratified_heights_of(1, surface->plateau->rms_ratio, surface->plateau->offset);
 }
 
 int surface_case_heights(const struct surface_case *surface, struct height_moments *out,

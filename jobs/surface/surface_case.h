@@ -132,7 +132,24 @@ static inline double surface_case_times_shortest(const struct surface_case *surf
 }
 
 /* Returns the law of the heights of a stratified face, in RMS heights of its valleys. */
-struct stratified_heights surface_case_stratified(const struct surface_case *surface);
+static inline struct stratified_heights
+surface_case_stratified(const struct surface_case *surface) {
+    return stratified_heights_of(1, surface->plateau->rms_ratio, surface->plateau->offset);
+}
+/* Return the spectrum and the options of the plateau or the counter face; NULL: there is neither.
+ */
+static inline const struct spectrum *
+surface_case_second_spectrum(const struct surface_case *surface) {
+    if (surface->plateau != NULL)
+        return &surface->plateau->spectrum;
+    return surface->counter != NULL ? &surface->counter->spectrum : NULL;
+}
+static inline const struct surface_options *
+surface_case_second_options(const struct surface_case *surface) {
+    if (surface->plateau != NULL)
+        return &surface->plateau->options;
+    return surface->counter != NULL ? &surface->counter->options : NULL;
+}
 
 /* Return the peak bytes of a generator of the surface, with heights on its grid, and the
  * nanoseconds of a point, by the tolerance on a grid where it is not NULL. */

@@ -1,5 +1,6 @@
 #include "jobs/surface/surface_plateau.h"
-#include "core/surface/plateau_face.h"
+#include "core/surface/spectrum.h"
+#include <math.h>
 #include <stdlib.h>
 
 static const double ROUNDING = 1e-9; /* relative: of numbers that should be equal */
@@ -32,8 +33,8 @@ static bool is_asked(struct values *values) {
 }
 
 /* What the theory of stratified faces takes for granted of the surface with the valleys. */
-static void check_valleys(const struct surface_case *valleys, struct values *values) {
-    if (valleys->options.heights.type != HEIGHTS_GAUSSIAN)
+static void check_valleys(const struct valley_face *valleys, struct values *values) {
+    if (valleys->options->heights.type != HEIGHTS_GAUSSIAN)
         values_fault(values, "/surface/heights/distribution",
                      "a stratified face is the lower of two Gaussian surfaces; allowed beside a "
                      "plateau: \"gaussian\"");
@@ -54,9 +55,9 @@ static double read_offset(double rms_ratio, struct values *values) {
     return isnan(share) ? offset : stratified_offset(rms_ratio, share);
 }
 
-static void read_lay(const struct surface_case *valleys, double length_ratio,
+static void read_lay(const struct valley_face *valleys, double length_ratio,
                      struct spectrum *spectrum, struct values *values) {
-    const double anisotropy = number_or(values, ANISOTROPY, valleys->spectrum.anisotropy);
+    const double anisotropy = number_or(values, ANISOTROPY, valleys->spectrum->anisotropy);
     const double degrees = values_number(values, LAY_ANGLE);
     spectrum->anisotropy = anisotropy;
     if (anisotropy > 1 && valleys->dimension == 1)
@@ -67,14 +68,14 @@ static void read_lay(const struct surface_case *valleys, double length_ratio,
                      "long",
                      anisotropy, length_ratio);
     if (anisotropy > 1)
-        spectrum->lay_angle = isnan(degrees) ? valleys->spectrum.lay_angle : degrees * M_PI / 180;
+        spectrum->lay_angle = isnan(degrees) ? valleys->spectrum->lay_angle : degrees * M_PI / 180;
 }
 
-static void read_spectrum(const struct surface_case *valleys, struct spectrum *spectrum,
+static void read_spectrum(const struct valley_face *valleys, struct spectrum *spectrum,
                           struct values *values) {
-    const bool affine = valleys->spectrum.type == SPECTRUM_SELF_AFFINE;
+    const bool affine = valleys->spectrum->type == SPECTRUM_SELF_AFFINE;
     const double none = (double)NAN;
-    const double hurst = number_or(values, HURST, affine ? valleys->spectrum.hurst : none);
+    const double hurst = number_or(values, HURST, affine ? valleys->spectrum->hurst : none);
     const double ratio =
         number_or(values, WAVELENGTH_RATIO, affine ? valleys->wavelength_ratio : none);
     const double rolloff = number_or(values, ROLLOFF_RATIO, 1);
@@ -87,7 +88,7 @@ static void read_spectrum(const struct surface_case *valleys, struct spectrum *s
         values_fault(values, ROLLOFF_RATIO,
                      "%g is more than wavelength_ratio, %g: the roll-off lies within the band",
                      rolloff, ratio);
-    const double longest = valleys->grid.lx / length_ratio;
+    const double longest = valleys->lx / length_ratio;
     *spectrum = (struct spectrum){.type = SPECTRUM_SELF_AFFINE,
                                   .hurst = hurst,
                                   .wavelength_long = longest,
@@ -97,41 +98,43 @@ static void read_spectrum(const struct surface_case *valleys, struct spectrum *s
     read_lay(valleys, length_ratio, spectrum, values);
 }
 
-/* Makes sure that the plateau has waves in the cell, on the grid of both. */
-static int check_band(const struct surface_case *face, struct values *values, struct error *err) {
+/* Makes sure that the plateau has waves in the cell, by a grid of as few points as hold its band.
+ */
+static int check_band(const struct valley_face *valleys, const struct spectrum *spectrum,
+                      struct values *values, struct error *err) {
     struct moments moments;
     struct error reason = {0};
-    struct grid coarse = face->grid; /* as few points as hold the band */
-    const struct surface_band band = surface_case_band(face);
-    coarse.nx = 2 * band.x + 2 < coarse.nx ? 2 * band.x + 2 : coarse.nx;
-    coarse.ny = face->dimension == 1 ? 1 : 2 * band.y + 2 < coarse.ny ? 2 * band.y + 2 : coarse.ny;
-    int status = spectrum_moments(&face->plateau->spectrum, &coarse, &moments, &reason);
+    const double waves = 1 / spectrum->wavelength_short;
+    const struct grid grid = {
+        2 * (size_t)(valleys->lx * waves * (1 + ROUNDING)) + 2,
+        valleys->dimension == 1 ? 1 : 2 * (size_t)(valleys->ly * waves * (1 + ROUNDING)) + 2,
+        valleys->lx, valleys->ly};
+    int status = spectrum_moments(spectrum, &grid, &moments, &reason);
     if (status == ERROR_INPUT)
         values_fault(values, WAVELENGTH_RATIO, "%s", reason.text);
     return status == 0 || status == ERROR_INPUT ? 0 : error_set(err, status, "%s", reason.text);
 }
 
-int surface_plateau_fill(struct surface_case *out, struct values *values, struct error *err) {
+int surface_plateau_fill(struct plateau_face **out, const struct valley_face *valleys,
+                         struct values *values, struct error *err) {
     const size_t before = values_fault_count(values);
+    *out = NULL;
     if (!is_asked(values))
         return 0;
     struct plateau_face face = {.rms_ratio = values_number(values, RMS_RATIO),
-                                .options = out->options};
-    check_valleys(out, values);
+                                .options = *valleys->options};
+    check_valleys(valleys, values);
     face.offset = read_offset(face.rms_ratio, values);
-    read_spectrum(out, &face.spectrum, values);
-    if (values_fault_count(values) != before)
-        return 0;
-    out->plateau = array_create(1, sizeof *out->plateau);
-    if (out->plateau == NULL)
+    read_spectrum(valleys, &face.spectrum, values);
+    int status =
+        values_fault_count(values) == before ? check_band(valleys, &face.spectrum, values, err) : 0;
+    if (status != 0 || values_fault_count(values) != before)
+        return status;
+    *out = array_create(1, sizeof **out);
+    if (*out == NULL)
         return error_memory(err, sizeof face, "a plateau");
-    *out->plateau = face;
-    out->spectrum.plateau = out->plateau;
-    out->heights_name = "stratified";
-    if (!surface_case_grid(out, values_number(values, "/surface/points_per_wavelength"),
-                           "/surface/points_per_wavelength", values, &out->grid))
-        return 0;
-    return check_band(out, values, err);
+    **out = face;
+    return 0;
 }
 
 void surface_plateau_check_like(struct values *values) {

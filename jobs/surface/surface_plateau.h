@@ -4,11 +4,23 @@
 #ifndef RUGO_JOBS_SURFACE_SURFACE_PLATEAU_H
 #define RUGO_JOBS_SURFACE_SURFACE_PLATEAU_H
 
-#include "jobs/surface/surface_case.h"
+#include "core/surface/plateau_face.h"
+#include "schema/study/values.h"
 
-/* Adds the plateau that the values ask for to a surface without faults; without one nothing is
- * done. What does not fit is a fault. ERROR_MEMORY alone. */
-int surface_plateau_fill(struct surface_case *out, struct values *values, struct error *err);
+/* The surface with the valleys, which has no fault. */
+struct valley_face {
+    int dimension;
+    double lx, ly; /* of the cell, in lambda_s */
+    double length_ratio, wavelength_ratio;
+    const struct spectrum *spectrum;
+    const struct surface_options *options;
+};
+
+/* Makes the plateau that the values ask for, with wavelengths in lambda_s of the valleys, for the
+ * caller to free. *out is NULL where none is asked for, and where something does not fit, which is
+ * a fault. ERROR_MEMORY alone. */
+int surface_plateau_fill(struct plateau_face **out, const struct valley_face *valleys,
+                         struct values *values, struct error *err);
 /* Adds a fault where a stratified face is to be like a measured one; of kinds with LIKE_PARAMETERS.
  */
 void surface_plateau_check_like(struct values *values);
