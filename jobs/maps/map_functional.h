@@ -19,8 +19,8 @@ struct map_functional {
     struct ten_points ten_points;   /* of surfaces alone */
     struct profile_spacing spacing; /* of profiles alone */
 };
-/* hills: those of areal_measure(), with Sz; NULL for profiles. chance: of the map; NULL: no errors
- * are wanted. ERROR_MEMORY. */
+/* hills: those of areal_measure(), with Sz; NULL for profiles. map_chance: of the map, NULL where
+ * no errors are wanted. ERROR_MEMORY. */
 int map_functional_measure(struct map_functional *out, const struct measured_map *map,
                            const struct summit_list *hills, double sz,
                            const struct map_chance *chance, struct error *err);

@@ -13,7 +13,7 @@ struct functional_errors {
     struct plateau_law plateau; /* NaN where the map has none, or only just */
 };
 
-/* map: of the material curve; chance: of the map. All errors are NaN where chance has none. Time:
+/* map: of the material curve, and of map_chance. All errors are NaN where that knows none. Time:
  * that of some 40 sorted curves of at most 65536 heights. ERROR_MEMORY. */
 int functional_errors_measure(struct functional_errors *out, const struct measured_map *map,
                               const struct material_curve *curve, const struct map_chance *chance,

@@ -87,6 +87,11 @@ static void faults(void **state) {
         {PRESSED(PROFILE ", \"heights\": {\"distribution\": \"weibull_min\", \"shape\": 2}", STRATA,
                  ""),
          "/surface/heights/distribution", "two Gaussian surfaces"},
+        {PRESSED(PROFILE, STRATA ", \"length_ratio\": 4.5, \"wavelength_ratio\": 1.05", ""),
+         "/surface/plateau/length_ratio", "no wave"},
+        {PRESSED("\"hurst\": 0.8, \"wavelength_ratio\": 4",
+                 STRATA ", \"length_ratio\": 1e5, \"wavelength_ratio\": 1e5", ""),
+         "/surface/points_per_wavelength", "too large"},
         {PRESSED(PROFILE, STRATA, ", \"levels\": [3, 8]"), "/contact/levels", "has kinks"},
         {PRESSED(PROFILE, STRATA, ", \"levels\": [8, 16]"), "/contact/levels", "has kinks"},
         {FACE("\"dimension\": 1, \"wavelength_ratio\": 4, \"spectrum\": {\"type\": "
