@@ -35,11 +35,12 @@ struct height_moments stratified_moments(const struct stratified_heights *height
     const double valley = heights->valley, plateau = heights->plateau, offset = heights->offset;
     const double low = fmin(-REACH * valley, offset - REACH * plateau);
     const double high = fmin(REACH * valley, offset + REACH * plateau);
-    const double count = ceil((high - low) / (STEP * fmin(valley, plateau)));
-    const double step = (high - low) / count;
+    const size_t count = (size_t)ceil((high - low) / (STEP * fmin(valley, plateau)));
+    const double step = (high - low) / (double)count;
     double third = 0, fourth = 0;
-    for (double n = 0; n <= count; n++) {
-        const double z = low + n * step, first = z / valley, second = (z - offset) / plateau;
+    for (size_t n = 0; n <= count; n++) {
+        const double z = low + (double)n * step, first = z / valley,
+                     second = (z - offset) / plateau;
         const double p = density(first) / valley * gsl_cdf_ugaussian_Q(second) +
                          density(second) / plateau * gsl_cdf_ugaussian_Q(first);
         const double about = (z - heights->mean) / heights->deviation;

@@ -145,6 +145,8 @@ static void stratified_faces_have_two_laws(void **state) {
         if (stratified == 1) {
             check_relative(named_number(&found, "functional", "Spq"), 1, 0.2);
             check_relative(named_number(&found, "functional", "Svq"), 8, 0.2);
+            assert_true(named_number(&found, "functional", "Spq_error") > 0);
+            assert_true(named_number(&found, "functional", "Sk_error") > 0);
         } else
             assert_true(isnan(named_number(&found, "functional", "Spq")));
         named_values_clear(&found);
