@@ -18,7 +18,7 @@ enum random_stream {
     STREAM_EXTENSION_NOISE = 5
 };
 
-enum { COUNTER_BIT = 60, SUBMAP_BIT = 59 };
+enum { COUNTER_BIT = 60, SUBMAP_BIT = 59, PLATEAU_BIT = 58 };
 
 /* Selects random numbers. Plain data that may be copied. */
 struct random_key {
@@ -27,7 +27,8 @@ struct random_key {
                           the three highest bits, and a number from bit 40 on, for surfaces beside
                           the realisations; with the fourth highest, COUNTER_BIT, for the counter
                           faces of all these; with the fifth, SUBMAP_BIT, for surfaces of which
-                          sub-maps stand for a measured one */
+                          sub-maps stand for a measured one; with the sixth, PLATEAU_BIT, for the
+                          plateaus of stratified faces */
     uint64_t realisation;
 };
 

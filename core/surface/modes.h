@@ -5,12 +5,14 @@
 
 #include "core/rugo_lists.h"
 #include "core/surface/grid.h"
+#include <stdbool.h>
 
 #define SPECTRUM_TYPE(type, name, value) SPECTRUM_##type,
 enum spectrum_type { RUGO_SPECTRA(SPECTRUM_TYPE) };
 #undef SPECTRUM_TYPE
 struct translation;
 struct counter_face;
+struct plateau_face;
 enum spectrum_scale {
     SCALE_NONE,       /* m0 = 1 */
     SCALE_RMS_HEIGHT, /* sqrt(m00) = value */
@@ -43,6 +45,9 @@ struct spectrum {
     /* A second face (counter_face.h), borrowed: modes and moments are those of the sum of both, and
      * the scale above is of the first alone. NULL: there is one face. */
     const struct counter_face *counter;
+    /* The plateau of a stratified face (plateau_face.h), borrowed: the scale above is of the
+     * valleys alone. NULL: the face is of one surface. */
+    const struct plateau_face *plateau;
 };
 
 /* The discrete spectrum on a grid: power P(mx, my) = |Z|^2, mean square height = sum over all modes
@@ -58,6 +63,9 @@ struct modes {
      * variance, and the surface has the RMS height below. Borrowed. */
     const struct translation *translation;
     double height;
+    /* Of a stratified face powers are means over those of both surfaces, weighted by their shares
+     * of the face: slopes are those of the face (F18.60), and `height` is its RMS height. */
+    bool stratified;
 };
 
 static inline double modes_power(const struct modes *modes, size_t mx, long my) {

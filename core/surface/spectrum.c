@@ -1,6 +1,7 @@
 #include "core/surface/spectrum.h"
 #include "core/sum.h"
 #include "core/surface/counter_face.h"
+#include "core/surface/plateau_face.h"
 #include "core/surface/spectrum_density.h"
 #include "core/surface/transform.h"
 #include "core/surface/translation/translation.h"
@@ -315,12 +316,13 @@ static int face_modes_create(struct modes **out, const struct spectrum *spectrum
     return 0;
 }
 
-static void powers_add(struct modes *sum, const struct modes *face) {
+static void powers_add(struct modes *sum, const struct modes *face, double weight) {
     long mode_y = (long)face->mode_y;
     size_t rows = 2 * sum->mode_y + 1;
     for (size_t mx = 0; mx <= face->mode_x; mx++)
         for (long my = -mode_y; my <= mode_y; my++)
-            sum->power[mx * rows + (size_t)(my + (long)sum->mode_y)] += modes_power(face, mx, my);
+            sum->power[mx * rows + (size_t)(my + (long)sum->mode_y)] +=
+                weight * modes_power(face, mx, my);
 }
 
 static double power_of(const struct modes *modes) {
@@ -329,9 +331,9 @@ static double power_of(const struct modes *modes) {
     return moments.m00;
 }
 
-/* Makes the modes of the sum of two faces on the same grid. */
-static int modes_add(struct modes **out, const struct modes *one, const struct modes *other,
-                     struct error *err) {
+/* Makes the modes of a weighted sum of two faces on the same grid. */
+static int modes_add(struct modes **out, const struct modes *one, double weight,
+                     const struct modes *other, double other_weight, struct error *err) {
     struct modes *sum = array_create(1, sizeof *sum);
     if (sum == NULL)
         return error_memory(err, sizeof *sum, "a discrete spectrum");
@@ -344,24 +346,64 @@ static int modes_add(struct modes **out, const struct modes *one, const struct m
         modes_destroy(&sum);
         return error_memory(err, count * sizeof(double), "a discrete spectrum");
     }
-    powers_add(sum, one);
-    powers_add(sum, other);
+    powers_add(sum, one, weight);
+    powers_add(sum, other, other_weight);
     for (size_t a = 0; a < count; a++)
         if (sum->power[a] > 0)
             sum->count += modes_weight(&sum->grid, a / rows);
-    double power = power_of(one), more = power_of(other);
+    double power = weight * power_of(one), more = other_weight * power_of(other);
     sum->clipped = (one->clipped * power + other->clipped * more) / (power + more);
     *out = sum;
     return 0;
 }
 
+struct spectrum plateau_spectrum(const struct spectrum *valleys, double rms_height) {
+    struct spectrum spectrum = valleys->plateau->spectrum;
+    spectrum.scale = SCALE_RMS_HEIGHT;
+    spectrum.scale_value = valleys->plateau->rms_ratio * rms_height;
+    return spectrum;
+}
+
+/* Makes the modes of a stratified face. */
+static int stratified_modes_create(struct modes **out, const struct spectrum *spectrum,
+                                   const struct grid *grid, struct error *err) {
+    struct modes *valleys = NULL, *plateau = NULL;
+    if (spectrum->translation != NULL || spectrum->counter != NULL ||
+        spectrum->plateau->spectrum.translation != NULL ||
+        spectrum->plateau->spectrum.counter != NULL || spectrum->plateau->spectrum.plateau != NULL)
+        return error_set(err, ERROR_INPUT,
+                         "a stratified face with a translated surface, or a third one; allowed: "
+                         "two that are not translated");
+    int status = face_modes_create(&valleys, spectrum, grid, err);
+    if (status != 0)
+        return status;
+    const double rms = sqrt(power_of(valleys));
+    const struct spectrum second = plateau_spectrum(spectrum, rms);
+    const struct stratified_heights heights =
+        stratified_heights_of(rms, second.scale_value, spectrum->plateau->offset * rms);
+    status = face_modes_create(&plateau, &second, grid, err);
+    if (status == 0)
+        status =
+            modes_add(out, valleys, heights.valley_share, plateau, 1 - heights.valley_share, err);
+    if (status == 0) {
+        (*out)->stratified = true;
+        (*out)->height = heights.deviation;
+    }
+    modes_destroy(&valleys);
+    modes_destroy(&plateau);
+    return status;
+}
+
 int modes_create(struct modes **out, const struct spectrum *spectrum, const struct grid *grid,
                  struct error *err) {
+    if (spectrum->plateau != NULL)
+        return stratified_modes_create(out, spectrum, grid, err);
     if (spectrum->counter == NULL)
         return face_modes_create(out, spectrum, grid, err);
     const struct spectrum *counter = &spectrum->counter->spectrum;
     struct modes *one = NULL, *other = NULL;
-    if (spectrum->translation != NULL || counter->translation != NULL || counter->counter != NULL)
+    if (spectrum->translation != NULL || counter->translation != NULL || counter->counter != NULL ||
+        counter->plateau != NULL)
         return error_set(err, ERROR_INPUT,
                          "two faces with a translated one, or a third one; allowed: two that are "
                          "not translated");
@@ -369,7 +411,7 @@ int modes_create(struct modes **out, const struct spectrum *spectrum, const stru
     if (status == 0)
         status = face_modes_create(&other, counter, grid, err);
     if (status == 0)
-        status = modes_add(out, one, other, err);
+        status = modes_add(out, one, 1, other, 1, err);
     modes_destroy(&one);
     modes_destroy(&other);
     return status;
@@ -425,6 +467,10 @@ void modes_moments(const struct modes *modes, struct moments *out) {
     modes_gaussian_moments(modes, out);
     if (modes->translation != NULL)
         *out = translation_moments(modes->translation, out, modes->height);
+    if (modes->stratified) {
+        out->m00 = modes->height * modes->height;
+        moments_derive(out, grid_is_profile(&modes->grid));
+    }
 }
 
 int spectrum_moments(const struct spectrum *spectrum, const struct grid *grid, struct moments *out,

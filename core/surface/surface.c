@@ -1,6 +1,7 @@
 #include "core/surface/surface.h"
 #include "core/surface/counter_face.h"
 #include "core/surface/nongaussian.h"
+#include "core/surface/plateau_face.h"
 #include "core/surface/surface_options.h"
 #include "core/surface/transform.h"
 #include "core/surface/translation/translation.h"
@@ -8,13 +9,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The counter face of a surface, and the sum of both. */
+/* The counter face of a surface, and the sum of both; or the plateau of a stratified face, and the
+ * lower of both. */
 struct sum_of_faces {
     struct generator *counter; /* owned, as all below */
     struct modes *modes;       /* prescribed */
-    struct modes *drawn;       /* of the last run */
+    struct modes *drawn;       /* of the last run; NULL of a stratified face, as the next */
     struct transform *transform;
-    double *z; /* of the counter face */
+    double *z;                         /* of the second face */
+    struct stratified_heights heights; /* of a stratified face */
 };
 
 struct generator {
@@ -86,6 +89,7 @@ static int face_create(struct generator **out, const struct spectrum *spectrum,
     bool iterated = surface_is_iterated(options);
     struct spectrum face = *spectrum;
     face.counter = NULL;
+    face.plateau = NULL;
     int status = modes_create(&g->modes, &face, grid, err);
     if (status == 0)
         status = transform_create(&g->transform, grid, g->modes->mode_x, g->modes->mode_y, err);
@@ -119,10 +123,25 @@ static void face_destroy(struct generator **generator) {
     *generator = NULL;
 }
 
+/* Adds the plateau of the spectrum. */
+static int stratified_create(struct sum_of_faces *sum, const struct modes *valleys,
+                             const struct spectrum *spectrum, const struct grid *grid,
+                             struct error *err) {
+    struct moments own;
+    modes_moments(valleys, &own);
+    const struct spectrum plateau = plateau_spectrum(spectrum, own.rms_height);
+    sum->heights = stratified_heights_of(own.rms_height, plateau.scale_value,
+                                         spectrum->plateau->offset * own.rms_height);
+    int status = modes_create(&sum->modes, spectrum, grid, err);
+    return status == 0
+               ? face_create(&sum->counter, &plateau, grid, &spectrum->plateau->options, err)
+               : status;
+}
+
 /* Adds the counter face of the spectrum. */
-static int sum_create(struct sum_of_faces *sum, const struct spectrum *spectrum,
-                      const struct grid *grid, const struct surface_options *options,
-                      struct error *err) {
+static int counter_create(struct sum_of_faces *sum, const struct spectrum *spectrum,
+                          const struct grid *grid, const struct surface_options *options,
+                          struct error *err) {
     struct surface_options counter = spectrum->counter->options;
     counter.stop = options->stop;
     counter.stop_context = options->stop_context;
@@ -132,13 +151,24 @@ static int sum_create(struct sum_of_faces *sum, const struct spectrum *spectrum,
     if (status == 0)
         status =
             transform_create(&sum->transform, grid, sum->modes->mode_x, sum->modes->mode_y, err);
-    if (status == 0)
-        status = face_create(&sum->counter, &spectrum->counter->spectrum, grid, &counter, err);
+    return status == 0
+               ? face_create(&sum->counter, &spectrum->counter->spectrum, grid, &counter, err)
+               : status;
+}
+
+static int sum_create(struct generator *g, const struct spectrum *spectrum, const struct grid *grid,
+                      const struct surface_options *options, struct error *err) {
+    struct sum_of_faces *sum = array_create(1, sizeof *sum);
+    if (sum == NULL)
+        return error_memory(err, sizeof *sum, "a second face");
+    g->sum = sum;
+    int status = spectrum->plateau != NULL ? stratified_create(sum, g->modes, spectrum, grid, err)
+                                           : counter_create(sum, spectrum, grid, options, err);
     if (status != 0)
         return status;
     sum->z = array_create(grid_points(grid), sizeof *sum->z);
     return sum->z != NULL ? 0
-                          : error_memory(err, grid_points(grid) * sizeof *sum->z, "a counter face");
+                          : error_memory(err, grid_points(grid) * sizeof *sum->z, "a second face");
 }
 
 static void sum_destroy(struct sum_of_faces **sum) {
@@ -159,11 +189,8 @@ int generator_create(struct generator **out, const struct spectrum *spectrum,
                      struct error *err) {
     struct generator *g = NULL;
     int status = face_create(&g, spectrum, grid, options, err);
-    if (status == 0 && spectrum->counter != NULL) {
-        g->sum = array_create(1, sizeof *g->sum);
-        status = g->sum != NULL ? sum_create(g->sum, spectrum, grid, options, err)
-                                : error_memory(err, sizeof *g->sum, "a counter face");
-    }
+    if (status == 0 && (spectrum->counter != NULL || spectrum->plateau != NULL))
+        status = sum_create(g, spectrum, grid, options, err);
     if (status != 0)
         generator_destroy(&g);
     else
@@ -182,7 +209,9 @@ int generator_set_team(struct generator *generator, struct team *team, struct er
     int status = transform_set_team(generator->transform, team, err);
     if (status == 0 && sum != NULL)
         status = transform_set_team(sum->counter->transform, team, err);
-    return status == 0 && sum != NULL ? transform_set_team(sum->transform, team, err) : status;
+    return status == 0 && sum != NULL && sum->transform != NULL
+               ? transform_set_team(sum->transform, team, err)
+               : status;
 }
 
 const struct modes *generator_modes(const struct generator *generator) {
@@ -191,7 +220,7 @@ const struct modes *generator_modes(const struct generator *generator) {
 
 const struct modes *generator_drawn(const struct generator *generator) {
     if (generator->sum != NULL)
-        return generator->sum->drawn;
+        return generator->sum->drawn != NULL ? generator->sum->drawn : generator->sum->modes;
     return generator->drawn != NULL ? generator->drawn : generator->modes;
 }
 
@@ -359,6 +388,17 @@ static int face_run(struct generator *g, struct random_key key, double *z,
     return 0;
 }
 
+/* Makes a stratified face: adds the plateau's heights to those of the valleys in z. */
+static int stratified_run(struct sum_of_faces *sum, size_t points, struct random_key key, double *z,
+                          struct error *err) {
+    const double offset = sum->heights.offset, mean = sum->heights.mean;
+    key.sequence ^= UINT64_C(1) << PLATEAU_BIT;
+    int status = face_run(sum->counter, key, sum->z, NULL, err);
+    for (size_t i = 0; i < points && status == 0; i++)
+        z[i] = fmin(z[i], sum->z[i] + offset) - mean;
+    return status;
+}
+
 /* Returns the report of both faces: iterations of both, and of the rest the larger of each. */
 static struct surface_report report_of_both(const struct surface_report *a,
                                             const struct surface_report *b) {
@@ -375,10 +415,16 @@ static struct surface_report report_of_both(const struct surface_report *a,
 int generator_run(struct generator *g, struct random_key key, double *z,
                   struct surface_report *report, struct error *err) {
     struct sum_of_faces *sum = g->sum;
-    struct surface_report own, counter;
+    struct surface_report own = {0}, counter;
     if (sum == NULL)
         return face_run(g, key, z, report, err);
     int status = face_run(g, key, z, &own, err);
+    if (sum->transform == NULL) {
+        if (report != NULL)
+            *report = own;
+        return status == 0 ? stratified_run(sum, grid_points(&g->modes->grid), key, z, err)
+                           : status;
+    }
     key.sequence ^= UINT64_C(1) << COUNTER_BIT;
     if (status == 0)
         status = face_run(sum->counter, key, sum->z, &counter, err);

@@ -17,7 +17,8 @@
 struct generator;
 
 /* Copies its arguments (table spectra are sampled here). With a counter face (counter_face.h) of
- * the spectrum surfaces are the sum of both faces. ERROR_INPUT, ERROR_MEMORY. */
+ * the spectrum surfaces are the sum of both faces, with a plateau (plateau_face.h) the lower of
+ * both about its mean. ERROR_INPUT, ERROR_MEMORY. */
 int generator_create(struct generator **out, const struct spectrum *spectrum,
                      const struct grid *grid, const struct surface_options *options,
                      struct error *err);
@@ -29,8 +30,9 @@ void generator_destroy(struct generator **generator);
  * surface, or with random amplitudes that of the mean. */
 const struct modes *generator_modes(const struct generator *generator);
 /* Returns the spectrum that was drawn for the last run: the prescribed one, or with random
- * amplitudes or a counter face its own. The surface has it, to rounding, unless heights were kept
- * in its place (KEEP_HEIGHTS). Lives as long, and changes with the next run. */
+ * amplitudes or a counter face its own; of a stratified face, the prescribed one. The surface has
+ * it, to rounding, unless heights were kept in its place (KEEP_HEIGHTS). Lives as long, and changes
+ * with the next run. */
 const struct modes *generator_drawn(const struct generator *generator);
 /* Peak bytes of a generator of one face with these settings, including the caller's z of
  * grid_points doubles; and those that a generator of two faces takes beside both, with all modes of

@@ -8,6 +8,7 @@
 #include "jobs/surface/other_law.h"
 #include "jobs/surface/surface_counter.h"
 #include "jobs/surface/surface_parameters.h"
+#include "jobs/surface/surface_plateau.h"
 #include "jobs/target.h"
 #include <math.h>
 #include <stdlib.h>
@@ -592,8 +593,17 @@ static bool level_make(struct contact_level *out, const struct contact_case *one
     bool part = own->nx % grid.nx == 0 && own->ny % grid.ny == 0;
     *out = (struct contact_level){
         .points = points, .grid = grid, .stride = part ? own->nx / grid.nx : 0};
-    if (part || surface_band_fits(one_case->band, &grid))
+    const bool stratified = one_case->surface.plateau != NULL;
+    if (part || (!stratified && surface_band_fits(one_case->band, &grid)))
         return true;
+    if (stratified) {
+        values_fault(values, path,
+                     "%g points a shortest wave, %zu in all: a stratified face has kinks, and its "
+                     "meshes are every n-th of its own %zu points; allowed: levels that divide "
+                     "points_per_wavelength, the finest being equal to it",
+                     points, grid.nx, own->nx);
+        return false;
+    }
     values_fault(
         values, path,
         "%g points a shortest wave, %zu in all, neither hold the %zu waves of the surface nor "
@@ -772,6 +782,7 @@ int contact_case_read(struct contact_case *out, const cJSON *parameters, double 
         double poisson = values_number(values, "/contact/poisson");
         asked.counter = surface_counter_body(parameters, values, poisson);
         check_faces(&out->surface, values);
+        surface_plateau_check_like(values);
         status = like_case_fill(&out->like, values, surface, err);
     }
     if (status == 0)

@@ -27,6 +27,13 @@ static bool is_one_wave(const struct contact_case *one_case, const struct modes 
     return one_case->surface.dimension == 1 && modes->count <= 2;
 }
 
+/* Returns whether Persson's theory is not known: of a wave, and of a coating on a stratified face,
+ * whose slopes are known but not its spectrum. */
+static bool lacks_theory(const struct contact_case *one_case, const struct modes *modes) {
+    return is_one_wave(one_case, modes) ||
+           (contact_case_is_coated(one_case) && one_case->surface.plateau != NULL);
+}
+
 /* Returns whether theories of Gaussian isotropic asperities apply. */
 static bool has_asperities(const struct contact_case *one_case, const struct moments *moments) {
     return one_case->surface.dimension == 2 && surface_case_gaussian(&one_case->surface) &&
@@ -161,7 +168,7 @@ static int theories_make(struct theories *out, const struct contact_case *one_ca
     bool coated = contact_case_is_coated(one_case);
     if (is_one_wave(one_case, modes) && surface_case_exact(&one_case->surface) && !coated)
         put_wave(&list);
-    if (is_one_wave(one_case, modes))
+    if (lacks_theory(one_case, modes))
         return 0;
     put_rough(&list, moments);
     return coated ? 0 : put_summits(&list, modes, moments, err);
@@ -183,7 +190,7 @@ struct contact_curve_maker {
 /* Computes the mean density of the pressures in each bin; false without a theory. */
 static bool theory_pressures(const struct contact_curve_maker *maker, double load, double *pdf) {
     const struct contact_case *one_case = maker->one_case;
-    if (is_one_wave(one_case, maker->modes))
+    if (lacks_theory(one_case, maker->modes))
         return false;
     /* Of pressures times the factor, as the load is. */
     double factor = maker->theories.coating;

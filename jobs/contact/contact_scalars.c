@@ -192,7 +192,7 @@ static int theories(const struct contact_case *one_case, const struct moments *m
         theory[CONTACT_SCALAR_KAPPA] = theory[CONTACT_SCALAR_ERF_KAPPA] = persson_light_load();
     theory[CONTACT_SCALAR_RMS_HEIGHT] = moments->rms_height;
     theory[CONTACT_SCALAR_RMS_SLOPE] = moments->rms_slope;
-    if (!surface_case_exact(&one_case->surface))
+    if (!surface_case_exact(&one_case->surface) && one_case->surface.plateau == NULL)
         theory[CONTACT_SCALAR_NAYAK_ALPHA] = moments->nayak_alpha;
     int status = surface_case_heights(&one_case->surface, &heights, &known, err);
     if (status == 0 && known) {

@@ -345,7 +345,8 @@ static double area_scatter(const struct contact_case *one_case) {
         moments.skewness = 0;
     return cost_area_scatter(&(struct area_scatter){
         .dimension = surface->dimension,
-        .fixed = surface->options.amplitudes == AMPLITUDES_FIXED && surface->counter == NULL,
+        .fixed = surface->options.amplitudes == AMPLITUDES_FIXED && surface->counter == NULL &&
+                 surface->plateau == NULL,
         .long_waves = surface_case_mean_side(surface) / surface_case_times_longest(surface),
         .ratio = ratio > 1 ? ratio : 1,
         .hurst = affine ? surface->spectrum.hurst : NAN,

@@ -97,7 +97,7 @@ static int measure_areal(struct map_characterisation *out, const struct measured
         open_roughness_measure(map, &roughness);
     int status = areal_measure(map, &roughness, chance->correlation, &hills, &out->areal, err);
     if (status == 0)
-        status = map_functional_measure(&out->functional, map, &hills, out->areal.sz, err);
+        status = map_functional_measure(&out->functional, map, &hills, out->areal.sz, chance, err);
     if (status == 0)
         status = measure_hill_errors(out, map, chance, &hills, err);
     summit_list_clear(&hills);
@@ -181,7 +181,7 @@ static int measure(struct map_characterisation *out, const struct measured_map *
                                         chance, err);
     if (status == 0)
         status = grid_is_profile(map->grid)
-                     ? map_functional_measure(&out->functional, map, NULL, 0, err)
+                     ? map_functional_measure(&out->functional, map, NULL, 0, chance, err)
                      : measure_areal(out, map, chance, err);
     if (status == 0)
         status = measure_common(out, &common, under_window, trusted, err);

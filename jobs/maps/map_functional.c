@@ -5,7 +5,8 @@ static const double RATIOS[MAP_RATIOS] = {0,    0.01, 0.02, 0.025, 0.05, 0.1,  0
                                           0.85, 0.9,  0.95, 0.975, 0.98, 0.99, 1};
 
 int map_functional_measure(struct map_functional *out, const struct measured_map *map,
-                           const struct summit_list *hills, double sz, struct error *err) {
+                           const struct summit_list *hills, double sz,
+                           const struct map_chance *chance, struct error *err) {
     struct material_curve curve;
     int status = material_curve_create(&curve, map, err);
     if (status != 0)
@@ -17,7 +18,12 @@ int map_functional_measure(struct map_functional *out, const struct measured_map
         out->ratio[r] = RATIOS[r];
         out->height[r] = material_height(&curve, RATIOS[r]);
     }
+    out->has_errors = chance != NULL && chance->told;
+    if (out->has_errors)
+        status = functional_errors_measure(&out->errors, map, &curve, chance, err);
     material_curve_clear(&curve);
+    if (status != 0)
+        return status;
     if (hills != NULL)
         return ten_points_measure(map, hills, mean, sz, &out->ten_points, err);
     profile_spacing_measure(map, mean, &out->spacing);

@@ -5,6 +5,7 @@
 
 #include "core/statistics/heights/functional.h"
 #include "core/statistics/heights/plateau.h"
+#include "core/statistics/uncertainty/functional_errors.h"
 
 enum { MAP_RATIOS = 21 };
 
@@ -13,11 +14,15 @@ struct map_functional {
     double ratio[MAP_RATIOS], height[MAP_RATIOS]; /* the curve: rising shares, heights about the
                                                      mean that they reach */
     struct plateau_law plateau;                   /* NaN where there is none */
-    struct ten_points ten_points;                 /* of surfaces alone */
-    struct profile_spacing spacing;               /* of profiles alone */
+    bool has_errors;                              /* errors are known */
+    struct functional_errors errors;
+    struct ten_points ten_points;   /* of surfaces alone */
+    struct profile_spacing spacing; /* of profiles alone */
 };
-/* hills: those of areal_measure(), with Sz; NULL for profiles. ERROR_MEMORY. */
+/* hills: those of areal_measure(), with Sz; NULL for profiles. map_chance: of the map, NULL where
+ * no errors are wanted. ERROR_MEMORY. */
 int map_functional_measure(struct map_functional *out, const struct measured_map *map,
-                           const struct summit_list *hills, double sz, struct error *err);
+                           const struct summit_list *hills, double sz,
+                           const struct map_chance *chance, struct error *err);
 
 #endif

@@ -2,6 +2,7 @@
 #include "core/surface/translation/translation.h"
 #include "jobs/like/like_parameters.h"
 #include "jobs/surface/surface_parameters.h"
+#include "jobs/surface/surface_plateau.h"
 #include "jobs/target.h"
 #include <math.h>
 #include <stdlib.h>
@@ -127,6 +128,8 @@ int statistics_case_read(struct statistics_case *out, const cJSON *parameters,
         status = surface_case_fill(&out->surface, values, &surface, err);
     if (status == 0)
         status = like_case_fill(&out->like, values, surface, err);
+    if (status == 0)
+        surface_plateau_check_like(values);
     if (status == 0)
         status = read_levels(out, values, surface, err);
     if (status == 0) {

@@ -160,6 +160,24 @@ static double continuous_alpha(const struct surface_case *surface) {
                                      spectrum->wavelength_long / spectrum->wavelength_rolloff);
 }
 
+/* What is known of a stratified face (F18.60): heights and slopes, and where its plateau lies. */
+static int add_stratified(struct expectation *e, struct error *err) {
+    const struct surface_case *surface = &e->one_case.surface;
+    const struct moments *m = &e->basis.moments;
+    const struct stratified_heights law = surface_case_stratified(surface);
+    const struct height_moments heights = stratified_moments(&law);
+    const struct expected_scalar list[] = {
+        {"m0", m->m0, NAN},
+        {"m2", m->m2, NAN},
+        {"rms_height", m->rms_height, NAN},
+        {"rms_slope", m->rms_slope, NAN},
+        {"skewness", heights.skewness, NAN},
+        {"kurtosis", heights.kurtosis, NAN},
+        {"plateau_share", 1 - law.valley_share, NAN},
+    };
+    return add_scalars(e, sizeof list / sizeof *list, list, err);
+}
+
 static int add_moments(struct expectation *e, struct error *err) {
     const struct surface_case *surface = &e->one_case.surface;
     const struct moments *m = &e->basis.moments;
@@ -424,28 +442,37 @@ static int case_create(struct expectation *e, const cJSON *parameters, struct er
     return axes_create(e, err);
 }
 
+/* Adds what is known of faces of one surface. */
+static int add_all(struct expectation *e, bool joint, struct error *err) {
+    int status = add_moments(e, err);
+    if (status == 0)
+        status = add_alphas(e, err);
+    if (status == 0)
+        status = add_fractal(e, err);
+    if (status == 0)
+        status = add_heights(e, err);
+    if (status == 0)
+        status = add_summits(e, joint, err);
+    if (status == 0)
+        status = spectra_prescribed(&e->one_case, e->modes, e->result, err);
+    if (status == 0)
+        status = add_lengths(e, err);
+    return status == 0 ? add_alpha(e, err) : status;
+}
+
 int statistics_expectation(const cJSON *parameters, bool joint, struct case_result *out,
                            struct error *err) {
     struct expectation e = {.result = out};
     int status = result_set_parameters(out, parameters, err);
     if (status == 0)
         status = case_create(&e, parameters, err);
-    if (status == 0)
-        status = add_moments(&e, err);
-    if (status == 0)
-        status = add_alphas(&e, err);
-    if (status == 0)
-        status = add_fractal(&e, err);
-    if (status == 0)
+    const bool stratified = status == 0 && e.one_case.surface.plateau != NULL;
+    if (stratified)
+        status = add_stratified(&e, err);
+    if (stratified && status == 0)
         status = add_heights(&e, err);
-    if (status == 0)
-        status = add_summits(&e, joint, err);
-    if (status == 0)
-        status = spectra_prescribed(&e.one_case, e.modes, out, err);
-    if (status == 0)
-        status = add_lengths(&e, err);
-    if (status == 0)
-        status = add_alpha(&e, err);
+    if (status == 0 && !stratified)
+        status = add_all(&e, joint, err);
     if (status == 0)
         units_set(out);
     modes_destroy(&e.modes);

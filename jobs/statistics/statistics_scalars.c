@@ -243,24 +243,27 @@ static void theory_of_summits(const struct statistics_case *one_case,
 /* Fills in the theory of each scalar, NaN where there is none. */
 static void theory_of_scalars(const struct statistics_case *one_case, const struct moments *moments,
                               const struct summit_theories *theories, double out[SCALAR_COUNT]) {
+    const bool stratified = one_case->surface.plateau != NULL;
+    const double kinked = stratified ? (double)NAN : 1; /* curvatures grow on finer grids */
     struct height_moments heights;
+    bool known = false;
     for (size_t a = 0; a < SCALAR_COUNT; a++)
         out[a] = NAN;
     out[SCALAR_RMS_HEIGHT] = moments->rms_height;
     out[SCALAR_RMS_SLOPE] = moments->rms_slope;
-    out[SCALAR_RMS_CURVATURE] = moments->rms_curvature;
-    if (heights_moments(&one_case->surface.options.heights, &heights, NULL) == 0) {
+    out[SCALAR_RMS_CURVATURE] = kinked * moments->rms_curvature;
+    if (surface_case_heights(&one_case->surface, &heights, &known, NULL) == 0 && known) {
         out[SCALAR_SKEWNESS] = heights.skewness;
         out[SCALAR_KURTOSIS] = heights.kurtosis;
     }
     out[SCALAR_M2_DIFFERENCE] = moments->m2;
-    out[SCALAR_M4_DIFFERENCE] = moments->m4;
-    out[SCALAR_NAYAK_ALPHA_DIFFERENCE] = moments->nayak_alpha;
+    out[SCALAR_M4_DIFFERENCE] = kinked * moments->m4;
+    out[SCALAR_NAYAK_ALPHA_DIFFERENCE] = kinked * moments->nayak_alpha;
     if (!surface_case_exact(&one_case->surface)) {
         out[SCALAR_M0] = moments->m0;
         out[SCALAR_M2] = moments->m2;
-        out[SCALAR_M4] = moments->m4;
-        out[SCALAR_NAYAK_ALPHA] = moments->nayak_alpha;
+        out[SCALAR_M4] = kinked * moments->m4;
+        out[SCALAR_NAYAK_ALPHA] = kinked * moments->nayak_alpha;
     }
     if (theories->count == 0)
         return;

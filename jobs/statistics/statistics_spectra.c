@@ -192,9 +192,11 @@ static int columns_create(struct case_result *result, struct spectrum_columns *o
     return 0;
 }
 
+/* theory: NULL where none is known. */
 static int add_curve(struct case_result *result, struct curve *curve, const double *theory,
                      struct error *err) {
-    curve->theories[curve->theory_count++] = (struct theory){"prescribed", theory};
+    if (theory != NULL)
+        curve->theories[curve->theory_count++] = (struct theory){"prescribed", theory};
     return result_add_curve(result, curve, err);
 }
 
@@ -366,7 +368,8 @@ static int density_curve(const struct statistics_case *one_case, const struct mo
     status = density_error(one_case, tally, reference.y, result, &curve, err);
     if (status != 0)
         return status;
-    return add_curve(result, &curve, columns.theory + 1, err);
+    const bool known = one_case->surface.plateau == NULL; /* of a stratified face: slopes alone */
+    return add_curve(result, &curve, known ? columns.theory + 1 : NULL, err);
 }
 
 static size_t correlation_side(size_t side, size_t band) {
@@ -450,7 +453,8 @@ static int correlation_curve(const struct statistics_case *one_case, const struc
     status = correlation_error(&columns, n, result, &curve, err);
     if (status != 0)
         return status;
-    return add_curve(result, &curve, columns.theory, err);
+    return add_curve(result, &curve, one_case->surface.plateau == NULL ? columns.theory : NULL,
+                     err);
 }
 
 int spectra_curves(const struct statistics_case *one_case, const struct modes *modes,

@@ -3,8 +3,23 @@
 
 const char STATISTICS_TRANSLATION[] = "translation";
 
+static void stratified_averages(const struct statistics_case *one_case, double *pdf, double *cdf) {
+    const struct stratified_heights heights = surface_case_stratified(&one_case->surface);
+    const struct bins *bins = &one_case->height;
+    double before = stratified_cdf(&heights, bins->low);
+    for (size_t b = 0; b < bins->count; b++) {
+        cdf[b] = stratified_cdf(&heights, bins->low + (double)(b + 1) * bins_width(bins));
+        pdf[b] = (cdf[b] - before) / bins_width(bins);
+        before = cdf[b];
+    }
+}
+
 int statistics_theory_heights(const struct statistics_case *one_case, double *pdf, double *cdf,
                               struct error *err) {
+    if (one_case->surface.plateau != NULL) {
+        stratified_averages(one_case, pdf, cdf);
+        return 0;
+    }
     return bin_averages_heights(&one_case->surface.options.heights, &one_case->height, pdf, cdf,
                                 err);
 }
@@ -22,6 +37,8 @@ int summit_theories_create(struct summit_theories *out, const struct statistics_
     bool gaussian =
         !surface_case_translated(surface) && translated_case_applies(surface, &basis->moments);
     *out = (struct summit_theories){0};
+    if (surface->plateau != NULL)
+        return 0; /* a stratified face has kinks, where curvature is not defined */
     if (gaussian)
         add(out, (struct summit_theory){
                      .name = surfaces ? "nayak" : "longuet_higgins",

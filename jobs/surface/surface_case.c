@@ -2,6 +2,7 @@
 #include "core/cost.h"
 #include "core/surface/acf_spectrum.h"
 #include "jobs/surface/surface_parameters.h"
+#include "jobs/surface/surface_plateau.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -533,6 +534,25 @@ static int read_surface(struct surface_case *out, struct values *values, struct 
     return status;
 }
 
+/* Reads the plateau of a stratified face, whose grid becomes that of both surfaces. */
+static int read_plateau(struct surface_case *out, struct values *values, struct error *err) {
+    static const char POINTS[] = "/surface/points_per_wavelength";
+    const struct valley_face valleys = {.dimension = out->dimension,
+                                        .lx = out->grid.lx,
+                                        .ly = out->grid.ly,
+                                        .length_ratio = out->length_ratio,
+                                        .wavelength_ratio = out->wavelength_ratio,
+                                        .spectrum = &out->spectrum,
+                                        .options = &out->options};
+    int status = surface_plateau_fill(&out->plateau, &valleys, values, err);
+    if (status != 0 || out->plateau == NULL)
+        return status;
+    out->spectrum.plateau = out->plateau;
+    out->heights_name = "stratified";
+    surface_case_grid(out, values_number(values, POINTS), POINTS, values, &out->grid);
+    return 0;
+}
+
 int surface_case_fill(struct surface_case *out, struct values *values,
                       const struct surface_case **whole, struct error *err) {
     size_t before = values_fault_count(values);
@@ -542,6 +562,8 @@ int surface_case_fill(struct surface_case *out, struct values *values,
     if (status == 0 && values_fault_count(values) == before)
         status = surface_law_fill(&out->translation, &out->spectrum, out->dimension, &out->options,
                                   values, err);
+    if (status == 0 && values_fault_count(values) == before)
+        status = read_plateau(out, values, err);
     if (status == 0 && values_fault_count(values) == before)
         *whole = out;
     else
@@ -577,6 +599,7 @@ void surface_case_clear(struct surface_case *surface) {
         face_clear(surface->counter);
     free(surface->counter);
     free(surface->counter_face);
+    free(surface->plateau);
     *surface = (struct surface_case){0};
 }
 
@@ -600,10 +623,10 @@ static struct surface_band band_of(const struct spectrum *spectrum, const struct
 
 struct surface_band surface_case_band(const struct surface_case *surface) {
     struct surface_band band = band_of(&surface->spectrum, &surface->grid, surface->dimension);
-    if (surface->counter == NULL)
+    const struct spectrum *second = surface_case_second_spectrum(surface);
+    if (second == NULL)
         return band;
-    struct surface_band other =
-        band_of(&surface->counter->spectrum, &surface->grid, surface->dimension);
+    struct surface_band other = band_of(second, &surface->grid, surface->dimension);
     return (struct surface_band){other.x > band.x ? other.x : band.x,
                                  other.y > band.y ? other.y : band.y};
 }
@@ -623,15 +646,17 @@ double surface_case_bytes(const struct surface_case *surface) {
     const struct grid *grid = &surface->grid;
     struct surface_band band = surface_case_band(surface);
     double bytes = generator_bytes(grid, band.x, band.y, &surface->options);
-    if (surface->counter == NULL)
+    const struct surface_options *second = surface_case_second_options(surface);
+    if (second == NULL)
         return bytes;
-    return bytes + generator_bytes(grid, band.x, band.y, &surface->counter->options) +
+    return bytes + generator_bytes(grid, band.x, band.y, second) +
            generator_sum_bytes(grid, band.x, band.y);
 }
 
 double surface_case_nanoseconds(const struct surface_case *surface, const struct grid *grid) {
     double own = cost_generation(&surface->options, grid);
-    return surface->counter == NULL ? own : own + cost_generation(&surface->counter->options, grid);
+    const struct surface_options *second = surface_case_second_options(surface);
+    return second == NULL ? own : own + cost_generation(second, grid);
 }
 
 /* Adds the cumulants of independent heights: moments of their sum. */
@@ -651,6 +676,12 @@ int surface_case_heights(const struct surface_case *surface, struct height_momen
     struct height_moments own, other;
     struct moments of_own, of_other;
     struct spectrum face = surface->spectrum;
+    if (surface->plateau != NULL) {
+        const struct stratified_heights heights = surface_case_stratified(surface);
+        *out = stratified_moments(&heights);
+        *known = true;
+        return 0;
+    }
     *known = heights_moments(&surface->options.heights, &own, NULL) == 0 &&
              (counter == NULL || heights_moments(&counter->options.heights, &other, NULL) == 0);
     if (*known && surface_case_gaussian(surface))

@@ -4,6 +4,7 @@
 
 #include "core/surface/counter_face.h"
 #include "core/surface/height_moments.h"
+#include "core/surface/plateau_face.h"
 #include "core/surface/surface.h"
 #include "jobs/surface/surface_law.h"
 #include "schema/study/values.h"
@@ -28,6 +29,8 @@ struct surface_case {
      * lambda_s of this one and no grid: owned; NULL: there is one face. */
     struct surface_case *counter;
     struct counter_face *counter_face; /* owned: the same, for generators */
+    struct plateau_face *plateau;      /* owned: that of a stratified face (surface_plateau.h), with
+                                          wavelengths in lambda_s of the valleys; NULL: none */
 };
 /* Highest wave numbers along x and y, in units of 2 pi over that side; y of profiles is 0. */
 struct surface_band {
@@ -54,7 +57,7 @@ static inline bool surface_case_translated(const struct surface_case *surface) {
 }
 /* Returns whether the heights are Gaussian, and so is their sum with those of a counter face. */
 static inline bool surface_case_gaussian(const struct surface_case *surface) {
-    return surface->options.heights.type == HEIGHTS_GAUSSIAN &&
+    return surface->options.heights.type == HEIGHTS_GAUSSIAN && surface->plateau == NULL &&
            (surface->counter == NULL || surface->counter->options.heights.type == HEIGHTS_GAUSSIAN);
 }
 /* Returns whether surfaces, or one of two faces, are made by iteration. */
@@ -65,6 +68,8 @@ static inline bool surface_case_iterated(const struct surface_case *surface) {
 /* Returns whether the generated surfaces have no waves outside the prescribed band. */
 static inline bool surface_case_band_limited(const struct surface_case *surface) {
     const struct surface_case *counter = surface->counter;
+    if (surface->plateau != NULL)
+        return false;
     bool own = surface->options.heights.type == HEIGHTS_GAUSSIAN ||
                (surface->options.keep == KEEP_SPECTRUM && !surface_case_translated(surface));
     return own && (counter == NULL || counter->options.heights.type == HEIGHTS_GAUSSIAN ||
@@ -111,15 +116,39 @@ static inline double surface_case_longest(const struct surface_case *surface) {
 
 /* Returns how many times as long as the longest wave of the first face that of both is. */
 static inline double surface_case_times_longest(const struct surface_case *surface) {
+    if (surface->plateau != NULL)
+        return fmax(1, surface->plateau->spectrum.wavelength_long / surface->wavelength_ratio);
     return surface->counter != NULL
                ? fmax(1, surface->length_ratio / surface->counter->length_ratio)
                : 1;
 }
 /* Returns how many times as short as lambda_s the shortest wave of both faces is. */
 static inline double surface_case_times_shortest(const struct surface_case *surface) {
+    if (surface->plateau != NULL)
+        return fmax(1, 1 / surface->plateau->spectrum.wavelength_short);
     bool banded =
         surface->counter != NULL && surface->counter->spectrum.type == SPECTRUM_SELF_AFFINE;
     return banded ? fmax(1, 1 / surface->counter->spectrum.wavelength_short) : 1;
+}
+
+/* Returns the law of the heights of a stratified face, in RMS heights of its valleys. */
+static inline struct stratified_heights
+surface_case_stratified(const struct surface_case *surface) {
+    return stratified_heights_of(1, surface->plateau->rms_ratio, surface->plateau->offset);
+}
+/* Return the spectrum and the options of the plateau or the counter face; NULL: there is neither.
+ */
+static inline const struct spectrum *
+surface_case_second_spectrum(const struct surface_case *surface) {
+    if (surface->plateau != NULL)
+        return &surface->plateau->spectrum;
+    return surface->counter != NULL ? &surface->counter->spectrum : NULL;
+}
+static inline const struct surface_options *
+surface_case_second_options(const struct surface_case *surface) {
+    if (surface->plateau != NULL)
+        return &surface->plateau->options;
+    return surface->counter != NULL ? &surface->counter->options : NULL;
 }
 
 /* Return the peak bytes of a generator of the surface, with heights on its grid, and the

@@ -66,6 +66,11 @@ static void check_faces(const struct surface_case *first, const struct surface_c
     if (scaled != (counter->spectrum.scale != SCALE_NONE))
         values_fault(values, scaled ? "/counter_surface/rms_slope" : "/surface/rms_slope",
                      "give both faces a scale, rms_slope or rms_height, or neither");
+    if (first->plateau != NULL)
+        values_fault(
+            values, "/surface/plateau/rms_ratio",
+            "the sum of two faces is of faces of one surface each; allowed: one of plateau "
+            "and counter_surface");
     if (surface_case_translated(first))
         values_fault(values, "/surface/heights/law",
                      "\"translation\": the sum of two faces is no translation; allowed: "

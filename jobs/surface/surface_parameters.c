@@ -37,8 +37,52 @@ static const struct choice DRAWS[] = {{"random", DRAW_RANDOM}, {"quantiles", DRA
 #define USUAL(json) json
 #define SECOND false
 #define ABOUT ""
+#define PLATEAU_ROW(name, of_type, least, most, example, words)                                    \
+    {                                                                                              \
+        .path = "/surface/plateau/" name, .later = true, .type = of_type, .minimum = (least),      \
+        .maximum = (most), .sweep = true, .example_json = example, .help = words                   \
+    }
 static const struct parameter ROWS[] = {
 #include "jobs/surface/surface_rows.h"
+    PLATEAU_ROW(
+        "rms_ratio", PARAMETER_NUMBER, 0.01, 1, "0.25",
+        "makes a stratified face, as honing leaves it: at each point the lower of /surface, "
+        "which has the valleys, and of a plateau with this RMS height over that of /surface "
+        "(Spq/Svq); rms_slope and rms_height are those of /surface alone"),
+    PLATEAU_ROW("offset", PARAMETER_NUMBER, -10, 10, "-0.5",
+                "mean of the plateau above that of /surface, in RMS heights of /surface; or give "
+                "material_ratio"),
+    {.path = "/surface/plateau/material_ratio",
+     .later = true,
+     .type = PARAMETER_NUMBER,
+     .minimum = 0,
+     .maximum = 1,
+     .above_minimum = true,
+     .below_maximum = true,
+     .sweep = true,
+     .example_json = "0.8",
+     .help = "share of the points above the height where plateau and valleys meet (Smq), in place "
+             "of offset"},
+    {.path = "/surface/plateau/hurst",
+     .later = true,
+     .type = PARAMETER_NUMBER,
+     .minimum = 0,
+     .maximum = 1,
+     .above_minimum = true,
+     .sweep = true,
+     .example_json = "0.5",
+     .help = "Hurst exponent of the plateau; as /surface unless given"},
+    PLATEAU_ROW("wavelength_ratio", PARAMETER_NUMBER, 1, 1e5, "8",
+                "longest over shortest wavelength of the plateau; as /surface unless given"),
+    PLATEAU_ROW("rolloff_ratio", PARAMETER_NUMBER, 1, 1e5, "2",
+                "longest over roll-off wavelength of the plateau; 1 unless given"),
+    PLATEAU_ROW("length_ratio", PARAMETER_NUMBER, 1, 1e5, "16",
+                "side of the cell over the longest wavelength of the plateau; as /surface unless "
+                "given"),
+    PLATEAU_ROW("anisotropy", PARAMETER_NUMBER, 1, 1000, "1",
+                "of the plateau, as /surface unless given"),
+    PLATEAU_ROW("lay_angle", PARAMETER_NUMBER, -90, 90, "45",
+                "of the plateau, with anisotropy, in degrees; as /surface unless given"),
 };
 const struct parameter_table SURFACE_PARAMETERS = {"surface", ROWS, sizeof ROWS / sizeof *ROWS};
 

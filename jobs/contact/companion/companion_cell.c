@@ -69,7 +69,8 @@ static bool choose_grids(const struct contact_case *one_case, struct companion_p
         !scale_grid(&one_case->surface.grid, out->length, &surface->grid))
         return false;
     out->band = surface_case_sampled_band(surface);
-    if (!surface_case_iterated(surface) && surface_band_fits(out->band, &out->level.grid)) {
+    if (!surface_case_iterated(surface) &&
+        surface_band_fits(surface_case_band(surface), &out->level.grid)) {
         surface->grid = out->level.grid;
         out->level.stride = 1;
     }
@@ -160,10 +161,19 @@ static bool face_holds_waves(const struct surface_case *face, double length) {
     return true;
 }
 
+static bool plateau_holds_waves(const struct surface_case *surface, double length) {
+    const double longest = surface->plateau->spectrum.wavelength_long;
+    const double ly = surface->dimension == 1 ? surface->grid.lx : surface->grid.ly;
+    const struct surface_case face = {.length_ratio = surface->grid.lx / longest,
+                                      .length_ratio_y = ly / longest};
+    return face_holds_waves(&face, length);
+}
+
 static bool holds_waves(const struct contact_case *one_case, double length) {
     const struct surface_case *surface = &one_case->surface;
     return face_holds_waves(surface, length) &&
-           (surface->counter == NULL || face_holds_waves(surface->counter, length));
+           (surface->counter == NULL || face_holds_waves(surface->counter, length)) &&
+           (surface->plateau == NULL || plateau_holds_waves(surface, length));
 }
 
 /* Where longer cells would be too large, takes a quarter or half, whichever first holds whole

@@ -76,6 +76,7 @@ const struct parameter_table FRICTION_PARAMETERS = {"contact", ROWS, sizeof ROWS
 
 static bool has_lay(const struct surface_case *surface) {
     return surface->spectrum.anisotropy > 1 ||
+           (surface->plateau != NULL && surface->plateau->spectrum.anisotropy > 1) ||
            (surface->counter != NULL && surface->counter->spectrum.anisotropy > 1);
 }
 

@@ -383,6 +383,9 @@ static int read_choices(struct choices *out, const cJSON *document, const cJSON 
     if (json_at(document, "/counter_surface") != NULL)
         fault_add(faults, "/counter_surface",
                   "a target's bounds were measured on one rough face; leave it out");
+    if (json_at(document, "/surface/plateau") != NULL)
+        fault_add(faults, "/surface/plateau",
+                  "a target's bounds were measured on faces without kinks; leave it out");
     const cJSON *heights = json_at(parameters, "/surface/heights/distribution");
     out->own_grid = cJSON_IsString(heights) && strcmp(heights->valuestring, "gaussian") != 0;
     out->height = json_at(document, "/contact/block_height") == NULL;

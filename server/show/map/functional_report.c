@@ -2,27 +2,36 @@
 
 static const char GROUP[] = "functional", TABLE[] = "material_ratio";
 
-/* Names of what a line divides the curve into, of surfaces and profiles. */
-struct core_names {
-    const char *k, *pk, *vk, *mr1, *mr2;
+/* A value by name, and that of its error. */
+struct row {
+    const char *const name[2];
+    double value, error;
+    int power;
 };
+#define ROW(name, from, of, by, power)                                                             \
+    { {name, name "_error"}, (from)->of, (by)->of, power }
 
-static void add_core(struct named_values *out, const struct core_names *names,
-                     const struct material_core *core) {
-    named_values_add_length(out, GROUP, names->k, core->k, 1);
-    named_values_add_length(out, GROUP, names->pk, core->pk, 1);
-    named_values_add_length(out, GROUP, names->vk, core->vk, 1);
-    named_values_add(out, GROUP, names->mr1, core->mr1);
-    named_values_add(out, GROUP, names->mr2, core->mr2);
+static void add_rows(struct named_values *out, size_t n, const struct row *rows, bool has_errors) {
+    for (size_t r = 0; r < n; r++) {
+        named_values_add_length(out, GROUP, rows[r].name[0], rows[r].value, rows[r].power);
+        if (has_errors)
+            named_values_add_length(out, GROUP, rows[r].name[1], rows[r].error, rows[r].power);
+    }
 }
 
+/* What a line divides the curve into: of surfaces (S) and profiles (R), of a line and the secant.
+ */
+#define CORE(letter, ending, from, by)                                                             \
+    ROW(letter "k" ending, from, k, by, 1), ROW(letter "pk" ending, from, pk, by, 1),              \
+        ROW(letter "vk" ending, from, vk, by, 1), ROW(letter "mr1" ending, from, mr1, by, 0),      \
+        ROW(letter "mr2" ending, from, mr2, by, 0)
+
 static void add_profile(struct named_values *out, const struct map_functional *found) {
-    static const struct core_names LINE = {"Rk", "Rpk", "Rvk", "Rmr1", "Rmr2"};
-    static const struct core_names SECANT = {"Rk_secant", "Rpk_secant", "Rvk_secant", "Rmr1_secant",
-                                             "Rmr2_secant"};
+    const struct functional *f = &found->found, *e = &found->errors.found;
+    const struct row rows[] = {CORE("R", "", &f->line, &e->line),
+                               CORE("R", "_secant", &f->secant, &e->secant)};
     const struct profile_spacing *spacing = &found->spacing;
-    add_core(out, &LINE, &found->found.line);
-    add_core(out, &SECANT, &found->found.secant);
+    add_rows(out, sizeof rows / sizeof *rows, rows, found->has_errors);
     named_values_add_length(out, GROUP, "RSm", spacing->rsm, 1);
     named_values_add(out, GROUP, "RSm_elements", (double)spacing->elements);
     named_values_add_length(out, GROUP, "RSm_1997", spacing->rsm_old, 1);
@@ -30,20 +39,17 @@ static void add_profile(struct named_values *out, const struct map_functional *f
 }
 
 static void add_surface(struct named_values *out, const struct map_functional *found) {
-    static const struct core_names LINE = {"Sk", "Spk", "Svk", "Smr1", "Smr2"};
-    static const struct core_names SECANT = {"Sk_secant", "Spk_secant", "Svk_secant", "Smr1_secant",
-                                             "Smr2_secant"};
-    const struct functional *f = &found->found;
+    const struct functional *f = &found->found, *e = &found->errors.found;
     const struct ten_points *ten = &found->ten_points;
-    const struct {
-        const char *name;
-        double value;
-    } lengths[] = {{"Sxp", f->xp},  {"Vmp", f->vmp},   {"Vmc", f->vmc},   {"Vvc", f->vvc},
-                   {"Vvv", f->vvv}, {"S5p", ten->s5p}, {"S5v", ten->s5v}, {"S10z", ten->s10z}};
-    add_core(out, &LINE, &f->line);
-    add_core(out, &SECANT, &f->secant);
-    for (size_t n = 0; n < sizeof lengths / sizeof *lengths; n++)
-        named_values_add_length(out, GROUP, lengths[n].name, lengths[n].value, 1);
+    const struct row rows[] = {
+        CORE("S", "", &f->line, &e->line), CORE("S", "_secant", &f->secant, &e->secant),
+        ROW("Sxp", f, xp, e, 1),           ROW("Vmp", f, vmp, e, 1),
+        ROW("Vmc", f, vmc, e, 1),          ROW("Vvc", f, vvc, e, 1),
+        ROW("Vvv", f, vvv, e, 1)};
+    add_rows(out, sizeof rows / sizeof *rows, rows, found->has_errors);
+    named_values_add_length(out, GROUP, "S5p", ten->s5p, 1);
+    named_values_add_length(out, GROUP, "S5v", ten->s5v, 1);
+    named_values_add_length(out, GROUP, "S10z", ten->s10z, 1);
     named_values_add(out, GROUP, "hills", (double)ten->hills);
     named_values_add(out, GROUP, "dales", (double)ten->dales);
 }
@@ -56,13 +62,18 @@ void functional_report_values(struct named_values *out, const struct map_functio
         add_surface(out, found);
 }
 
-void functional_report_plateau(struct named_values *out, const struct plateau_law *law,
+#define LAW(letter, from, by)                                                                      \
+    {                                                                                              \
+        ROW(letter "pq", from, plateau_rms, by, 1), ROW(letter "vq", from, valley_rms, by, 1),     \
+            ROW(letter "mq", from, ratio, by, 0), ROW("plateau_mean", from, plateau_mean, by, 1),  \
+            ROW("valley_mean", from, valley_mean, by, 1)                                           \
+    }
+
+void functional_report_plateau(struct named_values *out, const struct map_functional *found,
                                bool profile) {
-    named_values_add_length(out, GROUP, profile ? "Rpq" : "Spq", law->plateau_rms, 1);
-    named_values_add_length(out, GROUP, profile ? "Rvq" : "Svq", law->valley_rms, 1);
-    named_values_add(out, GROUP, profile ? "Rmq" : "Smq", law->ratio);
-    named_values_add_length(out, GROUP, "plateau_mean", law->plateau_mean, 1);
-    named_values_add_length(out, GROUP, "valley_mean", law->valley_mean, 1);
+    const struct plateau_law *law = &found->plateau, *e = &found->errors.plateau;
+    const struct row rows[2][5] = {LAW("S", law, e), LAW("R", law, e)};
+    add_rows(out, 5, rows[profile ? 1 : 0], found->has_errors);
     named_values_add(out, GROUP, "plateau_residual", law->residual);
     named_values_add(out, GROUP, "normal_residual", law->line_residual);
 }

@@ -9,7 +9,7 @@
 void functional_report_values(struct named_values *out, const struct map_functional *found,
                               bool profile);
 /* Adds to the same group the two laws of a stratified face. */
-void functional_report_plateau(struct named_values *out, const struct plateau_law *law,
+void functional_report_plateau(struct named_values *out, const struct map_functional *found,
                                bool profile);
 /* ERROR_MEMORY. */
 int functional_report_table(struct named_values *out, const struct map_functional *found,

@@ -493,7 +493,7 @@ int map_report_fill(struct named_values *out, const struct map_characterisation 
     functional_report_values(out, &found->functional, profile);
     if (isfinite(found->functional.plateau.ratio) &&
         !(found->height_fits.list[HEIGHTS_GAUSSIAN].p_value >= GAUSSIAN_LEVEL))
-        functional_report_plateau(out, &found->functional.plateau, profile);
+        functional_report_plateau(out, &found->functional, profile);
     add_certainty(out, &found->certainty);
     add_height_fit(out, &found->height_fits);
     if (!profile)

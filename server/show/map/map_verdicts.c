@@ -142,6 +142,21 @@ static void judge_heights(struct verdicts *verdicts, const struct map_figure *fi
             p_value);
 }
 
+/* Of honed faces: what a study takes to make such ones. */
+static void judge_strata(struct verdicts *verdicts, const struct named_values *found) {
+    static const char GROUP[] = "functional";
+    const char letter = isfinite(named_number(found, GROUP, "Rpq")) ? 'R' : 'S';
+    const double plateau = named_number(found, GROUP, letter == 'R' ? "Rpq" : "Spq");
+    const double valleys = named_number(found, GROUP, letter == 'R' ? "Rvq" : "Svq");
+    const double ratio = named_number(found, GROUP, letter == 'R' ? "Rmq" : "Smq");
+    if (isfinite(plateau + valleys + ratio))
+        say(verdicts,
+            "Heights: two laws fit better than one: a plateau above valleys, which meet at %.3g %% "
+            "of the points (%cmq). Studies make such faces by \"plateau\": {\"rms_ratio\": %.3g, "
+            "\"material_ratio\": %.3g} in /surface.",
+            100 * ratio, letter, plateau / valleys, ratio);
+}
+
 static void judge_directions(struct verdicts *verdicts, const struct named_values *found) {
     static const char GROUP[] = "isotropy";
     const double p_value = named_number(found, GROUP, "p_value");
@@ -196,6 +211,7 @@ size_t map_verdicts_list(char out[VERDICTS_MOST][VERDICT_SIZE], const struct map
     judge_noise(&verdicts, figure->found, &figure->record->artefacts);
     judge_artefacts(&verdicts, figure);
     judge_heights(&verdicts, figure);
+    judge_strata(&verdicts, figure->found);
     judge_directions(&verdicts, figure->found);
     judge_parts(&verdicts, figure->found);
     return verdicts.count;

@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-enum { NAMED_VALUES_MOST = 384, NAMED_COLUMNS_MOST = 64 };
+enum { NAMED_VALUES_MOST = 448, NAMED_COLUMNS_MOST = 64 };
 
 /* This holds numbers and words by name, in groups that follow each other, and behind them columns
  * of numbers, likewise. Initialise with {0}. */

@@ -108,7 +108,8 @@ static void functional_values_by_name(void **state) {
         found = (struct named_values){0};
         noise_fill(&seed, POINTS, z);
         assert_int_equal(
-            map_functional_measure(&measured, &map, profile == 1 ? NULL : &hills, 7, NULL), 0);
+            map_functional_measure(&measured, &map, profile == 1 ? NULL : &hills, 7, NULL, NULL),
+            0);
         functional_report_values(&found, &measured, profile == 1);
         assert_int_equal(functional_report_table(&found, &measured, NULL), 0);
         for (size_t n = 0; n < 8; n++)
@@ -144,6 +145,8 @@ static void stratified_faces_have_two_laws(void **state) {
         if (stratified == 1) {
             check_relative(named_number(&found, "functional", "Spq"), 1, 0.2);
             check_relative(named_number(&found, "functional", "Svq"), 8, 0.2);
+            assert_true(named_number(&found, "functional", "Spq_error") > 0);
+            assert_true(named_number(&found, "functional", "Sk_error") > 0);
         } else
             assert_true(isnan(named_number(&found, "functional", "Spq")));
         named_values_clear(&found);
