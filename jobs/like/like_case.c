@@ -91,6 +91,7 @@ int like_case_fill(struct like_case *out, struct values *values, const struct su
     if (!out->given)
         return 0;
     check_digest(values);
+    out->hold = values_flag(values, "/surface/like/hold");
     const double spacing = values_number(values, "/surface/like/spacing");
     out->spacing = spacing;
     read_fitted(out, values);
@@ -100,7 +101,7 @@ int like_case_fill(struct like_case *out, struct values *values, const struct su
         values_fault(values, "/surface/like/spacing", "missing: distance of the points of the map");
     if (status == 0)
         check_cell(out, values);
-    if (status == 0 && surface != NULL && values_fault_count(values) == before)
+    if (status == 0 && surface != NULL && !out->hold && values_fault_count(values) == before)
         out->stride = stride_of(out, &surface->grid, spacing);
     return status == 0 ? read_measured(out, values, err) : status;
 }

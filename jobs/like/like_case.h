@@ -18,6 +18,7 @@ struct like_case {
     enum like_spectrum spectrum; /* where the parameters of the surfaces come from */
     enum like_heights heights;
     enum like_uncertainty uncertainty;
+    bool hold;                             /* surfaces hold the map (like_hold.h) */
     bool held[LIKE_HELD_COUNT];            /* given by the study */
     double measured[PATCH_QUANTITY_COUNT]; /* of the map, lengths in lambda_s; NaN: not known */
 };

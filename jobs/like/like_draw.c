@@ -105,7 +105,7 @@ static int estimate_draw(struct like_draw *draw, struct random_key key, struct e
     const struct like_case *like = draw->like;
     const struct grid grid = {like->nx, like->ny, like->spacing * (double)like->nx,
                               like->spacing * (double)like->ny};
-    const struct like_choices choices = {like->spectrum, like->heights, like->detrend, true};
+    const struct like_choices choices = {like->spectrum, like->heights, like->detrend, false, true};
     const double *heights;
     key.sequence ^= UINT64_C(1) << SUBMAP_BIT;
     if (draw->whole == NULL)

@@ -2,6 +2,7 @@
 #include "core/statistics/measured_map.h"
 #include "core/surface/heights.h"
 #include "jobs/like/like_estimate.h"
+#include "jobs/like/like_hold.h"
 #include "schema/json/field.h"
 #include "schema/json/json.h"
 #include <math.h>
@@ -23,6 +24,7 @@ struct fit {
     bool profile;
     double wavelength; /* lambda_s: the shortest wave that the points hold */
     double side;       /* the shorter one of the map */
+    char *patch;       /* text of the heights that are held, owned; NULL: none are */
     struct like_estimate estimate;
 };
 
@@ -192,6 +194,7 @@ static bool put_uncertainty(cJSON *like, const struct fit *fit) {
     const struct like_choices *choices = &fit->choices;
     bool open = choices->spectrum != LIKE_SPECTRUM_GIVEN ||
                 choices->heights == LIKE_HEIGHTS_QUANTILES || choices->heights == LIKE_HEIGHTS_FIT;
+    open = open && !fit->source->hold; /* it is in the draws */
     enum like_uncertainty uncertainty = open ? fit->source->uncertainty : LIKE_UNCERTAINTY_NONE;
     bool put =
         field_put_text(like, "uncertainty", choice_name(LIKE_UNCERTAINTIES, (int)uncertainty));
@@ -224,7 +227,9 @@ static bool put_marks(cJSON *like, const struct fit *fit) {
            field_put_text(like, "spectrum",
                           choice_name(LIKE_SPECTRA, (int)fit->choices.spectrum)) &&
            field_put_text(like, "heights", choice_name(LIKE_HEIGHTS, (int)fit->choices.heights)) &&
-           put_uncertainty(like, fit);
+           put_uncertainty(like, fit) &&
+           (fit->patch == NULL || (cJSON_AddTrueToObject(like, "hold") != NULL &&
+                                   field_put_text(like, "patch", fit->patch)));
 }
 
 static int put_like(cJSON *surface, const struct fit *fit, struct error *err) {
@@ -249,6 +254,10 @@ static void choose(struct fit *fit, const cJSON *surface) {
         .heights = heights_given(surface) ? LIKE_HEIGHTS_GIVEN : fit->source->heights,
         .detrend = fit->source->detrend,
         .off_stated = fit->source->off_stated};
+    if (fit->source->hold && fit->choices.heights != LIKE_HEIGHTS_GIVEN)
+        fit->choices.heights = LIKE_HEIGHTS_GAUSSIAN; /* they are those of the patch */
+    if (fit->source->hold)
+        fit->choices.exact_cell = true;
     fit->held[LIKE_HELD_SCALE] = has(surface, "rms_slope") || has(surface, "rms_height");
     fit->held[LIKE_HELD_LAY] = has(surface, "anisotropy") || has(surface, "lay_angle");
     fit->held[LIKE_HELD_ROLLOFF] = has(surface, "rolloff_ratio");
@@ -284,8 +293,11 @@ int like_fit(cJSON *surface, const struct height_map *map, const struct like_sou
     status = like_estimate_measure(&fit.estimate, &fit.map, &fit.choices, err);
     if (status == 0 && !put_all(surface, &fit))
         status = error_memory(err, sizeof fit, "a fitted surface");
+    if (status == 0 && source->hold)
+        status = like_hold_text(&fit.patch, map, fit.wavelength, err);
     if (status == 0)
         status = put_like(surface, &fit, err);
+    free(fit.patch);
     like_estimate_clear(&fit.estimate);
     return status;
 }

@@ -17,6 +17,7 @@ struct like_source {
     enum like_heights heights;
     enum like_uncertainty uncertainty;
     bool off_stated; /* surfaces whose RMS values are off by more than 5 % are made all the same */
+    bool hold;       /* surfaces hold the map itself (like_hold.h) */
 };
 
 /* Writes the parameters of surfaces like the map into the object "surface" of a study, but for

@@ -142,6 +142,23 @@ static const struct parameter ROWS[] = {
      .example_json = "[\"scale\"]",
      .help = "what the study gave itself, and the patch does not leave open: the RMS slope or "
              "height (scale), the anisotropy (lay), the roll-off of a fitted law (rolloff)"},
+    {.path = "/surface/like/hold",
+     .type = PARAMETER_FLAG,
+     .later = true,
+     .example_json = "true",
+     .help =
+         "surfaces hold the measured patch in their first rows and columns and go on as its law "
+         "says, on a cell of twice its sides; each realisation is a draw, of the law, too, as "
+         "far as the patch leaves it open. Commands that fit a file write the patch beside it"},
+    {.path = "/surface/like/patch",
+     .type = PARAMETER_TEXT,
+     .minimum = 1,
+     .maximum = LIKE_PATCH_TEXT,
+     .later = true,
+     .unit = "lambda_s",
+     .example_json = "\"AACAPwAAAEA=\"",
+     .help = "the heights that are held, row by row, as 32-bit floats with the lowest byte first, "
+             "in base64; NaN: a hole"},
     {.path = "/surface/like/quantities",
      .type = PARAMETER_CHOICES,
      .choices = LIKE_QUANTITIES,

@@ -30,6 +30,7 @@ struct like_options {
     int contact;           /* 0: the map is pressed, too, mirrored; 1: it is not */
     int off;               /* 0: refused; 1: stated */
     int uncertainty;       /* 0: posterior; 1: none */
+    bool hold;             /* the surfaces hold the map */
     size_t number_count;
     char numbers[LIKE_NUMBERS_MOST]
                 [LIKE_NUMBER_SIZE]; /* texts of numbers that were given as such */
@@ -98,6 +99,7 @@ static const struct option_row ROWS[] = {
     {"contact", 0, OPTION_CHOICE, 0, 0, AT(contact), "mirrored|none", "mirrored", NULL},
     {"off", 0, OPTION_CHOICE, 0, 0, AT(off), "refused|stated", "refused", NULL},
     {"uncertainty", 0, OPTION_CHOICE, 0, 0, AT(uncertainty), "posterior|none", "posterior", NULL},
+    {"hold", 0, OPTION_FLAG, 0, 0, AT(hold), NULL, NULL, NULL},
     MAP_OPTION_ROWS(struct like_options, map),
     {0}};
 
@@ -252,11 +254,12 @@ static int fit_map(cJSON *document, const char *place, const struct like_options
     source.file = options->file;
     source.spectrum = (enum like_spectrum)options->spectrum;
     source.heights = (enum like_heights)options->heights;
-    source.off_stated = options->off == 1;
+    source.off_stated = options->off == 1 || options->hold;
+    source.hold = options->hold;
     source.uncertainty =
         options->uncertainty == 0 ? LIKE_UNCERTAINTY_POSTERIOR : LIKE_UNCERTAINTY_NONE;
     status = like_fit(cJSON_GetObjectItemCaseSensitive(document, "surface"), &map, &source, err);
-    if (status == 0 && options->contact == 0)
+    if (status == 0 && options->contact == 0 && !options->hold)
         status = like_contact_add(document, &map, err);
     height_map_clear(&map);
     return status == 0 ? 0 : error_context(err, "%s", place);

@@ -129,6 +129,7 @@ static void readers_and_rows_agree(void **state) {
                                           "jobs/statistics/statistics_case.c",
                                           "jobs/target.c",
                                           "jobs/like/like_case.c",
+                                          "jobs/like/like_hold.c",
                                           "jobs/contact/quantity/quantity_conductance.c",
                                           "jobs/contact/quantity/quantity_coupling.c",
                                           "jobs/contact/quantity/quantity_friction.c",
