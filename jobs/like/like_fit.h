@@ -26,5 +26,10 @@ struct like_source {
  * too few heights, an unknown name. */
 int like_fit(cJSON *surface, const struct height_map *map, const struct like_source *source,
              struct error *err);
+/* Does so with several maps of one surface, 1 to JOINT_PATCHES_MOST, each with its source: one law
+ * fits them together, and the heights are those of all (like_joint.h). What is fitted is said by
+ * the first source; its map is the one that sub-maps of the surfaces are compared with. */
+int like_fit_together(cJSON *surface, size_t count, const struct height_map *maps,
+                      const struct like_source *sources, struct error *err);
 
 #endif
