@@ -192,6 +192,19 @@ static int submap(struct extension *e, struct random_key key, double *z, struct 
     return detrend(grid, z, e->trend > DETREND_NONE ? e->trend : DETREND_MEAN, &trend, err);
 }
 
+/* A draw of the law errs from that of the map as this one does from the surface's, so that the
+ * surface's may be as far on the other side: the power of a wave is the square of the map's over
+ * that of the sub-map. Where one of both has no such wave but leakage, as behind a sharp end, it is
+ * that of the sub-map. */
+static void reflect(const struct extension *e, double *power) {
+    static const double LEAKAGE = 16, FACTOR_MOST = 4;
+    for (size_t m = 0; m < (e->cell.nx / 2 + 1) * e->cell.ny; m++) {
+        const double ratio = e->law.power[m] / power[m];
+        if (ratio < LEAKAGE && ratio > 1 / LEAKAGE)
+            power[m] = e->law.power[m] * fmin(fmax(ratio, 1 / FACTOR_MOST), FACTOR_MOST);
+    }
+}
+
 /* Draws law and heights; the sub-map of a surface may have no law, or not show the noise. */
 static int law_draw(struct extension *e, struct random_key key, struct error *err) {
     int status = ERROR_INPUT;
@@ -210,7 +223,9 @@ static int law_draw(struct extension *e, struct random_key key, struct error *er
         alike = status == 0 && e->drawn.noise_seen == e->law.noise_seen;
         key.sequence += UINT64_C(1) << TRIAL_BIT;
     }
-    if (!alike)
+    if (alike)
+        reflect(e, e->drawn.power);
+    else
         law_clear(&e->drawn);
     return 0;
 }
