@@ -172,6 +172,7 @@ static const struct parameter ROWS[] = {
              "was done to the map"},
     {.path = "/surface/like/hold",
      .type = PARAMETER_FLAG,
+     .target_refusal = "a target chooses the cell, on which the patch decides",
      .later = true,
      .example_json = "true",
      .help =

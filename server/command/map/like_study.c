@@ -405,18 +405,19 @@ static int check_study(const cJSON *document, struct error *err) {
 }
 
 int like_study_make(cJSON **out, const struct height_map *map,
-                    const struct preparation_record *record, struct error *err) {
-    enum { REALISATIONS = 100, NAME_SIZE = 80 };
+                    const struct preparation_record *record, bool hold, struct error *err) {
+    enum { REALISATIONS = 100, DRAWS = 16, NAME_SIZE = 80 };
     char steps[PREPARATION_STEPS_TEXT], name[NAME_SIZE];
     struct like_source source = source_of(record, steps);
     cJSON *study = cJSON_CreateObject();
     source.off_stated = true; /* by the study that is written */
+    source.hold = hold;
     source.uncertainty = LIKE_UNCERTAINTY_POSTERIOR;
     snprintf(name, sizeof name, "like %.70s", source.file != NULL ? source.file : "a map");
     cJSON *surface = NULL;
     if (study != NULL && field_put_text(study, "name", name) &&
         field_put_text(study, "kind", "statistics") &&
-        cJSON_AddNumberToObject(study, "realisations", REALISATIONS) != NULL)
+        cJSON_AddNumberToObject(study, "realisations", hold ? DRAWS : REALISATIONS) != NULL)
         surface = cJSON_AddObjectToObject(study, "surface");
     int status =
         surface != NULL ? like_fit(surface, map, &source, err) : error_memory(err, 0, "a study");
