@@ -644,7 +644,7 @@ static int filter(struct preparation_record *record, struct height_map *map,
 
 static int extend(struct preparation_record *record, struct height_map *map,
                   const struct preparation *asked, struct error *err) {
-    static const double USUAL = 1.2; /* power that is no misfit */
+    static const double USUAL = 1.5; /* power that is no misfit */
     struct extend_result done;
     char noise[40], power[40] = "";
     if (!asked->extend)

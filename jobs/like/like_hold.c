@@ -104,7 +104,7 @@ int like_hold_read(struct surface_case *surface, const struct like_case *like,
                    struct values *values, struct error *err) {
     const char *text = values_text(values, PATCH);
     if (!like->given || !like->hold) {
-        if (text != NULL)
+        if (like->given && text != NULL)
             values_fault(values, PATCH, "nothing holds it unless /surface/like/hold is true");
         return 0;
     }
