@@ -68,7 +68,7 @@ static void power_fill(const struct conditional_patch *patch, int x, int y, doub
         }
 }
 
-/* Makes the terms by Gram and Schmidt; those that the points do not tell apart are left out. */
+/* Makes the terms by Gram and Schmidt; those that the points do not distinguish are left out. */
 static int terms_make(struct equations *e, struct error *err) {
     static const double LEAST = 1e-12;
     const struct conditional_patch *patch = e->patch;
