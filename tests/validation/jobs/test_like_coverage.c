@@ -33,7 +33,7 @@ struct law {
     enum like_heights heights;
 };
 #define SMOOTH                                                                                     \
-    "\"hurst\": 0.8, \"wavelength_ratio\": 16, \"rolloff_ratio\": 4, \"length_ratio\": 3,"          \
+    "\"hurst\": 0.8, \"wavelength_ratio\": 16, \"rolloff_ratio\": 4, \"length_ratio\": 3,"         \
     " \"points_per_wavelength\": 4, \"rms_slope\": 0.1, \"amplitudes\": \"random\""
 static const struct law LAWS[] = {
     {"H = 0.8, roll-off at a sixth of a side", SMOOTH, LIKE_SPECTRUM_TABLE, LIKE_HEIGHTS_GAUSSIAN},
