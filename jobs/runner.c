@@ -64,8 +64,9 @@ struct job_runner {
     uint64_t fingerprint;               /* of the case */
     struct random_key key;
     struct generator *generator;
-    struct surface_basis basis; /* of the generator */
-    struct job_shared *own;     /* where none was given */
+    struct extension *extension; /* of surfaces that hold a patch, in place of it; else NULL */
+    struct surface_basis basis;  /* of the generator */
+    struct job_shared *own;      /* where none was given */
     void *workspace;
     double *z;        /* points of the own grid */
     double *gaussian; /* likewise, where the case wants it; else NULL */
@@ -82,6 +83,7 @@ void runner_destroy(struct job_runner **runner) {
     free(gone->gaussian);
     job_shared_destroy(&gone->own);
     generator_destroy(&gone->generator);
+    extension_destroy(&gone->extension);
     kind_case_destroy(gone->kind, &gone->study);
     free(gone);
     *runner = NULL;
@@ -99,6 +101,11 @@ static int surface_make(struct job_runner *runner, struct error *err) {
     size_t points = grid_points(&surface->grid);
     int status = generator_create(&runner->generator, &surface->spectrum, &surface->grid,
                                   &surface->options, err);
+    if (status != 0)
+        return status;
+    const struct held_patch *held = surface->held;
+    if (held != NULL)
+        status = extension_create(&runner->extension, &held->map, held->trend, err);
     if (status != 0)
         return status;
     runner->basis.modes = generator_modes(runner->generator);
@@ -189,8 +196,12 @@ static int surface_generate(struct job_runner *runner, struct realisation *reali
                             struct error *err) {
     realisation->z = runner->z;
     realisation->gaussian = runner->gaussian;
+    struct extend_result done;
+    realisation->report = (struct surface_report){.end = END_DIRECT};
     int status =
-        generator_run(runner->generator, runner->key, runner->z, &realisation->report, err);
+        runner->extension != NULL
+            ? extension_draw(runner->extension, runner->key, runner->z, &done, err)
+            : generator_run(runner->generator, runner->key, runner->z, &realisation->report, err);
     if (status != 0)
         return status;
     if (surface_case_band_limited(runner->surface))

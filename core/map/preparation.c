@@ -648,7 +648,7 @@ static int filter(struct preparation_record *record, struct height_map *map,
 
 static int extend(struct preparation_record *record, struct height_map *map,
                   const struct preparation *asked, struct error *err) {
-    static const double USUAL = 1.2; /* power that is no misfit */
+    static const double USUAL = 1.5; /* power that is no misfit */
     struct extend_result done;
     char noise[40], power[40] = "";
     if (!asked->extend)
@@ -661,7 +661,7 @@ static int extend(struct preparation_record *record, struct height_map *map,
                          "--extend: the map repeats already (by %s); --boundary open says that it "
                          "does not",
                          record->boundary_by);
-    int status = map_extend(map, asked->extend_seed, &done, err);
+    int status = map_extend(map, record->detrend, asked->extend_seed, &done, err);
     if (status != 0)
         return error_context(err, "--extend");
     record->boundary = BOUNDARY_PERIODIC;
@@ -669,11 +669,12 @@ static int extend(struct preparation_record *record, struct height_map *map,
     if (done.draw.power > USUAL)
         snprintf(power, sizeof power, "; %.3g times the law's power", done.draw.power);
     preparation_note(
-        record, "extend", "to %zu by %zu points, draw %llu, %s off the map, %.3g of %s%s%s%s",
+        record, "extend", "to %zu by %zu points, draw %llu, %s off the map, %.3g of %s%s%s%s%s",
         map->grid.nx, map->grid.ny, (unsigned long long)asked->extend_seed,
         height_text(map, done.draw.difference, noise), done.draw.held,
         done.noise_seen ? "its noise" : "1/1000 RMS", power, done.law_holds ? "" : "; no law holds",
-        done.translated ? "; by normal scores" : "");
+        done.translated ? "; by normal scores" : "",
+        done.drawn ? "" : "; by the law of the map itself");
     return 0;
 }
 

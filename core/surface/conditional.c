@@ -10,7 +10,7 @@ static const double ACCURACY = 1e-3, ACCURACY_LEAST = 1e-2;
 /* Noise in the approximate inverse, over that of the equations: waves beyond the law's shortest
  * have more power by mirror images. 10 to 100 take half the steps of 1. */
 static const double NOISE_SHARE = 30;
-enum { STEPS_MOST = 10000, UNIFORMS = 1024 };
+enum { STEPS_MOST = 10000, UNIFORMS = 1024, TERMS_MOST = 6 };
 
 struct equations {
     const struct conditional_law *law;
@@ -20,6 +20,8 @@ struct equations {
     double *inverse;    /* of covariance and noise */
     double *mirrors;    /* one cell */
     double *solution, *residual, *direction, *image; /* one patch each; 0 in holes */
+    size_t terms;                                    /* of the trend that was taken out */
+    double *term; /* terms patches: orthonormal over the points that were measured */
 };
 
 static void equations_clear(struct equations *e) {
@@ -27,7 +29,74 @@ static void equations_clear(struct equations *e) {
     free(e->covariance);
     free(e->mirrors);
     free(e->solution);
+    free(e->term);
 }
+
+static double dot(const double *a, const double *b, size_t n) {
+    double total = 0;
+    for (size_t i = 0; i < n; i++)
+        total += a[i] * b[i];
+    return total;
+}
+
+/* Sets what is in holes to 0. */
+static void leave_holes(const struct equations *e, double *values) {
+    for (size_t p = 0; p < e->patch->nx * e->patch->ny; p++)
+        if (isnan(e->patch->z[p]))
+            values[p] = 0;
+}
+
+/* --- the trend --- */
+
+/* Takes the first `terms` terms out of values that are 0 in holes. */
+static void take_out(const struct equations *e, size_t terms, double *values) {
+    const size_t n = e->patch->nx * e->patch->ny;
+    for (size_t t = 0; t < terms; t++) {
+        const double *term = e->term + t * n, part = dot(term, values, n);
+        for (size_t p = 0; p < n; p++)
+            values[p] -= part * term[p];
+    }
+}
+
+/* Fills u^x v^y, u and v from -1 to 1 over the patch. */
+static void power_fill(const struct conditional_patch *patch, int x, int y, double *out) {
+    for (size_t j = 0; j < patch->ny; j++)
+        for (size_t i = 0; i < patch->nx; i++) {
+            const double u = (2 * (double)i + 1) / (double)patch->nx - 1;
+            const double v = (2 * (double)j + 1) / (double)patch->ny - 1;
+            out[j * patch->nx + i] = pow(u, x) * pow(v, y);
+        }
+}
+
+/* Makes the terms by Gram and Schmidt; those that the points do not distinguish are left out. */
+static int terms_make(struct equations *e, struct error *err) {
+    static const double LEAST = 1e-12;
+    const struct conditional_patch *patch = e->patch;
+    const size_t n = patch->nx * patch->ny;
+    if (patch->trend == 0)
+        return 0;
+    e->term = array_create(TERMS_MOST * n, sizeof *e->term);
+    if (e->term == NULL)
+        return error_memory(err, TERMS_MOST * n * sizeof *e->term, "the trend of a patch");
+    for (int degree = 0; degree < patch->trend; degree++)
+        for (int y = 0; y <= (patch->ny == 1 ? 0 : degree); y++) {
+            double *term = e->term + e->terms * n;
+            power_fill(patch, degree - y, y, term);
+            leave_holes(e, term);
+            const double before = dot(term, term, n);
+            take_out(e, e->terms, term);
+            take_out(e, e->terms, term);
+            const double square = dot(term, term, n);
+            if (!(square > LEAST * before))
+                continue;
+            for (size_t p = 0; p < n; p++)
+                term[p] /= sqrt(square);
+            e->terms++;
+        }
+    return 0;
+}
+
+/* --- the equations --- */
 
 static int equations_make(struct equations *e, const struct conditional_law *law,
                           const struct conditional_patch *patch, struct error *err) {
@@ -53,24 +122,14 @@ static int equations_make(struct equations *e, const struct conditional_law *law
         e->covariance[m] = law->power[m] * (double)grid_points(cell);
         e->inverse[m] = 1 / (e->covariance[m] + NOISE_SHARE * law->noise);
     }
-    return 0;
+    status = terms_make(e, err);
+    if (status != 0)
+        equations_clear(e);
+    return status;
 }
 
-static double dot(const double *a, const double *b, size_t n) {
-    double total = 0;
-    for (size_t i = 0; i < n; i++)
-        total += a[i] * b[i];
-    return total;
-}
-
-/* Sets what is in holes to 0. */
-static void leave_holes(const struct equations *e, double *values) {
-    for (size_t p = 0; p < e->patch->nx * e->patch->ny; p++)
-        if (isnan(e->patch->z[p]))
-            values[p] = 0;
-}
-
-/* image = (A C A^T + N) direction, A being the restriction to what was measured. */
+/* image = Q (A C A^T + N) direction, A being the restriction to what was measured, and Q that to
+ * what has no trend. */
 static void multiply(struct equations *e) {
     const size_t points = e->patch->nx * e->patch->ny;
     transform_filter_part(e->transform, e->covariance, 1, e->patch->nx, e->patch->ny, e->direction,
@@ -78,6 +137,7 @@ static void multiply(struct equations *e) {
     for (size_t p = 0; p < points; p++)
         e->image[p] += e->law->noise * e->direction[p];
     leave_holes(e, e->image);
+    take_out(e, e->terms, e->image);
 }
 
 static size_t mirrored(size_t i, size_t n) {
@@ -99,6 +159,7 @@ static void precondition(struct equations *e) {
         for (size_t i = 0; i < cell_nx; i++)
             e->image[mirrored(j, ny) * nx + mirrored(i, nx)] += e->mirrors[j * cell_nx + i];
     leave_holes(e, e->image);
+    take_out(e, e->terms, e->image);
 }
 
 /* Solves by conjugate gradients from 0; the residual is the right side at first. */
@@ -145,19 +206,35 @@ static void gaussian_fill(struct random_key key, enum random_stream stream, size
     }
 }
 
+void conditional_noise(struct random_key key, size_t n, double *out) {
+    gaussian_fill(key, STREAM_EXTENSION_NOISE, n, out);
+}
+
 /* Fills z with a surface of the law that knows nothing of the patch. */
-static int draw_free(struct equations *e, struct random_key key, double *z, struct error *err) {
-    const struct grid *cell = e->law->cell;
+static int draw_free(const struct conditional_law *law, struct transform *transform,
+                     struct random_key key, double *z, struct error *err) {
+    const struct grid *cell = law->cell;
     const size_t modes = (cell->nx / 2 + 1) * cell->ny;
     double *root = array_create(modes, sizeof *root);
     if (root == NULL)
         return error_memory(err, modes * sizeof *root, "a surface that holds a patch");
     for (size_t m = 0; m < modes; m++)
-        root[m] = sqrt(e->covariance[m]);
+        root[m] = sqrt(law->power[m] * (double)grid_points(cell));
     gaussian_fill(key, STREAM_EXTENSION, grid_points(cell), z);
-    transform_filter(e->transform, root, 1, z, z);
+    transform_filter(transform, root, 1, z, z);
     free(root);
     return 0;
+}
+
+int conditional_free_draw(const struct conditional_law *law, struct random_key key, double *z,
+                          struct error *err) {
+    const struct grid *cell = law->cell;
+    struct transform *transform = NULL;
+    int status = transform_create(&transform, cell, cell->nx / 2, cell->ny / 2, err);
+    if (status == 0)
+        status = draw_free(law, transform, key, z, err);
+    transform_destroy(&transform);
+    return status;
 }
 
 static int check(const struct conditional_law *law, const struct conditional_patch *patch,
@@ -180,7 +257,7 @@ static int check(const struct conditional_law *law, const struct conditional_pat
     return 0;
 }
 
-/* Right side of the equations: the patch less a surface of the law with noise. */
+/* Right side of the equations: the patch less a surface of the law with noise, without a trend. */
 static void compare(struct equations *e, struct random_key key, const double *z) {
     const struct conditional_patch *patch = e->patch;
     const double deviation = sqrt(e->law->noise);
@@ -191,8 +268,8 @@ static void compare(struct equations *e, struct random_key key, const double *z)
             e->residual[p] = isnan(patch->z[p]) ? 0
                                                 : patch->z[p] - z[j * e->law->cell->nx + i] -
                                                       deviation * e->residual[p];
-            e->image[p] = e->residual[p];
         }
+    take_out(e, e->terms, e->residual);
 }
 
 /* z += C A^T solution. */
@@ -208,15 +285,15 @@ static void add_correction(struct equations *e, double *z) {
         z[p] += e->mirrors[p];
 }
 
-static double difference_of(const struct equations *e, const double *z, size_t points) {
-    double total = 0;
-    for (size_t j = 0; j < e->patch->ny; j++)
-        for (size_t i = 0; i < e->patch->nx; i++) {
-            const double height = e->patch->z[j * e->patch->nx + i];
-            const double less = isnan(height) ? 0 : height - z[j * e->law->cell->nx + i];
-            total += less * less;
-        }
-    return sqrt(total / (double)points);
+static double difference_of(struct equations *e, const double *z, size_t points) {
+    const size_t n = e->patch->nx * e->patch->ny;
+    for (size_t p = 0; p < n; p++) {
+        const double height = e->patch->z[p];
+        const size_t j = p / e->patch->nx, i = p % e->patch->nx;
+        e->image[p] = isnan(height) ? 0 : height - z[j * e->law->cell->nx + i];
+    }
+    take_out(e, e->terms, e->image);
+    return sqrt(dot(e->image, e->image, n) / (double)points);
 }
 
 int conditional_draw(const struct conditional_law *law, const struct conditional_patch *patch,
@@ -228,7 +305,7 @@ int conditional_draw(const struct conditional_law *law, const struct conditional
         status = equations_make(&e, law, patch, err);
     if (status != 0)
         return status;
-    status = draw_free(&e, key, z, err);
+    status = draw_free(law, e.transform, key, z, err);
     if (status == 0) {
         compare(&e, key, z);
         const size_t n = patch->nx * patch->ny;

@@ -18,17 +18,20 @@ struct conditional_law {
 struct conditional_patch {
     size_t nx, ny;
     const double *z; /* borrowed, nx*ny; NaN: a hole, where nothing was measured */
+    /* Polynomials of fewer than so many orders were taken out of the patch, so that a draw has its
+     * own: 0 none, 1 the mean, 2 a plane, 3 a quadratic form. */
+    int trend;
 };
 
 struct conditional_report {
     size_t points;     /* that were measured */
     size_t steps;      /* of conjugate gradients */
     double residual;   /* RMS of what the equations lack, over that of the noise */
-    double held;       /* RMS difference of patch and surface, over that of the noise: about 1 of a
-                          patch of this law and noise */
+    double held;       /* RMS difference of patch and surface, but for a trend that was taken out,
+                          over that of the noise: about 1 of a patch of this law and noise */
     double power;      /* of the patch in the covariance of law and noise, d (A C A^T + N)^-1 d, a
                           point, as far as a draw shows it: 1 +- sqrt(8/points) of a patch of both */
-    double difference; /* RMS difference of patch and surface */
+    double difference; /* RMS difference of patch and surface, likewise */
 };
 
 /* Fills z[grid_points] with one draw. Patch and law have the same mean, 0 unless the law's power of
@@ -39,5 +42,13 @@ struct conditional_report {
 int conditional_draw(const struct conditional_law *law, const struct conditional_patch *patch,
                      struct random_key key, double *z, struct conditional_report *report,
                      struct error *err);
+
+/* Fills z[grid_points] with a surface of the law that knows of no patch, from the same random
+ * numbers. ERROR_MEMORY. */
+int conditional_free_draw(const struct conditional_law *law, struct random_key key, double *z,
+                          struct error *err);
+/* Fills out[n] with independent Gaussian numbers of mean 0 and mean square 1, those that the noise
+ * of a patch has. */
+void conditional_noise(struct random_key key, size_t n, double *out);
 
 #endif

@@ -4,6 +4,7 @@
 #include "jobs/contact/contact_densities.h"
 #include "jobs/contact/contact_loads.h"
 #include "jobs/contact/quantity/quantity.h"
+#include "jobs/like/like_hold.h"
 #include "jobs/like/like_parameters.h"
 #include "jobs/surface/other_law.h"
 #include "jobs/surface/surface_counter.h"
@@ -785,6 +786,8 @@ int contact_case_read(struct contact_case *out, const cJSON *parameters, double 
         surface_plateau_check_like(values);
         status = like_case_fill(&out->like, values, surface, err);
     }
+    if (status == 0 && surface != NULL)
+        status = like_hold_read(&out->surface, &out->like, values, err);
     if (status == 0)
         status = read_alone(out, &asked, values, err);
     if (status == 0 && surface != NULL && fits_memory(surface, memory_limit, values))

@@ -41,6 +41,33 @@ static int read_measured(struct like_case *out, struct values *values, struct er
     return 0;
 }
 
+/* Reads several maps. */
+static int read_maps(struct like_case *out, struct values *values, struct error *err) {
+    static const char path[] = "/surface/like/maps";
+    double *numbers;
+    size_t n;
+    int status = values_numbers(values, path, &numbers, &n, err);
+    if (status != 0 || numbers == NULL)
+        return status;
+    out->map_count = n / LIKE_MAP_NUMBERS;
+    if (n % LIKE_MAP_NUMBERS != 0 || out->map_count > JOINT_PATCHES_MOST)
+        values_fault(values, path, "%zu numbers; allowed: %d of each of 2 to %d maps", n,
+                     (int)LIKE_MAP_NUMBERS, (int)JOINT_PATCHES_MOST);
+    else
+        for (size_t m = 0; m < out->map_count; m++) {
+            const double *of = numbers + m * LIKE_MAP_NUMBERS;
+            out->maps[m] = (struct like_map){(size_t)of[0], (size_t)of[1], of[2], {of[3], of[4]}};
+            if (!(of[0] >= 2 && of[1] >= 1 && of[0] * of[1] <= SURFACE_POINTS_MOST && of[2] > 0) ||
+                (out->maps[m].ny == 1) != (out->ny == 1))
+                values_fault(values, path, "map %zu has %g by %g points, %g apart", m + 1, of[0],
+                             of[1], of[2]);
+        }
+    const double between = values_number(values, "/surface/like/between");
+    out->between = isnan(between) ? 0 : between;
+    free(numbers);
+    return 0;
+}
+
 /* Reads what was fitted, and what of it the map leaves open. */
 static void read_fitted(struct like_case *out, struct values *values) {
     int held[LIKE_HELD_COUNT];
@@ -91,16 +118,19 @@ int like_case_fill(struct like_case *out, struct values *values, const struct su
     if (!out->given)
         return 0;
     check_digest(values);
+    out->hold = values_flag(values, "/surface/like/hold");
     const double spacing = values_number(values, "/surface/like/spacing");
     out->spacing = spacing;
     read_fitted(out, values);
     size_t before = values_fault_count(values);
     int status = read_points(out, values, surface_case_dimension(values) == 1, err);
+    if (status == 0)
+        status = read_maps(out, values, err);
     if (isnan(spacing))
         values_fault(values, "/surface/like/spacing", "missing: distance of the points of the map");
     if (status == 0)
         check_cell(out, values);
-    if (status == 0 && surface != NULL && values_fault_count(values) == before)
+    if (status == 0 && surface != NULL && !out->hold && values_fault_count(values) == before)
         out->stride = stride_of(out, &surface->grid, spacing);
     return status == 0 ? read_measured(out, values, err) : status;
 }

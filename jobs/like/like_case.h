@@ -5,8 +5,16 @@
 
 #include "core/map/detrend.h"
 #include "core/statistics/patch.h"
+#include "core/statistics/spectra/joint_fit.h"
 #include "jobs/like/like_parameters.h"
 #include "jobs/surface/surface_case.h"
+
+/* One of several maps of one surface. */
+struct like_map {
+    size_t nx, ny;
+    double spacing;                      /* in lambda_s, as the next */
+    struct spectrum_fit_request trusted; /* waves of its fit */
+};
 
 struct like_case {
     bool given;           /* the case resembles a measured surface */
@@ -18,6 +26,11 @@ struct like_case {
     enum like_spectrum spectrum; /* where the parameters of the surfaces come from */
     enum like_heights heights;
     enum like_uncertainty uncertainty;
+    size_t map_count; /* of several maps of one surface, of which the first is that above; 0: it is
+                         the only one */
+    struct like_map maps[JOINT_PATCHES_MOST];
+    double between;                        /* maps: deviation of ln C between them */
+    bool hold;                             /* surfaces hold the map (like_hold.h) */
     bool held[LIKE_HELD_COUNT];            /* given by the study */
     double measured[PATCH_QUANTITY_COUNT]; /* of the map, lengths in lambda_s; NaN: not known */
 };

@@ -1,12 +1,22 @@
 #include "jobs/like/like_draw.h"
 #include "core/cost.h"
+#include "core/surface/conditional.h"
 #include "core/surface/height_table.h"
 #include "core/surface/modes.h"
 #include "core/surface/translation/translation.h"
 #include "jobs/like/like_estimate.h"
+#include "jobs/like/like_joint.h"
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdlib.h>
+
+/* One of several maps. */
+enum { MAP_BIT = 40 }; /* random numbers of each */
+struct map_draw {
+    struct grid grid, cell;  /* of a sub-map, and of the surfaces that it is cut from */
+    struct generator *whole; /* owned, as the next, one block */
+    double *cell_z, *z;
+};
 
 struct like_draw {
     const struct like_case *like;
@@ -15,7 +25,8 @@ struct like_draw {
     struct like_case cut;    /* how they are */
     struct generator *whole; /* owned, as all below: of these surfaces; NULL: there are none */
     struct like_patch *patch;
-    double *cut_z;        /* of their cell */
+    struct map_draw maps[JOINT_PATCHES_MOST]; /* of several maps, in place of both */
+    double *cut_z;                            /* of their cell */
     double *z, *gaussian; /* of the cell of the case; the latter NULL until it is wanted */
     /* of the last draw */
     struct surface_case surface; /* borrows from the case and from what follows */
@@ -39,6 +50,10 @@ void like_draw_destroy(struct like_draw **draw) {
         return;
     draw_clear(gone);
     generator_destroy(&gone->whole);
+    for (size_t m = 0; m < JOINT_PATCHES_MOST; m++) {
+        generator_destroy(&gone->maps[m].whole);
+        free(gone->maps[m].cell_z);
+    }
     like_patch_destroy(&gone->patch);
     free(gone->cut_z);
     free(gone->z);
@@ -63,12 +78,80 @@ static struct like_case cut_of(const struct like_case *like) {
     return cut;
 }
 
+/* Returns the integral of the mean square slope of a law from its roll-off to a wave number, but
+ * for a factor. */
+static double slope_square(const struct spectrum *law, bool profile, double shortest) {
+    const double d = profile ? 1 : 2, from = 2 * M_PI / law->wavelength_long;
+    const double rolloff = 2 * M_PI / law->wavelength_rolloff, to = 2 * M_PI / shortest;
+    const double fall = d + 2 * law->hurst, power = d + 2 - fall;
+    const double end = fmin(rolloff, to);
+    const double even = (pow(end, d + 2) - pow(fmin(from, end), d + 2)) / (d + 2);
+    const double falling = to <= rolloff        ? 0
+                           : fabs(power) < 1e-9 ? log(to / rolloff)
+                                                : (pow(to / rolloff, power) - 1) / power;
+    return even + pow(rolloff, d + 2) * falling;
+}
+
+/* Makes surfaces of one of several maps: without the waves that its points do not hold, and with
+ * the density of the law. */
+static int map_fill(struct map_draw *out, const struct like_map *map,
+                    const struct surface_case *surface, const struct surface_options *options,
+                    struct error *err) {
+    const bool profile = map->ny == 1;
+    const size_t points = map->nx * map->ny;
+    struct spectrum spectrum = surface->spectrum;
+    struct moments moments;
+    out->grid = (struct grid){map->nx, map->ny, map->spacing * (double)map->nx,
+                              map->spacing * (double)map->ny};
+    out->cell.nx = surface_case_side(2 * (double)map->nx - 0.5);
+    out->cell.ny = profile ? 1 : surface_case_side(2 * (double)map->ny - 0.5);
+    out->cell.lx = map->spacing * (double)out->cell.nx;
+    out->cell.ly = profile ? out->cell.lx : map->spacing * (double)out->cell.ny;
+    int status = spectrum_moments(&surface->spectrum, &surface->grid, &moments, err);
+    if (status != 0)
+        return status;
+    spectrum.translation = NULL;
+    spectrum.scale = SCALE_RMS_SLOPE;
+    spectrum.scale_value = moments.rms_slope;
+    if (spectrum.type == SPECTRUM_SELF_AFFINE && spectrum.wavelength_short < 2 * map->spacing) {
+        const double shortest = fmin(2 * map->spacing, spectrum.wavelength_long);
+        spectrum.scale_value *= sqrt(slope_square(&spectrum, profile, shortest) /
+                                     slope_square(&spectrum, profile, spectrum.wavelength_short));
+        spectrum.wavelength_short = shortest;
+        spectrum.wavelength_rolloff = fmax(spectrum.wavelength_rolloff, shortest);
+    }
+    status = generator_create(&out->whole, &spectrum, &out->cell, options, err);
+    if (status != 0)
+        return status;
+    out->cell_z = array_create(grid_points(&out->cell) + points, sizeof *out->cell_z);
+    out->z = out->cell_z != NULL ? out->cell_z + grid_points(&out->cell) : NULL;
+    return out->cell_z != NULL
+               ? 0
+               : error_memory(err, grid_points(&out->cell) * sizeof *out->cell_z, "a surface");
+}
+
+static int maps_fill(struct like_draw *draw, const struct surface_options *options,
+                     struct error *err) {
+    struct surface_options gaussian = *options;
+    int status = 0;
+    if (options->law == LAW_TRANSLATION) /* its law is that of the cell of the case */
+        gaussian.heights = (struct heights){.type = HEIGHTS_GAUSSIAN};
+    for (size_t m = 0; m < draw->like->map_count && status == 0; m++)
+        status = map_fill(&draw->maps[m], &draw->like->maps[m], draw->base, &gaussian, err);
+    return status;
+}
+
 static int draw_fill(struct like_draw *draw, struct error *err) {
     const struct surface_case *surface = draw->base;
     const size_t points = grid_points(&surface->grid);
     struct surface_options options = surface->options;
     options.amplitudes = AMPLITUDES_RANDOM; /* a patch is not of a surface with an exact spectrum */
     struct error reason = {0};
+    if (draw->like->map_count > 0) {
+        draw->z = array_create(points, sizeof *draw->z);
+        return draw->z != NULL ? maps_fill(draw, &options, err)
+                               : error_memory(err, points * sizeof *draw->z, "a surface");
+    }
     int status = generator_create(&draw->whole, &surface->spectrum, &draw->cell, &options, &reason);
     if (status != 0 && status != ERROR_INPUT)
         return error_set(err, status, "%s", reason.text);
@@ -100,13 +183,46 @@ int like_draw_create(struct like_draw **out, const struct like_case *like,
 
 /* --- the parameters --- */
 
+/* Fits sub-maps of other surfaces of the case together, as the maps were. Maps differ in their
+ * scale as the measured ones do. */
+static int estimate_maps(struct like_draw *draw, struct random_key key, struct error *err) {
+    const struct like_case *like = draw->like;
+    const struct like_choices choices = {like->spectrum, like->heights, like->detrend, false, true};
+    struct measured_map maps[JOINT_PATCHES_MOST];
+    struct spectrum_fit_request trusted[JOINT_PATCHES_MOST];
+    struct like_joint joint;
+    key.sequence ^= UINT64_C(1) << SUBMAP_BIT;
+    for (size_t m = 0; m < like->map_count; m++) {
+        struct map_draw *map = &draw->maps[m];
+        struct trend trend;
+        double normal;
+        key.sequence += UINT64_C(1) << MAP_BIT;
+        int status = generator_run(map->whole, key, map->cell_z, NULL, err);
+        if (status != 0)
+            return status;
+        conditional_noise(key, 1, &normal);
+        const double factor = exp(like->between * normal / 2);
+        for (size_t p = 0; p < grid_points(&map->grid); p++)
+            map->z[p] = factor * map->cell_z[p / map->grid.nx * map->cell.nx + p % map->grid.nx];
+        status = detrend(&map->grid, map->z, like->detrend, &trend, err);
+        if (status != 0)
+            return status;
+        maps[m] = (struct measured_map){&map->grid, map->z, BOUNDARY_OPEN};
+        trusted[m] = like->maps[m].trusted;
+    }
+    return like_joint_measure(&draw->estimate, &joint, like->map_count, maps, trusted,
+                              draw->base->spectrum.wavelength_long, &choices, err);
+}
+
 /* Fits a sub-map of another surface of the case, as the map was fitted. */
 static int estimate_draw(struct like_draw *draw, struct random_key key, struct error *err) {
     const struct like_case *like = draw->like;
     const struct grid grid = {like->nx, like->ny, like->spacing * (double)like->nx,
                               like->spacing * (double)like->ny};
-    const struct like_choices choices = {like->spectrum, like->heights, like->detrend, true};
+    const struct like_choices choices = {like->spectrum, like->heights, like->detrend, false, true};
     const double *heights;
+    if (like->map_count > 0)
+        return estimate_maps(draw, key, err);
     key.sequence ^= UINT64_C(1) << SUBMAP_BIT;
     if (draw->whole == NULL)
         return error_set(err, ERROR_INPUT,
@@ -249,15 +365,21 @@ double like_draw_bytes(const struct like_case *like, const struct surface_case *
     static const double OF_A_FIT = 200; /* bytes of a point of the map */
     const struct surface_case whole = whole_of(like, surface);
     const struct like_case cut = cut_of(like);
-    return surface_case_bytes(surface) + surface_case_bytes(&whole) + like_patch_bytes(&cut) +
-           OF_A_FIT * (double)like->nx * (double)like->ny;
+    double others = 0;
+    for (size_t m = 0; m < like->map_count; m++)
+        others += 2 * OF_A_FIT * (double)like->maps[m].nx * (double)like->maps[m].ny;
+    return others + surface_case_bytes(surface) + surface_case_bytes(&whole) +
+           like_patch_bytes(&cut) + OF_A_FIT * (double)like->nx * (double)like->ny;
 }
 
 double like_draw_seconds(const struct like_case *like, const struct surface_case *surface) {
     static const double OF_A_FIT = 4; /* times the measuring of a sub-map */
     const struct surface_case whole = whole_of(like, surface);
     const struct like_case cut = cut_of(like);
-    return seconds_of(surface) + seconds_of(&whole) + OF_A_FIT * like_patch_seconds(&cut);
+    double others = 0;
+    for (size_t m = 0; m < like->map_count; m++)
+        others += OF_A_FIT * 1e-6 * (double)like->maps[m].nx * (double)like->maps[m].ny;
+    return others + seconds_of(surface) + seconds_of(&whole) + OF_A_FIT * like_patch_seconds(&cut);
 }
 
 struct like_error like_draw_error(double mean, double deviation, size_t n) {

@@ -14,7 +14,7 @@
 
 /* Returns whether what the patch leaves open is wanted. */
 static inline bool like_draw_applies(const struct like_case *like) {
-    return like->given && like->uncertainty == LIKE_UNCERTAINTY_POSTERIOR;
+    return like->given && !like->hold && like->uncertainty == LIKE_UNCERTAINTY_POSTERIOR;
 }
 /* The realisations that have a draw: the first LIKE_DRAWS, which show a deviation to a fifth. */
 enum { LIKE_DRAWS = 16 };

@@ -74,6 +74,10 @@ static void choose_cell(struct fit *fit) {
     struct grid *cell = &fit->out->cell;
     cell->nx = surface_case_side(CELL_SIDES * (double)grid->nx - 0.5); /* has small prime factors */
     cell->ny = fit->profile ? 1 : surface_case_side(CELL_SIDES * (double)grid->ny - 0.5);
+    if (fit->choices->exact_cell) {
+        cell->nx = CELL_SIDES * grid->nx;
+        cell->ny = fit->profile ? 1 : CELL_SIDES * grid->ny;
+    }
     cell->lx = dx * (double)cell->nx;
     cell->ly = fit->profile ? cell->lx : dx * (double)cell->ny;
 }

@@ -14,6 +14,7 @@ struct like_choices {
     enum like_spectrum spectrum;
     enum like_heights heights;
     enum detrend detrend; /* of the trend that was removed */
+    bool exact_cell; /* of twice the points of the map, also where these make slow transforms */
     bool off_stated; /* surfaces whose RMS values are off by more than 5 % are made all the same */
 };
 

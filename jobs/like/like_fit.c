@@ -2,6 +2,8 @@
 #include "core/statistics/measured_map.h"
 #include "core/surface/heights.h"
 #include "jobs/like/like_estimate.h"
+#include "jobs/like/like_hold.h"
+#include "jobs/like/like_joint.h"
 #include "schema/json/field.h"
 #include "schema/json/json.h"
 #include <math.h>
@@ -23,7 +25,12 @@ struct fit {
     bool profile;
     double wavelength; /* lambda_s: the shortest wave that the points hold */
     double side;       /* the shorter one of the map */
+    char *patch;       /* text of the heights that are held, owned; NULL: none are */
     struct like_estimate estimate;
+    size_t count; /* of maps of one surface */
+    const struct height_map *maps;
+    struct like_joint joint; /* of several */
+    double longest;          /* the wave that the study names, over lambda_s; 0: none */
 };
 
 /* --- the map --- */
@@ -62,7 +69,8 @@ static bool put_lengths(cJSON *surface, const struct fit *fit) {
                put_number(surface, "wavelength_ratio", side / fit->wavelength) &&
                put_number(surface, "points_per_wavelength",
                           /* at least two, which a study must have, but for rounding */
-                          fmax(2, fit->wavelength / grid_dx(fit->map.grid)));
+                          fmax(2, fit->wavelength / (fit->count > 1 ? grid_dx(&fit->estimate.cell)
+                                                                    : grid_dx(fit->map.grid))));
     if (put && !lengths)
         put = put_number(surface, "length_ratio", along_x) &&
               (along_y == along_x || put_number(surface, "length_ratio_y", along_y));
@@ -192,6 +200,7 @@ static bool put_uncertainty(cJSON *like, const struct fit *fit) {
     const struct like_choices *choices = &fit->choices;
     bool open = choices->spectrum != LIKE_SPECTRUM_GIVEN ||
                 choices->heights == LIKE_HEIGHTS_QUANTILES || choices->heights == LIKE_HEIGHTS_FIT;
+    open = open && !fit->source->hold; /* it is in the draws */
     enum like_uncertainty uncertainty = open ? fit->source->uncertainty : LIKE_UNCERTAINTY_NONE;
     bool put =
         field_put_text(like, "uncertainty", choice_name(LIKE_UNCERTAINTIES, (int)uncertainty));
@@ -224,13 +233,46 @@ static bool put_marks(cJSON *like, const struct fit *fit) {
            field_put_text(like, "spectrum",
                           choice_name(LIKE_SPECTRA, (int)fit->choices.spectrum)) &&
            field_put_text(like, "heights", choice_name(LIKE_HEIGHTS, (int)fit->choices.heights)) &&
-           put_uncertainty(like, fit);
+           put_uncertainty(like, fit) &&
+           (fit->patch == NULL || (cJSON_AddTrueToObject(like, "hold") != NULL &&
+                                   field_put_text(like, "patch", fit->patch)));
+}
+
+/* Writes what the further maps are, and their files. */
+static bool put_maps(cJSON *like, const struct fit *fit) {
+    double numbers[JOINT_PATCHES_MOST * LIKE_MAP_NUMBERS];
+    char *text = array_create(LIKE_OTHERS_TEXT, 1);
+    size_t used = 0;
+    if (text == NULL)
+        return false;
+    for (size_t m = 0; m < fit->count; m++) {
+        const struct grid *grid = &fit->maps[m].grid;
+        const struct like_source *source = &fit->source[m];
+        const double of[LIKE_MAP_NUMBERS] = {(double)grid->nx, (double)grid->ny,
+                                             grid_dx(grid) / fit->wavelength,
+                                             fit->joint.trusted[m].longest / fit->wavelength,
+                                             fit->joint.trusted[m].shortest / fit->wavelength};
+        for (size_t a = 0; a < LIKE_MAP_NUMBERS; a++)
+            numbers[m * LIKE_MAP_NUMBERS + a] = isfinite(of[a]) ? of[a] : 0;
+        if (m > 0 && used < LIKE_OTHERS_TEXT)
+            used += (size_t)snprintf(text + used, LIKE_OTHERS_TEXT - used,
+                                     "%s%s, SHA-256 %s, %zu bytes, %s, prepared by %s",
+                                     m > 1 ? "; " : "", source->file, source->sha256, source->bytes,
+                                     source->format, source->prepared);
+    }
+    const bool put =
+        field_put(like, "maps", json_numbers(numbers, fit->count * LIKE_MAP_NUMBERS)) &&
+        field_put(like, "between", json_number(fit->joint.between)) &&
+        field_put_text(like, "others", text);
+    free(text);
+    return put;
 }
 
 static int put_like(cJSON *surface, const struct fit *fit, struct error *err) {
     cJSON_DeleteItemFromObjectCaseSensitive(surface, "like");
     cJSON *like = cJSON_AddObjectToObject(surface, "like");
-    if (like != NULL && put_marks(like, fit) && put_measured(like, fit))
+    if (like != NULL && put_marks(like, fit) && (fit->count == 1 || put_maps(like, fit)) &&
+        put_measured(like, fit))
         return 0;
     return error_memory(err, sizeof *fit, "a fitted surface");
 }
@@ -249,6 +291,10 @@ static void choose(struct fit *fit, const cJSON *surface) {
         .heights = heights_given(surface) ? LIKE_HEIGHTS_GIVEN : fit->source->heights,
         .detrend = fit->source->detrend,
         .off_stated = fit->source->off_stated};
+    if (fit->source->hold && fit->choices.heights != LIKE_HEIGHTS_GIVEN)
+        fit->choices.heights = LIKE_HEIGHTS_GAUSSIAN; /* they are those of the patch */
+    if (fit->source->hold)
+        fit->choices.exact_cell = true;
     fit->held[LIKE_HELD_SCALE] = has(surface, "rms_slope") || has(surface, "rms_height");
     fit->held[LIKE_HELD_LAY] = has(surface, "anisotropy") || has(surface, "lay_angle");
     fit->held[LIKE_HELD_ROLLOFF] = has(surface, "rolloff_ratio");
@@ -271,21 +317,77 @@ static bool put_all(cJSON *surface, struct fit *fit) {
     return put && (has(surface, "amplitudes") || field_put_text(surface, "amplitudes", "random"));
 }
 
-int like_fit(cJSON *surface, const struct height_map *map, const struct like_source *source,
-             struct error *err) {
-    struct fit fit = {.source = source,
+/* Checks what several maps of one surface have in common, and what they exclude. */
+static int check_together(const struct fit *fit, struct error *err) {
+    const struct height_map *maps = fit->maps;
+    int status = 0;
+    for (size_t m = 1; m < fit->count && status == 0; m++) {
+        status = check_map(&maps[m], err);
+        if (status == 0 && (grid_is_profile(&maps[m].grid) != fit->profile ||
+                            strcmp(maps[m].xy_unit, maps[0].xy_unit) != 0 ||
+                            fit->source[m].detrend != fit->source[0].detrend))
+            status = error_set(err, ERROR_INPUT,
+                               "maps of one surface are all profiles or none, with lengths in one "
+                               "unit, here \"%s\" and \"%s\", and without one trend",
+                               maps[0].xy_unit, maps[m].xy_unit);
+        if (status != 0)
+            error_context(err, "%s", fit->source[m].file);
+    }
+    if (status == 0 && fit->source->hold)
+        return error_set(err, ERROR_INPUT, "\"hold\": surfaces hold one map; name one file");
+    if (status == 0 && fit->choices.heights == LIKE_HEIGHTS_FIT)
+        return error_set(err, ERROR_INPUT,
+                         "\"heights\": \"fit\" is of one map; of several allowed: quantiles, "
+                         "gaussian");
+    return status;
+}
+
+static int estimate_together(struct fit *fit, struct error *err) {
+    struct measured_map measured[JOINT_PATCHES_MOST];
+    for (size_t m = 0; m < fit->count; m++)
+        measured[m] = (struct measured_map){&fit->maps[m].grid, fit->maps[m].z, BOUNDARY_OPEN};
+    if (fit->choices.spectrum == LIKE_SPECTRUM_TABLE)
+        fit->choices.spectrum = LIKE_SPECTRUM_FIT;
+    int status = check_together(fit, err);
+    if (status == 0)
+        status = like_joint_measure(&fit->estimate, &fit->joint, fit->count, measured, NULL, 0,
+                                    &fit->choices, err);
+    const double shortest = fit->estimate.self_affine.wavelength_short;
+    if (status != 0 || !(fit->longest > 0) || !(shortest > 0))
+        return status;
+    like_estimate_clear(&fit->estimate);
+    return like_joint_measure(&fit->estimate, &fit->joint, fit->count, measured, NULL,
+                              fit->longest * shortest, &fit->choices, err);
+}
+
+int like_fit_together(cJSON *surface, size_t count, const struct height_map *maps,
+                      const struct like_source *sources, struct error *err) {
+    const struct height_map *map = &maps[0];
+    struct fit fit = {.source = sources,
                       .unit = map->xy_unit,
                       .map = {&map->grid, map->z, BOUNDARY_OPEN},
-                      .profile = grid_is_profile(&map->grid)};
+                      .profile = grid_is_profile(&map->grid),
+                      .count = count,
+                      .maps = maps,
+                      .longest = field_number(surface, "wavelength_ratio")};
     int status = check_map(map, err);
     if (status != 0)
         return status;
     choose(&fit, surface);
-    status = like_estimate_measure(&fit.estimate, &fit.map, &fit.choices, err);
+    status = count > 1 ? estimate_together(&fit, err)
+                       : like_estimate_measure(&fit.estimate, &fit.map, &fit.choices, err);
     if (status == 0 && !put_all(surface, &fit))
         status = error_memory(err, sizeof fit, "a fitted surface");
+    if (status == 0 && sources->hold)
+        status = like_hold_text(&fit.patch, map, fit.wavelength, err);
     if (status == 0)
         status = put_like(surface, &fit, err);
+    free(fit.patch);
     like_estimate_clear(&fit.estimate);
     return status;
+}
+
+int like_fit(cJSON *surface, const struct height_map *map, const struct like_source *source,
+             struct error *err) {
+    return like_fit_together(surface, 1, map, source, err);
 }

@@ -17,6 +17,7 @@ struct like_source {
     enum like_heights heights;
     enum like_uncertainty uncertainty;
     bool off_stated; /* surfaces whose RMS values are off by more than 5 % are made all the same */
+    bool hold;       /* surfaces hold the map itself (like_hold.h) */
 };
 
 /* Writes the parameters of surfaces like the map into the object "surface" of a study, but for
@@ -25,5 +26,10 @@ struct like_source {
  * too few heights, an unknown name. */
 int like_fit(cJSON *surface, const struct height_map *map, const struct like_source *source,
              struct error *err);
+/* Does so with several maps of one surface, 1 to JOINT_PATCHES_MOST, each with its source: one law
+ * fits them together, and the heights are those of all (like_joint.h). What is fitted is said by
+ * the first source; its map is the one that sub-maps of the surfaces are compared with. */
+int like_fit_together(cJSON *surface, size_t count, const struct height_map *maps,
+                      const struct like_source *sources, struct error *err);
 
 #endif

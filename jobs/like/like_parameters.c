@@ -2,6 +2,7 @@
 #include "jobs/like/like_parameters.h"
 #include "core/map/detrend.h"
 #include "core/statistics/patch.h"
+#include "core/statistics/spectra/joint_fit.h"
 
 const struct choice LIKE_SPECTRA[] = {{"table", LIKE_SPECTRUM_TABLE},
                                       {"fit", LIKE_SPECTRUM_FIT},
@@ -142,6 +143,51 @@ static const struct parameter ROWS[] = {
      .example_json = "[\"scale\"]",
      .help = "what the study gave itself, and the patch does not leave open: the RMS slope or "
              "height (scale), the anisotropy (lay), the roll-off of a fitted law (rolloff)"},
+    {.path = "/surface/like/maps",
+     .type = PARAMETER_NUMBERS,
+     .minimum = 0,
+     .maximum = 1e10,
+     .items_low = 2 * LIKE_MAP_NUMBERS,
+     .items_high = JOINT_PATCHES_MOST * LIKE_MAP_NUMBERS,
+     .later = true,
+     .example_json = "[128, 128, 0.5, 32, 2, 256, 256, 4, 512, 16]",
+     .help = "several maps of one surface, the first of them the one above: for each its points "
+             "along x and along y, their distance, and the longest and shortest wavelengths at "
+             "which it is trusted, in lambda_s; a shortest one of 0: where its spectrum ends"},
+    {.path = "/surface/like/between",
+     .type = PARAMETER_NUMBER,
+     .minimum = 0,
+     .maximum = 10,
+     .later = true,
+     .example_json = "0.1",
+     .help = "several maps: standard deviation of the logarithm of their spectral densities "
+             "between maps, beyond what their waves explain"},
+    {.path = "/surface/like/others",
+     .type = PARAMETER_TEXT,
+     .minimum = 1,
+     .maximum = LIKE_OTHERS_TEXT,
+     .later = true,
+     .example_json = "\"wide.sdf, SHA-256 e3b0c442, 1048704 bytes, sdf\"",
+     .help = "several maps: of each further file its name, SHA-256 digest, size, format and what "
+             "was done to the map"},
+    {.path = "/surface/like/hold",
+     .type = PARAMETER_FLAG,
+     .target_refusal = "a target chooses the cell, on which the patch decides",
+     .later = true,
+     .example_json = "true",
+     .help =
+         "surfaces hold the measured patch in their first rows and columns and go on as its law "
+         "says, on a cell of twice its sides; each realisation is a draw, of the law, too, as "
+         "far as the patch leaves it open. Commands that fit a file write the patch beside it"},
+    {.path = "/surface/like/patch",
+     .type = PARAMETER_TEXT,
+     .minimum = 1,
+     .maximum = LIKE_PATCH_TEXT,
+     .later = true,
+     .unit = "lambda_s",
+     .example_json = "\"AACAPwAAAEA=\"",
+     .help = "the heights that are held, row by row, as 32-bit floats with the lowest byte first, "
+             "in base64; NaN: a hole"},
     {.path = "/surface/like/quantities",
      .type = PARAMETER_CHOICES,
      .choices = LIKE_QUANTITIES,

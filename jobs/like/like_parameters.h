@@ -14,6 +14,12 @@ enum like_heights {
 };
 /* Whether what the patch leaves open is estimated (like_draw.h). */
 enum like_uncertainty { LIKE_UNCERTAINTY_NONE, LIKE_UNCERTAINTY_POSTERIOR };
+/* Characters of what is known of the files of further maps. */
+enum { LIKE_OTHERS_TEXT = 60000 };
+/* Of each of several maps: points along x and y, their distance, trusted waves from and to. */
+enum { LIKE_MAP_NUMBERS = 5 };
+/* The most points of a patch that surfaces hold, and the characters of its text. */
+enum { LIKE_PATCH_POINTS = 1 << 18, LIKE_PATCH_TEXT = (4 * LIKE_PATCH_POINTS + 2) / 3 * 4 };
 /* What the study gave itself, so that no patch leaves it open. */
 enum like_held { LIKE_HELD_SCALE, LIKE_HELD_LAY, LIKE_HELD_ROLLOFF, LIKE_HELD_COUNT };
 extern const struct choice LIKE_SPECTRA[], LIKE_HEIGHTS[], LIKE_DETRENDS[], LIKE_QUANTITIES[],

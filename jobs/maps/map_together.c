@@ -1,4 +1,5 @@
 #include "jobs/maps/map_together.h"
+#include "core/statistics/uncertainty/map_directions.h"
 #include <string.h>
 
 static int check_map(const struct map_together *together, const struct height_map *map,
@@ -16,6 +17,17 @@ static int check_map(const struct map_together *together, const struct height_ma
     return 0;
 }
 
+static int find_lay(struct together_map *one, const struct measured_map *map, struct error *err) {
+    const struct spectrum_fit_request by_the_map = {0};
+    struct map_directions directions;
+    one->lay = LAY_NONE;
+    if (grid_is_profile(map->grid))
+        return 0;
+    int status = map_directions_find(&directions, map, one->spectrum, err);
+    return status == 0 ? map_directions_lay(&one->lay, &directions, one->spectrum, &by_the_map, err)
+                       : status;
+}
+
 int map_together_add(struct map_together *together, const char *file, const struct height_map *map,
                      enum boundary boundary, struct error *err) {
     const struct measured_map measured = {&map->grid, map->z, boundary};
@@ -28,22 +40,37 @@ int map_together_add(struct map_together *together, const char *file, const stru
     together->in_metres = strcmp(map->xy_unit, "m") == 0;
     status = map_spectrum_create(&one->spectrum, &measured, err);
     if (status == 0)
-        status =
-            spectrum_fit_measure(one->spectrum, &(struct spectrum_fit_request){0}, &one->fit, err);
+        status = find_lay(one, &measured, err);
     if (status != 0)
         map_spectrum_destroy(&one->spectrum);
     else
-        together->patches[together->count++] =
-            (struct joint_patch){.spectrum = one->spectrum, .fit = &one->fit};
+        together->count++;
     return status;
 }
 
 int map_together_fit(struct map_together *together, struct error *err) {
+    struct lay lays[JOINT_PATCHES_MOST];
+    int status = 0;
+    for (size_t m = 0; m < together->count; m++)
+        lays[m] = together->maps[m].lay;
+    together->lay = joint_fit_lay(together->count, lays);
+    for (size_t m = 0; m < together->count && status == 0; m++) {
+        struct together_map *map = &together->maps[m];
+        status =
+            spectrum_fit_along(map->spectrum, &together->lay, &(struct spectrum_fit_request){0},
+                               &map->ellipses, &map->fit, err);
+        together->patches[m] =
+            (struct joint_patch){.spectrum = together_map_rings(map), .fit = &map->fit};
+    }
+    if (status != 0)
+        return status;
     return joint_fit_measure(together->count, together->patches, &together->fit, err);
 }
 
 void map_together_clear(struct map_together *together) {
-    for (size_t m = 0; m < together->count; m++)
+    for (size_t m = 0; m < together->count; m++) {
+        map_spectrum_destroy(&together->maps[m].ellipses);
         map_spectrum_destroy(&together->maps[m].spectrum);
+    }
     *together = (struct map_together){0};
 }

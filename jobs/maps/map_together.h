@@ -9,7 +9,9 @@
 struct together_map {
     const char *file; /* borrowed */
     struct grid grid;
-    struct map_spectrum *spectrum; /* owned */
+    struct map_spectrum *spectrum; /* owned: over circles */
+    struct map_spectrum *ellipses; /* owned: along the lay of all; NULL: there is none */
+    struct lay lay;                /* of this map alone */
     struct spectrum_fit fit;       /* of this map alone */
 };
 /* Initialise with {0}. */
@@ -17,7 +19,8 @@ struct map_together {
     size_t count;
     struct together_map maps[JOINT_PATCHES_MOST];
     struct joint_patch patches[JOINT_PATCHES_MOST]; /* borrow from the maps */
-    struct joint_fit fit;
+    struct joint_fit fit;                           /* with a lay that of waves across it */
+    struct lay lay; /* of all; LAY_NONE: directions of none differ */
     bool profile, in_metres;
 };
 /* Measures the spectrum of one more map, in the same unit and of the same dimension. ERROR_INPUT;
@@ -26,6 +29,10 @@ int map_together_add(struct map_together *together, const char *file, const stru
                      enum boundary boundary, struct error *err);
 /* Fits all of them. Errors as of joint_fit_measure. */
 int map_together_fit(struct map_together *together, struct error *err);
+/* Returns the spectrum that is fitted. */
+static inline const struct map_spectrum *together_map_rings(const struct together_map *map) {
+    return map->ellipses != NULL ? map->ellipses : map->spectrum;
+}
 void map_together_clear(struct map_together *together);
 
 #endif

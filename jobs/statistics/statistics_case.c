@@ -1,5 +1,6 @@
 #include "jobs/statistics/statistics_case.h"
 #include "core/surface/translation/translation.h"
+#include "jobs/like/like_hold.h"
 #include "jobs/like/like_parameters.h"
 #include "jobs/surface/surface_parameters.h"
 #include "jobs/surface/surface_plateau.h"
@@ -128,6 +129,8 @@ int statistics_case_read(struct statistics_case *out, const cJSON *parameters,
         status = surface_case_fill(&out->surface, values, &surface, err);
     if (status == 0)
         status = like_case_fill(&out->like, values, surface, err);
+    if (status == 0 && surface != NULL)
+        status = like_hold_read(&out->surface, &out->like, values, err);
     if (status == 0)
         surface_plateau_check_like(values);
     if (status == 0)

@@ -2,6 +2,7 @@
 #include "core/cost.h"
 #include "core/statistics/heights/roughness.h"
 #include "core/statistics/surface_pass.h"
+#include "jobs/like/like_hold.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -274,10 +275,55 @@ static int curve_put(const struct statistics_case *one_case,
     return 0;
 }
 
+/* Of surfaces that hold the patch realisations are the draws. */
+static int held_put(struct curve *curve, size_t n, struct case_result *out, struct error *err) {
+    struct curve_error *error = &curve->errors[ERROR_PATCH];
+    error->applies = true;
+    if (curve->columns > 0 || curve->standard_error == NULL)
+        return 0;
+    double *room = result_numbers(out, 3 * curve->n);
+    if (room == NULL)
+        return error_set(err, ERROR_MEMORY, "no memory left for errors by the patch");
+    for (size_t a = 0; a < curve->n; a++) {
+        const struct like_error point =
+            like_hold_error(curve->standard_error[a] * sqrt((double)n), n);
+        room[a] = point.value;
+        room[curve->n + a] = point.bound;
+        room[2 * curve->n + a] = point.standard_error;
+    }
+    error->value = room;
+    error->bound = room + curve->n;
+    error->standard_error = room + 2 * curve->n;
+    return 0;
+}
+
+static int held_errors(struct case_result *out, struct error *err) {
+    const size_t n = (size_t)out->realisations;
+    int status = 0;
+    for (size_t s = 0; s < out->scalar_count; s++) {
+        struct scalar *scalar = &out->scalars[s];
+        const struct like_error error =
+            like_hold_error(scalar->standard_error * sqrt((double)n), n);
+        if (isnan(scalar->value))
+            continue;
+        const bool known = isfinite(error.bound);
+        scalar->errors[ERROR_PATCH] =
+            (struct scalar_error){.applies = true,
+                                  .known = known,
+                                  .bound = known ? error.bound : 0,
+                                  .standard_error = known ? error.standard_error : 0};
+    }
+    for (size_t a = 0; a < out->curve_count && status == 0; a++)
+        status = held_put(&out->curves[a], n, out, err);
+    return status;
+}
+
 int statistics_draws_errors(const struct statistics_case *one_case,
                             const struct statistics_groups pairs[PAIR_SURFACES],
                             struct case_result *out, struct error *err) {
     int status = 0;
+    if (one_case->like.given && one_case->like.hold)
+        return held_errors(out, err);
     if (!like_draw_applies(&one_case->like))
         return 0;
     scalars_put(one_case, pairs, out);

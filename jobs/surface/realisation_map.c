@@ -5,18 +5,36 @@
 
 const char *const MAP_FIELD_NAMES[MAP_FIELDS] = {"height", "gap", "pressure"};
 
-int realisation_surface(const struct surface_case *surface, struct random_key key, double **z,
-                        struct surface_report *report, struct error *err) {
-    const size_t points = grid_points(&surface->grid);
+static int draw_held(const struct surface_case *surface, struct random_key key, double *heights,
+                     struct surface_report *report, struct error *err) {
+    struct extension *extension = NULL;
+    struct extend_result done;
+    int status = extension_create(&extension, &surface->held->map, surface->held->trend, err);
+    if (status == 0)
+        status = extension_draw(extension, key, heights, &done, err);
+    extension_destroy(&extension);
+    *report = (struct surface_report){.end = END_DIRECT};
+    return status;
+}
+
+static int generate(const struct surface_case *surface, struct random_key key, double *heights,
+                    struct surface_report *report, struct error *err) {
     struct generator *generator = NULL;
-    double *heights = array_create(points, sizeof *heights);
-    if (heights == NULL)
-        return error_memory(err, points * sizeof *heights, "a surface");
     int status =
         generator_create(&generator, &surface->spectrum, &surface->grid, &surface->options, err);
     if (status == 0)
         status = generator_run(generator, key, heights, report, err);
     generator_destroy(&generator);
+    return status;
+}
+
+int realisation_surface(const struct surface_case *surface, struct random_key key, double **z,
+                        struct surface_report *report, struct error *err) {
+    const size_t points = grid_points(&surface->grid);
+    double *heights = array_create(points, sizeof *heights);
+    if (heights == NULL)
+        return error_memory(err, points * sizeof *heights, "a surface");
+    int status = (surface->held != NULL ? draw_held : generate)(surface, key, heights, report, err);
     if (status != 0)
         free(heights);
     else

@@ -600,7 +600,27 @@ void surface_case_clear(struct surface_case *surface) {
     free(surface->counter);
     free(surface->counter_face);
     free(surface->plateau);
+    if (surface->held != NULL)
+        height_map_clear(&surface->held->map);
+    free(surface->held);
     *surface = (struct surface_case){0};
+}
+
+int surface_case_hold(struct surface_case *surface, size_t nx, size_t ny, const double *z,
+                      enum detrend trend, struct error *err) {
+    const double dx = grid_dx(&surface->grid);
+    struct held_patch *held = array_create(1, sizeof *held);
+    double *copy = array_create(nx * ny, sizeof *copy);
+    if (held == NULL || copy == NULL) {
+        free(held);
+        free(copy);
+        return error_memory(err, nx * ny * sizeof *copy, "a held patch");
+    }
+    memcpy(copy, z, nx * ny * sizeof *copy);
+    *held = (struct held_patch){
+        .map = {.grid = {nx, ny, dx * (double)nx, dx * (double)ny}, .z = copy}, .trend = trend};
+    surface->held = held;
+    return 0;
 }
 
 /* Returns the highest wave number along a side of so many points and lambda_s. */
@@ -646,6 +666,8 @@ double surface_case_bytes(const struct surface_case *surface) {
     const struct grid *grid = &surface->grid;
     struct surface_band band = surface_case_band(surface);
     double bytes = generator_bytes(grid, band.x, band.y, &surface->options);
+    if (surface->held != NULL)
+        bytes += extension_bytes(&surface->held->map.grid);
     const struct surface_options *second = surface_case_second_options(surface);
     if (second == NULL)
         return bytes;
@@ -656,6 +678,9 @@ double surface_case_bytes(const struct surface_case *surface) {
 double surface_case_nanoseconds(const struct surface_case *surface, const struct grid *grid) {
     double own = cost_generation(&surface->options, grid);
     const struct surface_options *second = surface_case_second_options(surface);
+    if (surface->held != NULL)
+        own +=
+            1e9 * extension_seconds(&surface->held->map.grid) / (double)grid_points(&surface->grid);
     return second == NULL ? own : own + cost_generation(second, grid);
 }
 

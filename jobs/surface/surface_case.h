@@ -2,6 +2,7 @@
 #ifndef RUGO_JOBS_SURFACE_SURFACE_CASE_H
 #define RUGO_JOBS_SURFACE_SURFACE_CASE_H
 
+#include "core/map/extend.h"
 #include "core/surface/counter_face.h"
 #include "core/surface/height_moments.h"
 #include "core/surface/plateau_face.h"
@@ -9,6 +10,12 @@
 #include "jobs/surface/surface_law.h"
 #include "schema/study/values.h"
 #include <math.h>
+
+/* A measured patch that surfaces hold in their first rows and columns (core/map/extend.h). */
+struct held_patch {
+    struct height_map map; /* owned, in lambda_s */
+    enum detrend trend;    /* that was taken out of it */
+};
 
 struct surface_case {
     int dimension;    /* 1 profile, 2 surface */
@@ -31,6 +38,7 @@ struct surface_case {
     struct counter_face *counter_face; /* owned: the same, for generators */
     struct plateau_face *plateau;      /* owned: that of a stratified face (surface_plateau.h), with
                                           wavelengths in lambda_s of the valleys; NULL: none */
+    struct held_patch *held;           /* owned; NULL: surfaces hold no patch */
 };
 /* Highest wave numbers along x and y, in units of 2 pi over that side; y of profiles is 0. */
 struct surface_band {
@@ -50,6 +58,10 @@ int surface_case_fill(struct surface_case *out, struct values *values,
 /* Returns the dimension of the surface, 1 or 2, which does not depend on the other values. */
 int surface_case_dimension(struct values *values);
 void surface_case_clear(struct surface_case *surface);
+/* Makes surfaces hold nx by ny heights, so far apart as the points of the grid, which is twice as
+ * large along each side; z is copied. ERROR_MEMORY. */
+int surface_case_hold(struct surface_case *surface, size_t nx, size_t ny, const double *z,
+                      enum detrend trend, struct error *err);
 
 /* Returns whether surfaces are translated from a Gaussian field, which alone is band limited. */
 static inline bool surface_case_translated(const struct surface_case *surface) {
@@ -72,8 +84,9 @@ static inline bool surface_case_band_limited(const struct surface_case *surface)
         return false;
     bool own = surface->options.heights.type == HEIGHTS_GAUSSIAN ||
                (surface->options.keep == KEEP_SPECTRUM && !surface_case_translated(surface));
-    return own && (counter == NULL || counter->options.heights.type == HEIGHTS_GAUSSIAN ||
-                   counter->options.keep == KEEP_SPECTRUM);
+    return own && surface->held == NULL &&
+           (counter == NULL || counter->options.heights.type == HEIGHTS_GAUSSIAN ||
+            counter->options.keep == KEEP_SPECTRUM);
 }
 /* Returns whether each surface has the prescribed spectrum exactly; with random amplitudes, and of
  * the sum of two faces, only their mean has. */

@@ -63,8 +63,8 @@ export function showSurface(root, signal) {
     }
   }
 
-  function send(file, format) {
-    const query = new URLSearchParams({ name: file.name, format });
+  function send(file, format, more = {}) {
+    const query = new URLSearchParams({ name: file.name, format, ...more });
     for (const [name, value] of Object.entries(kept.options)) if (value && value !== "auto") query.set(name, value);
     return request(`/v1/characterise?${query}`, { method: "POST", body: file, signal, headers: { "Content-Type": "application/octet-stream" } });
   }
@@ -75,12 +75,12 @@ export function showSurface(root, signal) {
     fault.textContent = [error.message + cut, ...(error.faults ?? []).map((one) => `${one.pointer}: ${one.detail}`)].join("; ");
   }
 
-  /** The new-study form, filled with surfaces like this one. */
-  async function begin(file) {
+  /** The new-study form, filled with surfaces like this one, or with surfaces that hold it and go on. */
+  async function begin(file, more = {}) {
     message.textContent = "Fitting …";
     fault.textContent = "";
     try {
-      beginFrom(await (await send(file, "study")).json());
+      beginFrom(await (await send(file, "study", more)).json());
     } catch (error) {
       if (!signal.aborted) tell(error, file);
     }
@@ -92,7 +92,8 @@ export function showSurface(root, signal) {
     place.replaceChildren(make("div", { class: "tools" },
       make("button", { onclick: () => save(svg, "image/svg+xml", `${base}.svg`) }, "Save the page (SVG)"),
       make("button", { onclick: () => save(JSON.stringify(found, null, 1), "application/json", `${base}.json`) }, "Save the numbers (JSON)"),
-      make("button", { onclick: () => begin(file) }, "Make a study of surfaces like this")),
+      make("button", { onclick: () => begin(file) }, "Make a study of surfaces like this"),
+      make("button", { onclick: () => begin(file, { hold: "true" }) }, "Make a study of surfaces that hold this")),
       make("div", { class: "scroll sheet", tabindex: "0", role: "figure", "aria-label": `page about ${file.name}` },
         make("img", { class: "picture", alt: `map, heights, spectrum and scales of ${file.name}, with the main parameters`, src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}` })),
       make("details", {}, make("summary", {}, "All values"), found.map?.unit === "m" ? make("p", {}, "Lengths are in metres.") : "", tableOf(found)));

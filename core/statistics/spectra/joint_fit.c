@@ -41,6 +41,28 @@ double joint_fit_density(const struct joint_fit *fit, bool profile, double wave_
                                       -((profile ? 1 : 2) + 2 * fit->hurst.value));
 }
 
+struct lay joint_fit_lay(size_t count, const struct lay *lays) {
+    static const double LEAST = 1e-6; /* of standard errors */
+    double ratio = 0, ratios = 0, sine = 0, cosine = 0, angles = 0;
+    for (size_t n = 0; n < count; n++) {
+        if (lay_is_plain(&lays[n]))
+            continue;
+        const double of_ratio = pow(fmax(lays[n].ratio_error, LEAST), -2);
+        const double of_angle = pow(fmax(lays[n].angle_error, LEAST), -2);
+        ratio += of_ratio * log(lays[n].ratio);
+        ratios += of_ratio;
+        sine += of_angle * sin(2 * lays[n].angle); /* a lay has two directions */
+        cosine += of_angle * cos(2 * lays[n].angle);
+        angles += of_angle;
+    }
+    if (ratios == 0)
+        return LAY_NONE;
+    return (struct lay){.ratio = exp(ratio / ratios),
+                        .angle = atan2(sine, cosine) / 2,
+                        .ratio_error = 1 / sqrt(ratios),
+                        .angle_error = 1 / sqrt(angles)};
+}
+
 /* --- bands --- */
 
 /* Returns how many times larger the variance of a mean over the rings is than if they were

@@ -8,7 +8,8 @@
 enum { JOINT_PATCHES_MOST = 16 };
 
 struct joint_patch {
-    const struct map_spectrum *spectrum; /* over circles; borrowed, as the next */
+    const struct map_spectrum *spectrum; /* over circles, or over the ellipses of the one lay of
+                                            all; borrowed, as the next */
     const struct spectrum_fit *fit;      /* of the patch alone: its trusted band, noise and ends */
     /* Filled by joint_fit_measure: the logarithm of its density over that of the law, less the
      * scatter that it shares with the others, and the standard error that its waves give that;
@@ -26,6 +27,9 @@ struct joint_fit {
     double between, p_value;
     double deviance, deviance_limit, freedom; /* as in struct spectrum_fit */
 };
+/* Returns the one lay of several patches: the mean of those that have one, LAY_NONE among them left
+ * out, by their standard errors (F18.51); LAY_NONE where none has. */
+struct lay joint_fit_lay(size_t count, const struct lay *lays);
 /* All patches are surfaces, or all profiles. ERROR_INPUT where fewer than two have trusted waves;
  * ERROR_MEMORY. */
 int joint_fit_measure(size_t count, struct joint_patch *patches, struct joint_fit *out,

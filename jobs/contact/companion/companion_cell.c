@@ -104,6 +104,8 @@ static bool set_length(const struct contact_case *one_case, double length,
     double own = surface_case_bytes(&one_case->surface) +
                  coarse_solver_bytes(one_case, &contact_case_finest(one_case)->grid);
     *out = (struct companion_plan){.length = length};
+    if (one_case->surface.held != NULL)
+        return false; /* the patch decides on the cell */
     return choose_grids(one_case, out) && cell_bytes(one_case, out) <= fmax(BYTES_LEAST, own);
 }
 

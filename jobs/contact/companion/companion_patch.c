@@ -6,6 +6,7 @@
 #include "jobs/contact/companion/companion.h"
 #include "jobs/contact/companion/companion_own.h"
 #include "jobs/like/like_draw.h"
+#include "jobs/like/like_hold.h"
 #include <stdlib.h>
 
 /* Series: the surface of the case, and that of the drawn parameters. */
@@ -107,7 +108,28 @@ static int patch_solve(void *workspace, const struct contact_surface *surface,
 
 static bool patch_applies(const struct contact_case *one_case, size_t model) {
     (void)model;
-    return like_draw_applies(&one_case->like);
+    return like_draw_applies(&one_case->like) || one_case->like.hold;
+}
+
+/* Of surfaces that hold the patch realisations are the draws. */
+static bool held_errors(const struct contact_tally *tally, enum contact_measure measure,
+                        size_t model, struct contact_error *out) {
+    const struct contact_case *one_case = tally->one_case;
+    const size_t finest = one_case->level_count - 1;
+    bool any = false;
+    for (size_t k = 0; k < contact_case_values(one_case, measure_row(measure)->by); k++) {
+        const struct estimate mean = contact_mean(tally, measure, model, finest, k);
+        const size_t cell = contact_case_cell(one_case, model, finest, k);
+        const size_t n =
+            (size_t)(tally->realisations - contact_tally_valueless(tally, measure, cell));
+        const struct like_error error = like_hold_error(mean.standard_error * sqrt((double)n), n);
+        out[k] = (struct contact_error){.value = error.value,
+                                        .bound = error.bound,
+                                        .standard_error = error.standard_error,
+                                        .order = NAN};
+        any = any || isfinite(out[k].value);
+    }
+    return any;
 }
 
 static bool patch_errors(const struct contact_tally *tally, enum contact_measure measure,
@@ -115,6 +137,8 @@ static bool patch_errors(const struct contact_tally *tally, enum contact_measure
     const struct contact_case *one_case = tally->one_case;
     const size_t finest = one_case->level_count - 1;
     bool any = false;
+    if (one_case->like.hold)
+        return held_errors(tally, measure, model, out);
     if (!contact_case_has(one_case, COMPANION_PATCH))
         return false;
     for (size_t k = 0; k < contact_case_values(one_case, measure_row(measure)->by); k++) {

@@ -15,7 +15,8 @@
 #define CONTACT_QUANTITY_LIST(ENTRY)                                                               \
     ENTRY(CONDUCTANCE, 1)                                                                          \
     ENTRY(LEAK, 7)                                                                                 \
-    ENTRY(HARDNESS, 5) ENTRY(UNLOAD, 3) ENTRY(FRICTION, 8) ENTRY(COUPLING, 3) ENTRY(SLIDING, 6)
+    ENTRY(HARDNESS, 5)                                                                             \
+    ENTRY(UNLOAD, 3) ENTRY(FRICTION, 8) ENTRY(COUPLING, 3) ENTRY(SLIDING, 6) ENTRY(HELD, 1)
 
 /* NAME_AT: its position, as in quantities_asked. NAME_MEASURE: the number of its first measure. */
 #define CONTACT_QUANTITY_POSITION(name, count) name##_AT,

@@ -17,7 +17,7 @@ struct characterise_options {
     struct map_options map;
     const char *trust_from, *trust_to; /* NULL: by the map */
     int format;
-    bool all, together;
+    bool all, together, hold;
     const char *group;            /* NULL: none is asked for */
     const char *picture, *report; /* NULL: none, as the next */
     const char *acf, *psd;
@@ -33,6 +33,8 @@ static const struct option_row OPTIONS[] = {
      "the shortest ones (by the map: where noise, or what the instrument takes, begins)"},
     {"format", 0, OPTION_CHOICE, 0, 0, AT(format), "text|json|svg|study", "text",
      "what to print; svg: the page of --report; study: one of surfaces like the map"},
+    {"hold", 0, OPTION_FLAG, 0, 0, AT(hold), NULL, NULL,
+     "--format study: its surfaces hold the map itself and go on as its law says"},
     {"all", 0, OPTION_FLAG, 0, 0, AT(all), NULL, NULL,
      "print all values and tables in place of one screen"},
     {"together", 0, OPTION_FLAG, 0, 0, AT(together), NULL, NULL,
@@ -54,9 +56,9 @@ static const struct option_row OPTIONS[] = {
 
 enum { FORMAT_TEXT, FORMAT_JSON, FORMAT_SVG, FORMAT_STUDY };
 
-static int print_study(const struct map_figure *figure, struct error *err) {
+static int print_study(const struct map_figure *figure, bool hold, struct error *err) {
     cJSON *study = NULL;
-    int status = like_study_make(&study, figure->map, figure->record, err);
+    int status = like_study_make(&study, figure->map, figure->record, hold, err);
     if (status == 0)
         status = output_document(study, err);
     cJSON_Delete(study);
@@ -74,7 +76,7 @@ static int print(const struct characterise_options *options, const struct map_fi
     else if (format == FORMAT_SVG)
         status = map_figure_draw(figure, stdout, err);
     else if (format == FORMAT_STUDY)
-        status = print_study(figure, err);
+        status = print_study(figure, options->hold, err);
     else if (named_values_print_json(stdout, figure->found))
         putchar('\n');
     else

@@ -61,7 +61,10 @@ static int run(const void *values, const char *const *arguments) {
     if (height_map_format_of(arguments[1]) == HEIGHT_MAP_FORMATS)
         return usage_error("convert", "%.60s: allowed are files that end in .npy, .csv or .xyz",
                            arguments[1]);
-    int status = map_options_read_any(&map, &record, arguments[0], &options->map, &err);
+    struct map_options asked = options->map;
+    if (asked.words.extend != NULL && asked.words.detrend == ASK_DETREND_NONE)
+        asked.words.detrend = ASK_DETREND_PLANE; /* a law that repeats has no plane */
+    int status = map_options_read_any(&map, &record, arguments[0], &asked, &err);
     if (status == 0)
         status = write_map(arguments[1], &map, &record, &err);
     if (status == 0)

@@ -1,6 +1,7 @@
 #include "server/command/map/like_study.h"
 #include "core/map/height_map.h"
 #include "core/map/preparation.h"
+#include "core/statistics/spectra/joint_fit.h"
 #include "jobs/kind.h"
 #include "jobs/like/like_fit.h"
 #include "jobs/like/like_parameters.h"
@@ -24,12 +25,15 @@
 enum { LIKE_NUMBERS_MOST = 8, LIKE_NUMBER_SIZE = 32 };
 
 struct like_options {
-    const char *file; /* borrowed, as all texts */
+    const char *file; /* borrowed, as all texts: the first of several */
+    size_t file_count;
+    const char *files[JOINT_PATCHES_MOST];
     struct map_options map;
     int spectrum, heights; /* enum like_spectrum, enum like_heights */
     int contact;           /* 0: the map is pressed, too, mirrored; 1: it is not */
     int off;               /* 0: refused; 1: stated */
     int uncertainty;       /* 0: posterior; 1: none */
+    bool hold;             /* the surfaces hold the map */
     size_t number_count;
     char numbers[LIKE_NUMBERS_MOST]
                 [LIKE_NUMBER_SIZE]; /* texts of numbers that were given as such */
@@ -98,6 +102,7 @@ static const struct option_row ROWS[] = {
     {"contact", 0, OPTION_CHOICE, 0, 0, AT(contact), "mirrored|none", "mirrored", NULL},
     {"off", 0, OPTION_CHOICE, 0, 0, AT(off), "refused|stated", "refused", NULL},
     {"uncertainty", 0, OPTION_CHOICE, 0, 0, AT(uncertainty), "posterior|none", "posterior", NULL},
+    {"hold", 0, OPTION_FLAG, 0, 0, AT(hold), NULL, NULL, NULL},
     MAP_OPTION_ROWS(struct like_options, map),
     {0}};
 
@@ -175,6 +180,24 @@ static int refuse_name(const char *name, struct error *err) {
     return error_set(err, ERROR_INPUT, "unknown name \"%.60s\"; there are %s", name, known);
 }
 
+/* Takes the names of several maps of one surface. */
+static int take_files(struct like_options *out, const cJSON *list, struct error *err) {
+    const cJSON *name;
+    out->file_count = 0;
+    cJSON_ArrayForEach(name, list) {
+        const char *text = cJSON_GetStringValue(name);
+        if (text == NULL || *text == '\0' || out->file_count == JOINT_PATCHES_MOST)
+            return error_set(err, ERROR_INPUT,
+                             "a list of files has the names of 1 to %d maps of one surface",
+                             (int)JOINT_PATCHES_MOST);
+        out->files[out->file_count++] = text;
+    }
+    if (out->file_count == 0)
+        return error_set(err, ERROR_INPUT, "a list without files");
+    out->file = out->files[0];
+    return 0;
+}
+
 /* Reads them from the value, which lends its texts. ERROR_INPUT names the member, its value and
  * what is allowed. */
 static int like_options_parse(struct like_options *out, const cJSON *like, struct error *err) {
@@ -182,20 +205,26 @@ static int like_options_parse(struct like_options *out, const cJSON *like, struc
                                  .map.convert = MAP_CONVERT_SECONDS};
     int status = 0;
     if (cJSON_IsArray(like))
-        return error_set(err, ERROR_INPUT,
-                         "a list of files; one study is like one measured surface");
+        return take_files(out, like, err);
     if (!cJSON_IsString(like) && !cJSON_IsObject(like))
-        return error_set(err, ERROR_INPUT, "neither the name of a file nor an object with it");
+        return error_set(err, ERROR_INPUT,
+                         "neither the name of a file nor a list of them, nor an object with it");
     if (cJSON_IsString(like))
         out->file = like->valuestring;
     for (const cJSON *member = like->child; member != NULL && status == 0; member = member->next) {
         const struct option_row *row = ROWS;
+        if (strcmp(member->string, "file") == 0 && cJSON_IsArray(member)) {
+            status = take_files(out, member, err);
+            continue;
+        }
         while (row->name != NULL && !is_named(row, member->string))
             row++;
         status = row->name != NULL ? take(out, row, member, err) : refuse_name(member->string, err);
     }
     if (status == 0 && (out->file == NULL || *out->file == '\0'))
         status = error_set(err, ERROR_INPUT, "\"file\" is missing, the name of a measured surface");
+    if (out->file_count == 0)
+        out->files[out->file_count++] = out->file;
     return status;
 }
 
@@ -240,26 +269,69 @@ static struct like_source source_of(const struct preparation_record *record, cha
                                 .bytes = bytes != NULL ? strtoull(bytes, NULL, 10) : 0};
 }
 
-static int fit_map(cJSON *document, const char *place, const struct like_options *options,
-                   struct error *err) {
-    struct height_map map = {0};
-    struct preparation_record record = {0};
-    char steps[PREPARATION_STEPS_TEXT];
-    int status = map_options_read(&map, &record, place, &options->map, err);
-    if (status != 0)
-        return status;
-    struct like_source source = source_of(&record, steps);
-    source.file = options->file;
-    source.spectrum = (enum like_spectrum)options->spectrum;
-    source.heights = (enum like_heights)options->heights;
-    source.off_stated = options->off == 1;
-    source.uncertainty =
+/* The maps of a study, with what is known of each. */
+struct maps {
+    size_t count;
+    struct height_map maps[JOINT_PATCHES_MOST];
+    struct preparation_record records[JOINT_PATCHES_MOST];
+    char steps[JOINT_PATCHES_MOST][PREPARATION_STEPS_TEXT];
+    struct like_source sources[JOINT_PATCHES_MOST];
+};
+
+static void choose_source(struct like_source *source, const struct like_options *options) {
+    source->spectrum = (enum like_spectrum)options->spectrum;
+    source->heights = (enum like_heights)options->heights;
+    source->off_stated = options->off == 1 || options->hold;
+    source->hold = options->hold;
+    source->uncertainty =
         options->uncertainty == 0 ? LIKE_UNCERTAINTY_POSTERIOR : LIKE_UNCERTAINTY_NONE;
-    status = like_fit(cJSON_GetObjectItemCaseSensitive(document, "surface"), &map, &source, err);
-    if (status == 0 && options->contact == 0)
-        status = like_contact_add(document, &map, err);
-    height_map_clear(&map);
-    return status == 0 ? 0 : error_context(err, "%s", place);
+}
+
+static int read_maps(struct maps *maps, const char *study, const struct like_options *options,
+                     struct error *err) {
+    int status = 0;
+    for (size_t m = 0; m < options->file_count && status == 0; m++) {
+        char *place = place_of(study, options->files[m]);
+        if (place == NULL)
+            return error_memory(err, strlen(options->files[m]), "a file's name");
+        status = map_options_read(&maps->maps[m], &maps->records[m], place, &options->map, err);
+        if (status == 0) {
+            maps->count++;
+            maps->sources[m] = source_of(&maps->records[m], maps->steps[m]);
+            maps->sources[m].file = options->files[m];
+            choose_source(&maps->sources[m], options);
+        }
+        free(place);
+    }
+    return status;
+}
+
+/* Names the one file at fault; of several the message does. */
+static int name_file(const char *study, const struct like_options *options, struct error *err) {
+    char *place = options->file_count == 1 ? place_of(study, options->file) : NULL;
+    int status = place != NULL ? error_context(err, "%s", place) : ERROR_INPUT;
+    free(place);
+    return status;
+}
+
+static int fit_maps(cJSON *document, const char *study, const struct like_options *options,
+                    struct error *err) {
+    struct maps *maps = array_create(1, sizeof *maps);
+    if (maps == NULL)
+        return error_memory(err, sizeof *maps, "maps of a surface");
+    int status = read_maps(maps, study, options, err);
+    const bool read = status == 0;
+    if (status == 0)
+        status = like_fit_together(cJSON_GetObjectItemCaseSensitive(document, "surface"),
+                                   maps->count, maps->maps, maps->sources, err);
+    if (status == 0 && options->contact == 0 && !options->hold)
+        status = like_contact_add(document, &maps->maps[0], err);
+    for (size_t m = 0; m < maps->count; m++)
+        height_map_clear(&maps->maps[m]);
+    free(maps);
+    if (status == ERROR_INPUT && read)
+        name_file(study, options, err);
+    return status;
 }
 
 static int fit_study(cJSON *document, const char *study, struct error *err) {
@@ -267,12 +339,8 @@ static int fit_study(cJSON *document, const char *study, struct error *err) {
     cJSON *surface = cJSON_GetObjectItemCaseSensitive(document, "surface");
     cJSON *like = cJSON_DetachItemFromObjectCaseSensitive(surface, "like");
     int status = like_options_parse(&options, like, err);
-    char *place = status == 0 ? place_of(study, options.file) : NULL;
-    if (status == 0 && place == NULL)
-        status = error_memory(err, strlen(options.file), "a file's name");
     if (status == 0)
-        status = fit_map(document, place, &options, err);
-    free(place);
+        status = fit_maps(document, study, &options, err);
     cJSON_Delete(like);
     return status;
 }
@@ -337,18 +405,19 @@ static int check_study(const cJSON *document, struct error *err) {
 }
 
 int like_study_make(cJSON **out, const struct height_map *map,
-                    const struct preparation_record *record, struct error *err) {
-    enum { REALISATIONS = 100, NAME_SIZE = 80 };
+                    const struct preparation_record *record, bool hold, struct error *err) {
+    enum { REALISATIONS = 100, DRAWS = 16, NAME_SIZE = 80 };
     char steps[PREPARATION_STEPS_TEXT], name[NAME_SIZE];
     struct like_source source = source_of(record, steps);
     cJSON *study = cJSON_CreateObject();
     source.off_stated = true; /* by the study that is written */
+    source.hold = hold;
     source.uncertainty = LIKE_UNCERTAINTY_POSTERIOR;
     snprintf(name, sizeof name, "like %.70s", source.file != NULL ? source.file : "a map");
     cJSON *surface = NULL;
     if (study != NULL && field_put_text(study, "name", name) &&
         field_put_text(study, "kind", "statistics") &&
-        cJSON_AddNumberToObject(study, "realisations", REALISATIONS) != NULL)
+        cJSON_AddNumberToObject(study, "realisations", hold ? DRAWS : REALISATIONS) != NULL)
         surface = cJSON_AddObjectToObject(study, "surface");
     int status =
         surface != NULL ? like_fit(surface, map, &source, err) : error_memory(err, 0, "a study");

@@ -16,9 +16,10 @@
 int like_study_fit(char **text, size_t *size, const char *path, const char *const *overrides,
                    bool *fitted, struct error *err);
 
-/* Makes a study of statistics of surfaces like the map, fitted, for the caller to delete.
+/* Makes a study of statistics of surfaces like the map, fitted, for the caller to delete. hold: the
+ * surfaces hold the map, which is in the study.
  * ERROR_INPUT where its reader would refuse what was measured. */
 int like_study_make(cJSON **out, const struct height_map *map,
-                    const struct preparation_record *record, struct error *err);
+                    const struct preparation_record *record, bool hold, struct error *err);
 
 #endif

@@ -44,7 +44,8 @@ static const struct {
                {"window", "window", false},
                {"boundary", "boundary", false},
                {"trust_from", "trust-from", false},
-               {"trust_to", "trust-to", false}};
+               {"trust_to", "trust-to", false},
+               {"hold", "hold", true}};
 enum { OPTION_COUNT = sizeof OPTIONS / sizeof *OPTIONS };
 
 struct command_line {

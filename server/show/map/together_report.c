@@ -17,6 +17,23 @@ static void add_interval(struct named_values *out, const char *const names[3],
     named_values_add_length(out, "together", names[2], interval->high, power);
 }
 
+/* With the ends of 95 % intervals. */
+static void add_lay(struct named_values *out, const struct lay *lay) {
+    static const double NORMAL = 1.96, DEGREES = 180 / M_PI;
+    if (lay_is_plain(lay))
+        return;
+    named_values_add(out, "together", "lay_ratio", lay->ratio);
+    named_values_add(out, "together", "lay_ratio_low",
+                     lay->ratio * exp(-NORMAL * lay->ratio_error));
+    named_values_add(out, "together", "lay_ratio_high",
+                     lay->ratio * exp(NORMAL * lay->ratio_error));
+    named_values_add(out, "together", "lay_angle", lay->angle * DEGREES);
+    named_values_add(out, "together", "lay_angle_low",
+                     (lay->angle - NORMAL * lay->angle_error) * DEGREES);
+    named_values_add(out, "together", "lay_angle_high",
+                     (lay->angle + NORMAL * lay->angle_error) * DEGREES);
+}
+
 static void add_law(struct named_values *out, const struct map_together *together) {
     static const char *const HURST[] = {"hurst", "hurst_low", "hurst_high"};
     static const char *const ROLLOFF[] = {"rolloff_wavelength", "rolloff_wavelength_low",
@@ -31,6 +48,7 @@ static void add_law(struct named_values *out, const struct map_together *togethe
     add_interval(out, ROLLOFF, &fit->rolloff_wavelength, 1);
     named_values_add_length(out, GROUP, "reference_wavelength", fit->reference_wavelength, 1);
     add_interval(out, AMPLITUDE, &fit->amplitude, together->profile ? 3 : 4);
+    add_lay(out, &together->lay);
     named_values_add(out, GROUP, "between_maps", fit->between);
     named_values_add(out, GROUP, "between_maps_p_value", fit->p_value);
     named_values_add(out, GROUP, "deviance", fit->deviance);
@@ -76,7 +94,7 @@ static bool add_rings(struct named_values *out, const struct map_together *toget
     double *columns[COLUMNS];
     size_t rows = 0, row = 0;
     for (size_t m = 0; m < together->count; m++)
-        rows += together->maps[m].spectrum->rings - 1;
+        rows += together_map_rings(&together->maps[m])->rings - 1;
     for (int c = 0; c < COLUMNS; c++) {
         const int power = together->profile ? 3 : 4;
         columns[c] = named_values_column_length(out, "psd", NAMES[c], rows,
@@ -87,7 +105,7 @@ static bool add_rings(struct named_values *out, const struct map_together *toget
             return false;
     }
     for (size_t m = 0; m < together->count; m++) {
-        const struct map_spectrum *s = together->maps[m].spectrum;
+        const struct map_spectrum *s = together_map_rings(&together->maps[m]);
         for (size_t r = 1; r < s->rings; r++, row++) {
             columns[MAP][row] = (double)(m + 1);
             columns[WAVE_NUMBER][row] = s->wave_number[r];
@@ -175,7 +193,7 @@ static int drawn_create(struct drawn *out, size_t count, struct error *err) {
 static int take(struct drawn *out, const struct map_together *together, size_t m, bool lines,
                 const struct units *units, struct error *err) {
     const struct together_map *map = &together->maps[m];
-    const struct map_spectrum *s = map->spectrum;
+    const struct map_spectrum *s = lines ? map->spectrum : together_map_rings(map);
     const size_t count = lines ? line_psd_count(s, 0) : s->rings - 1;
     const int power = lines || together->profile ? 3 : 4;
     int status = drawn_create(out, count, err);

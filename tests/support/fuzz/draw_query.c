@@ -46,6 +46,7 @@ static const struct {
     {"boundary", {"periodic", "open"}, {"auto"}},
     {"trust_from", {"1um"}, {"0", "1e300um"}},
     {"trust_to", {"2um"}, {"0", "1e300um"}},
+    {"hold", {"true", "false"}, {"yes"}},
 };
 enum { VALUES_COUNT = sizeof VALUES / sizeof *VALUES };
 

@@ -1,7 +1,8 @@
 /* Protects: a study that names a measured surface is fitted where the command runs, relative to the
  * study's folder; here and over HTTP it gives the same curves, and the service never needs the
- * file; a study with a file alone is refused over HTTP with the command to use; check shows what
- * was fitted, and what it prints is a study. */
+ * file; so it does where surfaces hold the patch, or are like several maps; a study with a file
+ * alone is refused over HTTP with the command to use; check shows what was fitted, and what it
+ * prints is a study. */
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include <signal.h>
@@ -103,6 +104,65 @@ static void contact(void **state) {
     assert_false(contains("shell.out", "contact_areas"));
 }
 
+/* Both here and by a service that has no file. */
+static void check_both(const char *name) {
+    struct process server;
+    char line[300], url[64];
+    snprintf(line, sizeof line, "$RUGO run --db %s-near.db data/%s.json", name, name);
+    assert_int_equal(run_shell(line), 0);
+    snprintf(line, sizeof line, "%s-far.db", name);
+    snprintf(url, sizeof url, "http://127.0.0.1:%u",
+             serve_start(&server, (const char *[]){"--db", line, NULL}));
+    snprintf(line, sizeof line, "data/%s.json", name);
+    assert_int_equal(run_rugo("submit", (const char *[]){"submit", "--server", url, line, NULL}),
+                     0);
+    assert_int_equal(run_rugo("work", (const char *[]){"work", "--server", url, "--drain", NULL}),
+                     0);
+    process_kill(&server, SIGTERM);
+    assert_int_equal(process_wait(&server, 20), 0);
+    snprintf(line, sizeof line,
+             "for d in near far; do $RUGO curves --db %s-$d.db %s > %s-$d.json || exit 1; done",
+             name, name, name);
+    assert_int_equal(run_shell(line), 0);
+    snprintf(line, sizeof line, "%s-near.json", name);
+    char *near_cases = slurp_from(line, "\"cases\":");
+    snprintf(line, sizeof line, "%s-far.json", name);
+    char *far_cases = slurp_from(line, "\"cases\":");
+    assert_string_equal(near_cases, far_cases);
+    free(near_cases);
+    free(far_cases);
+}
+
+static void surfaces_hold_the_patch(void **state) {
+    (void)state;
+    spit("data/held.json",
+         "{\"name\":\"held\",\"kind\":\"contact\",\"realisations\":3,\"surface\":{\"like\":"
+         "{\"file\":\"patch.npy\",\"crop\":\"0,0,40,32\",\"dx\":0.25,\"hold\":true}},"
+         "\"contact\":{\"pressures\":{\"values\":[0.1,0.2]}}}");
+    check_both("held");
+    assert_true(contains("held-near.json", "\"held_contact_area\""));
+    assert_true(contains("held-near.json", "\"patch_bound\":"));
+    assert_int_equal(run_shell("$RUGO generate data/held.json --realisation 1 -o held.npy"), 0);
+    assert_int_equal(run_shell("$RUGO check data/held.json"), 0);
+    assert_true(contains("shell.out", "80 x 64"));
+    assert_int_equal(run_shell("$RUGO check data/held.json --set surface/length_ratio=8"), 2);
+    assert_true(contains("shell.err", "twice the sides of the patch"));
+}
+
+static void several_maps_are_of_one_surface(void **state) {
+    (void)state;
+    assert_int_equal(run_shell("$RUGO convert data/patch.npy data/fine.csv --crop 0,0,64,64 --dx "
+                               "0.25 && $RUGO convert data/patch.npy data/wide.csv --crop "
+                               "0,0,128,128 --stride 2 --dx 0.25"),
+                     0);
+    spit("data/several.json", "{\"name\":\"several\",\"kind\":\"statistics\",\"realisations\":3,"
+                              "\"surface\":{\"like\":[\"fine.csv\",\"wide.csv\"]}}");
+    check_both("several");
+    assert_true(contains("several-near.json", "wide.csv, SHA-256 "));
+    assert_true(contains("several-near.json", "\"percentile_rms_slope\":{"));
+    assert_true(contains("several-near.json", "\"patch_bound\":"));
+}
+
 static void a_file_alone_is_refused_over_http(void **state) {
     (void)state;
     struct process server;
@@ -142,7 +202,13 @@ static void faults_are_named(void **state) {
         const char *like, *words;
     } FAULTS[] = {
         {"\"none.npy\"", "/surface/like: data/none.npy: No such file"},
-        {"[\"patch.npy\",\"patch.npy\"]", "/surface/like: a list of files"},
+        {"[\"patch.npy\",7]", "/surface/like: a list of files has the names"},
+        {"{\"file\":[],\"dx\":0.25}", "/surface/like: a list without files"},
+        {"{\"file\":[\"patch.npy\",\"none.npy\"],\"dx\":1}", "data/none.npy: No such file"},
+        {"{\"file\":[\"patch.npy\",\"patch.npy\"],\"dx\":1,\"hold\":true}",
+         "surfaces hold one map"},
+        {"{\"file\":[\"patch.npy\",\"patch.npy\"],\"dx\":1,\"heights\":\"fit\"}",
+         "of several allowed: quantiles, gaussian"},
         {"7", "/surface/like: neither the name of a file"},
         {"{\"file\":\"patch.npy\",\"detrend\":\"cubic\"}", "\"detrend\": \"cubic\" is not auto|"},
         {"{\"file\":\"patch.npy\",\"trend\":\"plane\"}",
@@ -180,6 +246,8 @@ int main(void) {
         cmocka_unit_test(near_and_over_http),
         cmocka_unit_test(too_small_a_cell),
         cmocka_unit_test(contact),
+        cmocka_unit_test(surfaces_hold_the_patch),
+        cmocka_unit_test(several_maps_are_of_one_surface),
         cmocka_unit_test(a_file_alone_is_refused_over_http),
         cmocka_unit_test(check_shows_what_was_fitted),
         cmocka_unit_test(faults_are_named),

@@ -1,7 +1,7 @@
 /* Protects: surfaces that hold a patch are draws from those of their law, given the patch: their
- * means and covariances are those of a dense solution, with holes too; where the patch is itself of
- * the law, they have the law's spectrum, and the patch is held to its noise within few steps; a
- * patch of another law is noticed. */
+ * means and covariances are those of a dense solution, with holes and without a plane too; where
+ * the patch is itself of the law, they have the law's spectrum, and the patch is held to its noise
+ * within few steps; a patch of another law is noticed. */
 #include "core/surface/conditional.h"
 #include "core/surface/transform.h"
 #include "tests/support/check.h"
@@ -94,20 +94,29 @@ static void dense_solve(size_t n, double matrix[][MEASURED_MOST], double *right)
     }
 }
 
+/* Returns the covariance of a plane of any height and slopes, which measured points have beside the
+ * law; 0 without a trend. */
+static double plane(const struct conditional_law *law, int trend, size_t a, size_t b) {
+    static const double LARGE = 1e4;
+    const size_t nx = law->cell->nx;
+    return trend == 0 ? 0 : LARGE * (1 + (double)((a % nx) * (b % nx) + (a / nx) * (b / nx)));
+}
+
 /* Fills weight[measured point] of the mean height at a point of the cell. */
-static void weigh(const struct conditional_law *law, size_t n, const size_t *at, size_t point,
-                  double *weight) {
+static void weigh(const struct conditional_law *law, int trend, size_t n, const size_t *at,
+                  size_t point, double *weight) {
     double matrix[MEASURED_MOST][MEASURED_MOST];
     for (size_t a = 0; a < n; a++) {
         weight[a] = covariance(law, at[a], point);
         for (size_t b = 0; b < n; b++)
-            matrix[a][b] = covariance(law, at[a], at[b]) + (a == b ? law->noise : 0);
+            matrix[a][b] = covariance(law, at[a], at[b]) + plane(law, trend, at[a], at[b]) +
+                           (a == b ? law->noise : 0);
     }
     dense_solve(n, matrix, weight);
 }
 
-static void draws_are_those_of_a_dense_solution(void **state) {
-    (void)state;
+/* trend: 2 where a plane was taken out of the patch. */
+static void compare_with_dense(int trend) {
     enum { DRAWS = 6000 };
     static const struct grid GRID = {2 * NX, 2 * NY, 2 * NX, 2 * NY};
     double *power = law_of(&GRID, 0.4, 5, 2.5);
@@ -124,7 +133,7 @@ static void draws_are_those_of_a_dense_solution(void **state) {
         if (!isnan(patch[p]))
             at[n++] = p / NX * GRID.nx + p % NX;
     assert_int_equal(n, MEASURED_MOST - 3);
-    const struct conditional_patch held = {NX, NY, patch};
+    const struct conditional_patch held = {NX, NY, patch, trend};
     for (size_t r = 0; r < DRAWS; r++) {
         assert_int_equal(
             conditional_draw(&law, &held, (struct random_key){3, 0, r}, z, &report, NULL), 0);
@@ -136,13 +145,13 @@ static void draws_are_those_of_a_dense_solution(void **state) {
         }
     }
     double other[MEASURED_MOST], beside = 0;
-    weigh(&law, n, at, NX, other);
+    weigh(&law, trend, n, at, NX, other);
     for (size_t a = 0; a < n; a++)
         beside += other[a] * patch[at[a] / GRID.nx * NX + at[a] % GRID.nx];
     for (size_t p = 0; p < CELL; p++) {
         double weight[MEASURED_MOST], mean = 0, variance = covariance(&law, p, p),
                                       together = covariance(&law, p, NX);
-        weigh(&law, n, at, p, weight);
+        weigh(&law, trend, n, at, p, weight);
         for (size_t a = 0; a < n; a++) {
             mean += weight[a] * patch[at[a] / GRID.nx * NX + at[a] % GRID.nx];
             variance -= weight[a] * covariance(&law, at[a], p);
@@ -159,6 +168,12 @@ static void draws_are_those_of_a_dense_solution(void **state) {
     free(z);
     free(patch);
     free(power);
+}
+
+static void draws_are_those_of_a_dense_solution(void **state) {
+    (void)state;
+    compare_with_dense(0);
+    compare_with_dense(2);
 }
 
 /* --- of patches of the law --- */
@@ -178,7 +193,7 @@ static void patches_of_the_law_are_held(void **state) {
         const struct conditional_law law = {&cell, power, CASES[c].noise * CASES[c].noise};
         uint64_t seed = 51 + c;
         double *patch = patch_of(&law, nx, ny, &seed);
-        const struct conditional_patch held = {nx, ny, patch};
+        const struct conditional_patch held = {nx, ny, patch, 0};
         struct conditional_report report;
         for (size_t p = points / 3; p < points / 3 + nx / 2; p++)
             patch[p] = (double)NAN;
@@ -212,7 +227,7 @@ static void they_have_the_spectrum_of_the_law(void **state) {
     assert_int_equal(transform_create(&transform, &GRID, SIDE, SIDE, NULL), 0);
     for (size_t r = 0; r < DRAWS; r++) {
         double *patch = patch_of(&law, SIDE, SIDE, &seed);
-        const struct conditional_patch held = {SIDE, SIDE, patch};
+        const struct conditional_patch held = {SIDE, SIDE, patch, 0};
         struct conditional_report report;
         assert_int_equal(
             conditional_draw(&law, &held, (struct random_key){7, 1, r}, z, &report, NULL), 0);
@@ -250,7 +265,7 @@ static void another_law_is_noticed(void **state) {
     const struct conditional_law law = {&GRID, power, 1e-4}, rougher = {&GRID, power, 2.5e-3};
     uint64_t seed = 71;
     double *patch = patch_of(&rougher, SIDE, SIDE, &seed);
-    const struct conditional_patch held = {SIDE, SIDE, patch};
+    const struct conditional_patch held = {SIDE, SIDE, patch, 0};
     struct conditional_report report;
     assert_int_equal(conditional_draw(&law, &held, (struct random_key){1, 0, 0}, z, &report, NULL),
                      0);
@@ -265,7 +280,7 @@ static void what_cannot_be_held_is_refused(void **state) {
     static const struct grid GRID = {8, 8, 8, 8};
     double *power = law_of(&GRID, 0.8, 8, 2), z[64], patch[16];
     struct conditional_law law = {&GRID, power, 1e-4};
-    struct conditional_patch held = {4, 4, patch};
+    struct conditional_patch held = {4, 4, patch, 0};
     struct conditional_report report;
     struct error err;
     const struct random_key key = {1, 0, 0};

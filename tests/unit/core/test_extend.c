@@ -72,7 +72,7 @@ static void a_patch_is_held(void **state) {
         for (size_t p = 30; p < 40; p++) /* holes */
             map.z[40 * NX + p] = map.z[41 * NX + p] = (double)NAN;
         roughness_measure(&whole, z, &truth);
-        assert_int_equal(map_extend(&map, 1, &done, NULL), 0);
+        assert_int_equal(map_extend(&map, DETREND_NONE, 1, &done, NULL), 0);
         assert_int_equal(map.grid.nx, 2 * NX);
         assert_int_equal(map.grid.ny, 2 * NY);
         check_close(map.grid.lx, 2 * NX, 1e-12);
@@ -104,9 +104,9 @@ static void one_number_is_one_draw(void **state) {
     cut(&first, z, 0.02, 3);
     cut(&again, z, 0.02, 3);
     cut(&other, z, 0.02, 3);
-    assert_int_equal(map_extend(&first, 5, &done, NULL), 0);
-    assert_int_equal(map_extend(&again, 5, &done, NULL), 0);
-    assert_int_equal(map_extend(&other, 6, &done, NULL), 0);
+    assert_int_equal(map_extend(&first, DETREND_NONE, 5, &done, NULL), 0);
+    assert_int_equal(map_extend(&again, DETREND_NONE, 5, &done, NULL), 0);
+    assert_int_equal(map_extend(&other, DETREND_NONE, 6, &done, NULL), 0);
     const size_t points = grid_points(&first.grid), far = (2 * NY - NY / 2) * 2 * NX + NX * 3 / 2;
     assert_memory_equal(first.z, again.z, points * sizeof *first.z);
     assert_true(fabs(first.z[far] - other.z[far]) > 1e-3);
@@ -130,7 +130,7 @@ static void skewed_heights_stay_skewed(void **state) {
     roughness_measure(&whole, z, &truth);
     cut(&map, z, 0, 3);
     map.z[500] = (double)NAN;
-    assert_int_equal(map_extend(&map, 2, &done, NULL), 0);
+    assert_int_equal(map_extend(&map, DETREND_NONE, 2, &done, NULL), 0);
     roughness_measure(&map.grid, map.z, &found);
     print_message("skewness %.3f of %.3f, RMS slope %.4f of %.4f, height %.3f of %.3f; off by "
                   "%.2g, %.3f of the noise in scores\n",
@@ -151,12 +151,12 @@ static void a_map_without_law_stays(void **state) {
     struct height_map map = {.grid = {4, 4, 4, 4}, .z = heights};
     struct extend_result done;
     struct error err;
-    assert_int_equal(map_extend(&map, 1, &done, &err), ERROR_INPUT);
+    assert_int_equal(map_extend(&map, DETREND_NONE, 1, &done, &err), ERROR_INPUT);
     assert_non_null(strstr(err.text, "no law fits"));
     assert_true(map.z == heights && map.grid.nx == 4);
     for (size_t p = 0; p < 16; p++)
         heights[p] = 1;
-    assert_int_equal(map_extend(&map, 1, &done, &err), ERROR_INPUT);
+    assert_int_equal(map_extend(&map, DETREND_NONE, 1, &done, &err), ERROR_INPUT);
     assert_non_null(strstr(err.text, "no heights that differ"));
 }
 

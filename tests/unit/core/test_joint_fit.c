@@ -138,9 +138,25 @@ static void refuses_one(void **state) {
     free(z);
 }
 
+/* A lay has two directions, so that 89 and -89 degrees are near each other; what has no lay does
+ * not count. */
+static void lays_are_one(void **state) {
+    (void)state;
+    const double degree = M_PI / 180;
+    const struct lay lays[] = {
+        {2, 89 * degree, 0.1, 0.02}, LAY_NONE, {4, -89 * degree, 0.1, 0.02}, {8, 0, 1e3, 1e3}};
+    const struct lay one = joint_fit_lay(3, lays), same = joint_fit_lay(4, lays);
+    check_relative(one.ratio, sqrt(8), 1e-12);
+    check_close(fabs(one.angle), M_PI / 2, 1e-9);
+    check_relative(one.ratio_error, 0.1 / sqrt(2), 1e-12);
+    check_relative(one.angle_error, 0.02 / sqrt(2), 1e-12);
+    check_relative(same.ratio, one.ratio, 1e-6);
+    assert_true(lay_is_plain(&(struct lay){joint_fit_lay(1, lays + 1).ratio, 0, 0, 0}));
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(holds_the_law),
-                                       cmocka_unit_test(finds_patches_that_differ),
-                                       cmocka_unit_test(refuses_one)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(holds_the_law), cmocka_unit_test(lays_are_one),
+        cmocka_unit_test(finds_patches_that_differ), cmocka_unit_test(refuses_one)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 /* Protects: a measured surface becomes the parameters of random surfaces like it: the spectrum and
  * the scale of the surface it was cut from, its heights, its size and points; what the study says
- * stands; maps that cannot be fitted are refused by name. */
+ * stands; several maps of one surface have one law, and are kept by name and size; maps that cannot
+ * be fitted are refused by name. */
 #include "core/random.h"
 #include "core/surface/surface.h"
 #include "jobs/like/like_case.h"
@@ -360,6 +361,68 @@ static void maps_that_cannot_be_fitted(void **state) {
     height_map_clear(&map);
 }
 
+/* Two fine maps and one of every third point. */
+static void several_maps_have_one_law(void **state) {
+    (void)state;
+    enum { MAPS = 3 };
+    struct height_map maps[MAPS] = {patch(false, 3), patch(false, 4), patch(false, 5)};
+    struct like_source sources[MAPS] = {SOURCE, SOURCE, SOURCE};
+    struct error err = {0};
+    const struct grid grid = maps[2].grid;
+    const size_t n = grid.nx / 3;
+    for (size_t p = 0; p < n * n; p++)
+        maps[2].z[p] = maps[2].z[p / n * 3 * grid.nx + p % n * 3];
+    const double side = 3 * (double)n * grid_dx(&grid);
+    maps[2].grid = (struct grid){n, n, side, side};
+    sources[1].file = "other.sdf";
+    sources[2].file = "coarse.gwy";
+    sources[0].uncertainty = LIKE_UNCERTAINTY_POSTERIOR;
+    cJSON *parameters = cJSON_CreateObject();
+    cJSON *surface = cJSON_AddObjectToObject(parameters, "surface");
+    if (like_fit_together(surface, MAPS, maps, sources, &err) != 0)
+        fail_msg("%s", err.text);
+    print_message("H %.3f, slope %.4f, shortest wave %.5f\n", number(surface, "/hurst"),
+                  number(surface, "/rms_slope"), number(surface, "/like/wavelength"));
+    assert_true(fabs(number(surface, "/hurst") - 0.7) < 0.15);
+    assert_true(fabs(number(surface, "/rms_slope") / SLOPE - 1) < 0.1);
+    assert_true(fabs(number(surface, "/like/wavelength") / SHORTEST - 1) < 0.05);
+    const char *others = cJSON_GetStringValue(json_at(surface, "/like/others"));
+    assert_non_null(others);
+    assert_non_null(strstr(others, "other.sdf, SHA-256 " DIGEST ", 12 bytes, npy, prepared by"));
+    assert_non_null(strstr(others, "coarse.gwy"));
+    assert_string_equal(cJSON_GetStringValue(json_at(surface, "/like/spectrum")), "fit");
+    assert_string_equal(cJSON_GetStringValue(json_at(surface, "/heights/distribution")),
+                        "quantiles");
+    struct statistics_case one;
+    if (statistics_case_read(&one, parameters, NULL, &err) != 0)
+        fail_msg("%s", err.text);
+    assert_int_equal(one.like.map_count, MAPS);
+    assert_int_equal(one.like.maps[2].nx, n);
+    assert_true(fabs(one.like.maps[2].spacing / one.like.maps[0].spacing - 3) < 1e-9);
+    assert_true(one.like.maps[0].trusted.longest > one.like.maps[0].spacing);
+    statistics_case_clear(&one);
+    cJSON_Delete(parameters);
+    /* the longest wave that a study names */
+    surface = cJSON_Parse("{\"wavelength_ratio\": 8, \"heights\": {\"distribution\": "
+                          "\"gaussian\"}}");
+    if (like_fit_together(surface, MAPS, maps, sources, &err) != 0)
+        fail_msg("%s", err.text);
+    assert_true(number(surface, "/wavelength_ratio") == 8);
+    assert_true(number(surface, "/rms_slope") < SLOPE);
+    cJSON_Delete(surface);
+    surface = cJSON_CreateObject();
+    sources[0].heights = LIKE_HEIGHTS_FIT;
+    assert_int_equal(like_fit_together(surface, MAPS, maps, sources, &err), ERROR_INPUT);
+    assert_non_null(strstr(err.text, "quantiles, gaussian"));
+    sources[0].heights = LIKE_HEIGHTS_GAUSSIAN;
+    sources[1].detrend = DETREND_MEAN;
+    assert_int_equal(like_fit_together(surface, MAPS, maps, sources, &err), ERROR_INPUT);
+    assert_non_null(strstr(err.text, "without one trend"));
+    cJSON_Delete(surface);
+    for (size_t m = 0; m < MAPS; m++)
+        height_map_clear(&maps[m]);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slope_and_band_are_found_again),
@@ -368,6 +431,7 @@ int main(void) {
         cmocka_unit_test(the_study_stands),
         cmocka_unit_test(the_law_of_heights_stands),
         cmocka_unit_test(what_stays_off_is_refused_or_stated),
+        cmocka_unit_test(several_maps_have_one_law),
         cmocka_unit_test(maps_that_cannot_be_fitted),
         cmocka_unit_test(laws),
         cmocka_unit_test(grooves),
