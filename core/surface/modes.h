@@ -11,6 +11,7 @@ enum spectrum_type { RUGO_SPECTRA(SPECTRUM_TYPE) };
 #undef SPECTRUM_TYPE
 struct translation;
 struct counter_face;
+struct grooves;
 enum spectrum_scale {
     SCALE_NONE,       /* m0 = 1 */
     SCALE_RMS_HEIGHT, /* sqrt(m00) = value */
@@ -43,6 +44,9 @@ struct spectrum {
     /* A second face (counter_face.h), borrowed: modes and moments are those of the sum of both, and
      * the scale above is of the first alone. NULL: there is one face. */
     const struct counter_face *counter;
+    /* Grooves (grooves.h) that surfaces have beside what this spectrum makes of them, borrowed:
+     * modes and moments are without them. NULL: none. Not with a translation or a counter face. */
+    const struct grooves *grooves;
 };
 
 /* The discrete spectrum on a grid: power P(mx, my) = |Z|^2, mean square height = sum over all modes

@@ -1,6 +1,7 @@
 #include "jobs/surface/surface_case.h"
 #include "core/cost.h"
 #include "core/surface/acf_spectrum.h"
+#include "jobs/surface/surface_grooves.h"
 #include "jobs/surface/surface_parameters.h"
 #include <math.h>
 #include <stdlib.h>
@@ -540,6 +541,8 @@ int surface_case_fill(struct surface_case *out, struct values *values,
     *whole = NULL;
     int status = read_surface(out, values, err);
     if (status == 0 && values_fault_count(values) == before)
+        status = surface_grooves_fill(out, values, err);
+    if (status == 0 && values_fault_count(values) == before)
         status = surface_law_fill(&out->translation, &out->spectrum, out->dimension, &out->options,
                                   values, err);
     if (status == 0 && values_fault_count(values) == before)
@@ -569,6 +572,7 @@ static void face_clear(struct surface_case *face) {
     free(face->table);
     height_table_destroy(&face->height_table);
     translation_destroy(&face->translation);
+    free(face->grooves);
 }
 
 void surface_case_clear(struct surface_case *surface) {
@@ -615,22 +619,31 @@ struct surface_band surface_case_own_band(const struct surface_case *surface) {
 }
 
 struct surface_band surface_case_sampled_band(const struct surface_case *surface) {
-    return surface_case_translated(surface) ? surface_case_band(surface)
-                                            : surface_case_own_band(surface);
+    const struct grid *grid = &surface->grid;
+    return surface_case_translated(surface) || surface_case_random_limited(surface)
+               ? surface_case_band(surface)
+               : (struct surface_band){grid->nx / 2, grid->ny / 2};
 }
 
 double surface_case_bytes(const struct surface_case *surface) {
     const struct grid *grid = &surface->grid;
     struct surface_band band = surface_case_band(surface);
     double bytes = generator_bytes(grid, band.x, band.y, &surface->options);
+    if (surface->grooves != NULL)
+        bytes += sizeof(double) * (double)grid_points(grid); /* without them, for other grids */
     if (surface->counter == NULL)
         return bytes;
     return bytes + generator_bytes(grid, band.x, band.y, &surface->counter->options) +
            generator_sum_bytes(grid, band.x, band.y);
 }
 
+/* Of a point of a family of sines, the slowest of the named shapes. */
+static const double GROOVE_NANOSECONDS = 12;
+
 double surface_case_nanoseconds(const struct surface_case *surface, const struct grid *grid) {
     double own = cost_generation(&surface->options, grid);
+    if (surface->grooves != NULL)
+        own += GROOVE_NANOSECONDS * (double)surface->grooves->families;
     return surface->counter == NULL ? own : own + cost_generation(&surface->counter->options, grid);
 }
 
@@ -645,6 +658,17 @@ static struct height_moments add_heights(const struct height_moments *a, double 
     return out;
 }
 
+/* Adds the cumulants of grooves, whose units are RMS heights of the random part. */
+static struct height_moments add_grooves(const struct height_moments *rest,
+                                         const struct grooves *grooves) {
+    const struct groove_moments cumulants = grooves_cumulants(grooves);
+    const double square = 1 + cumulants.second;
+    struct height_moments out = *rest;
+    out.skewness = (rest->skewness + cumulants.third) / pow(square, 1.5);
+    out.kurtosis = 3 + (rest->kurtosis - 3 + cumulants.fourth) / (square * square);
+    return out;
+}
+
 int surface_case_heights(const struct surface_case *surface, struct height_moments *out,
                          bool *known, struct error *err) {
     const struct surface_case *counter = surface->counter;
@@ -656,7 +680,7 @@ int surface_case_heights(const struct surface_case *surface, struct height_momen
     if (*known && surface_case_gaussian(surface))
         counter = NULL;
     if (*known && counter == NULL)
-        *out = own;
+        *out = surface->grooves != NULL ? add_grooves(&own, surface->grooves) : own;
     if (!*known || counter == NULL)
         return 0;
     face.counter = NULL;

@@ -66,6 +66,10 @@ static void check_faces(const struct surface_case *first, const struct surface_c
     if (scaled != (counter->spectrum.scale != SCALE_NONE))
         values_fault(values, scaled ? "/counter_surface/rms_slope" : "/surface/rms_slope",
                      "give both faces a scale, rms_slope or rms_height, or neither");
+    if (first->grooves != NULL)
+        values_fault(values, "/surface/grooves/period",
+                     "grooves are of one face that a flat is pressed on; allowed: one of grooves "
+                     "and counter_surface");
     if (surface_case_translated(first))
         values_fault(values, "/surface/heights/law",
                      "\"translation\": the sum of two faces is no translation; allowed: "
