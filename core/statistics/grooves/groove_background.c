@@ -3,17 +3,19 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Of powers that are distributed exponentially: median over mean, and the mean of the logarithm of
- * power over mean. */
-static const double MEDIAN = M_LN2, MEAN_LOGARITHM = -0.5772156649015329;
+/* Of powers that are distributed exponentially: median over mean. */
+static const double MEDIAN = M_LN2;
 /* Powers of a ring that count as independent, under Hann's window and by a median. */
 static const double INDEPENDENT = 0.8;
+/* White noise of 1 % of the RMS height is taken for granted. */
+static const double NOISE = 1e-4;
 
 struct groove_background {
     const struct modes *modes;
     struct lay_frame frame;
     bool profile;
-    double side; /* the shorter one: rings are 2 pi/side wide */
+    double side;  /* the shorter one: rings are 2 pi/side wide */
+    double least; /* power of a wave: less is leakage of the window, and rounding */
     size_t rings;
     double *power,
         *count; /* of each ring: median over MEDIAN, and how many waves; owned by power */
@@ -98,6 +100,11 @@ int groove_background_create(struct groove_background **out, const struct modes 
     if (across + 2 > (double)b->rings)
         b->rings = (size_t)ceil(across) + 2;
     b->power = array_create(2 * b->rings, sizeof *b->power);
+    double total = 0;
+    const size_t waves = (modes->mode_x + 1) * (2 * modes->mode_y + 1);
+    for (size_t w = 0; w < waves; w++)
+        total += modes->power[w];
+    b->least = NOISE * total / (double)waves;
     int status = b->power != NULL ? 0 : error_memory(err, 2 * b->rings * sizeof *b->power, "rings");
     if (status == 0) {
         b->count = b->power + b->rings;
@@ -118,49 +125,50 @@ void groove_background_destroy(struct groove_background **background) {
 
 /* --- profiles: a wave has neighbours along one line alone --- */
 
-enum { NEAREST = 3, FARTHEST = 14 };
+enum { NEAREST = 3, FARTHEST = 22 };
 
-/* Extends the logarithms of the powers on one side of a wave to it, by a straight line. */
-static double one_side(const struct groove_background *b, size_t m, int sign) {
-    double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-    for (int d = NEAREST; d <= FARTHEST; d++) {
-        const long at = (long)m + sign * d;
-        if (at < 1 || at > (long)b->modes->mode_x)
-            continue;
-        const double power = modes_power(b->modes, (size_t)at, 0);
-        if (!(power > 0))
-            continue;
-        const double x = log((double)at / (double)m), y = log(power) - MEAN_LOGARITHM;
-        n++;
-        sx += x;
-        sy += y;
-        sxx += x * x;
-        sxy += x * y;
-    }
-    const double spread = n * sxx - sx * sx;
-    return n > 4 && spread > 0 ? exp((sy * sxx - sx * sxy) / spread) : 0;
+/* Returns the mean power of the waves on the sides from..to of a wave (-1: longer ones, 1:
+ * shorter), by their median, each times its ratio to the wave to the power `fall`. */
+static double sides(const struct groove_background *b, size_t m, int from, int to, double fall) {
+    double near[2 * FARTHEST];
+    size_t n = 0;
+    for (int side = from; side <= to; side += 2)
+        for (int d = NEAREST; d <= FARTHEST; d++) {
+            const long at = (long)m + side * d;
+            if (at >= 1 && at <= (long)b->modes->mode_x)
+                near[n++] =
+                    modes_power(b->modes, (size_t)at, 0) * pow((double)at / (double)m, fall);
+        }
+    return median_of(near, n) / MEDIAN;
 }
 
 static double both_sides(const struct groove_background *b, size_t m) {
-    double near[2 * FARTHEST];
-    size_t n = 0;
-    for (int d = -FARTHEST; d <= FARTHEST; d++) {
-        const long at = (long)m + d;
-        if (abs(d) >= NEAREST && at >= 1 && at <= (long)b->modes->mode_x)
-            near[n++] = modes_power(b->modes, (size_t)at, 0);
-    }
-    return median_of(near, n) / MEDIAN;
+    return sides(b, m, -1, 1, 0);
+}
+
+/* Returns the largest that a smooth spectrum may have, also at its ends: spectra fall with the wave
+ * number to a power up to about 3. */
+static double side_most(const struct groove_background *b, size_t m) {
+    return fmax(both_sides(b, m), fmax(sides(b, m, -1, -1, 1.5), sides(b, m, 1, 1, 3)));
 }
 
 /* --- both --- */
 
-/* Returns the median power of the neighbours of a wave on all sides, but for the nearest, which a
- * line has part of. */
-static double neighbours(const struct groove_background *b, double mx, double my) {
-    enum { REACH = 5, WIDTH = 2 * REACH + 1 };
+/* Neighbours of a wave on all sides, but for the nearest, which a line has part of: all of them,
+ * and by the eighth of a turn that they are in, where longer ones count as a spectrum has them that
+ * falls with the wave number to the power FALL. */
+static const double FALL = 3.3;
+enum { REACH = 5, WIDTH = 2 * REACH + 1, PARTS = 8 };
+struct neighbours {
+    size_t count, part_count[PARTS];
+    double all[WIDTH * WIDTH], part[PARTS][WIDTH * WIDTH];
+};
+
+static void neighbours_find(struct neighbours *out, const struct groove_background *b, double mx,
+                            double my) {
     const struct modes *modes = b->modes;
-    double near[WIDTH * WIDTH];
-    size_t n = 0;
+    const double own = fmax(ring_of(b, mx, my), 1);
+    *out = (struct neighbours){.count = 0};
     for (long dy = -REACH; dy <= REACH; dy++)
         for (long dx = -REACH; dx <= REACH; dx++) {
             long x = lround(mx) + dx, y = lround(my) + dy;
@@ -170,38 +178,71 @@ static double neighbours(const struct groove_background *b, double mx, double my
                 x = -x;
                 y = -y;
             }
-            if (x <= (long)modes->mode_x && labs(y) <= (long)modes->mode_y && (x > 0 || y != 0))
-                near[n++] = modes_power(modes, (size_t)x, y);
+            if (x > (long)modes->mode_x || labs(y) > (long)modes->mode_y || (x == 0 && y == 0))
+                continue;
+            const double turn = atan2((double)dy, (double)dx) / (2 * M_PI) + 0.5;
+            const size_t part = (size_t)(PARTS * turn) % PARTS;
+            const double power = modes_power(modes, (size_t)x, y);
+            const double nearer = fmin(ring_of(b, (double)x, (double)y) / own, 1);
+            out->all[out->count++] = power;
+            out->part[part][out->part_count[part]++] = power * pow(nearer, FALL);
         }
-    return median_of(near, n) / MEDIAN;
 }
 
-double groove_background_power(const struct groove_background *b, double mx, double my) {
+/* Returns the mean power of the neighbours, by their median; parts: of the part that has most. */
+static double neighbours(const struct groove_background *b, double mx, double my, bool parts) {
+    struct neighbours near;
+    neighbours_find(&near, b, mx, my);
+    double most = median_of(near.all, near.count);
+    for (size_t p = 0; p < PARTS && parts; p++)
+        most = fmax(most, median_of(near.part[p], near.part_count[p]));
+    return most / MEDIAN;
+}
+
+/* Returns the largest power of the rings that a wave and those beside it are in, from which the
+ * window takes some. */
+static double rings_near(const struct groove_background *b, double mx, double my) {
+    const double at[] = {ring_of(b, mx - 1, my), ring_of(b, mx + 1, my), ring_of(b, mx, my - 1),
+                         ring_of(b, mx, my + 1)};
+    double low = at[0], high = at[0], most = 0;
+    for (size_t a = 1; a < 4; a++) {
+        low = fmin(low, at[a]);
+        high = fmax(high, at[a]);
+    }
+    for (size_t r = (size_t)fmax(round(low), 1); r <= (size_t)round(high) && r < b->rings; r++)
+        if (b->count[r] > 0)
+            most = fmax(most, b->power[r]);
+    return most;
+}
+
+static double power_at(const struct groove_background *b, double mx, double my) {
     if (b->profile)
         return both_sides(b, (size_t)fmax(round(fabs(mx)), 1));
     const double ring = fmax(ring_of(b, mx, my), 1);
     const size_t low = (size_t)ring;
     if (low + 1 >= b->rings)
-        return neighbours(b, mx, my);
+        return neighbours(b, mx, my, false);
     const double part = ring - (double)low, from = b->power[low], to = b->power[low + 1];
     return from > 0 && to > 0 ? from * pow(to / from, part) : fmax(from, to);
 }
 
+double groove_background_power(const struct groove_background *b, double mx, double my) {
+    return fmax(power_at(b, mx, my), b->least);
+}
+
 double groove_background_p_value(const struct groove_background *b, double mx, double my,
-                                 double power) {
+                                 double power, bool alone) {
     double expected = 0, count = 0;
     if (b->profile) {
         const size_t m = (size_t)fmax(round(fabs(mx)), 1);
-        expected = fmax(both_sides(b, m), fmax(one_side(b, m, 1), one_side(b, m, -1)));
+        expected = side_most(b, m);
         count = FARTHEST;
     } else {
         const size_t ring = (size_t)fmax(round(ring_of(b, mx, my)), 1);
-        expected = neighbours(b, mx, my);
-        for (size_t r = ring - 1; r <= ring + 1 && r < b->rings; r++)
-            if (r > 0 && b->count[r] > 0)
-                expected = fmax(expected, b->power[r]);
+        expected = fmax(neighbours(b, mx, my, alone), rings_near(b, mx, my));
         count = ring < b->rings ? b->count[ring] : 0;
     }
     const double freedom = fmax(INDEPENDENT * count, 1);
+    expected = fmax(expected, b->least);
     return expected > 0 ? exp(-freedom * log1p(power / expected / freedom)) : 1;
 }

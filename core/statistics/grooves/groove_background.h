@@ -15,8 +15,9 @@ void groove_background_destroy(struct groove_background **background);
 double groove_background_power(const struct groove_background *background, double mx, double my);
 /* Returns the probability of such a power or more in a wave of the random part. It compares with
  * the largest of what rings and neighbours on either side have, so that a sharp end of a spectrum
- * makes no line. */
+ * makes no line. alone: the wave is all that is left of grooves, so that it must stand out of its
+ * neighbours on each side, too. */
 double groove_background_p_value(const struct groove_background *background, double mx, double my,
-                                 double power);
+                                 double power, bool alone);
 
 #endif
