@@ -207,6 +207,9 @@ double groove_lines_height(const struct groove_lines *lines, double x, double y)
 
 /* --- the shape --- */
 
+/* Of the errors of depths to those estimated without it, over 120 sub-maps of known grooves. */
+static const double MEASURED = 1.12;
+
 struct shape_trial {
     double deviance, depth, variance;
 };
@@ -265,7 +268,7 @@ static void series_depth(struct groove_shape_fit *out, const struct groove_lines
         variance += 2 * lines->variance[h - 1] * apart * apart;
     }
     out->depth = e.high - e.low;
-    out->depth_error = sqrt(variance);
+    out->depth_error = MEASURED * sqrt(variance);
 }
 
 void groove_shape_find(struct groove_shape_fit *out, const struct groove_lines *lines) {
@@ -292,7 +295,7 @@ void groove_shape_find(struct groove_shape_fit *out, const struct groove_lines *
             high = fmax(high, trial[s].depth);
         }
     /* shapes that fit as well have other depths */
-    out->depth_error = sqrt(trial[best].variance + (high - low) * (high - low) / 4);
+    out->depth_error = hypot(MEASURED * sqrt(trial[best].variance), (high - low) / 2);
     if (out->p_value < WRONG) {
         out->shape = GROOVE_HARMONICS;
         out->reversed = false;

@@ -92,12 +92,14 @@ static bool is_left(const struct search *search, const struct map_grooves *groov
     return false;
 }
 
-/* Finds the wave that is least likely without grooves: strongest where many are as unlikely. */
+/* Finds the wave that is least likely without grooves: of those that are certainly lines, the
+ * strongest, as harmonics are weaker. */
 static struct candidate find_candidate(const struct search *search,
                                        const struct map_grooves *grooves) {
     const struct modes *modes = &search->modes;
     const bool profile = grid_is_profile(&modes->grid);
     const double least = profile ? 2. * MAP_GROOVES_PERIODS : MAP_GROOVES_PERIODS;
+    static const double CERTAIN = 1e-12;
     struct candidate best = {.p_value = 1};
     for (long mx = 0; mx < (long)modes->mode_x; mx++)
         for (long my = profile ? 0 : -(long)modes->mode_y + 1; my < (long)modes->mode_y + profile;
@@ -109,7 +111,8 @@ static struct candidate find_candidate(const struct search *search,
                 groove_background_power(search->background, (double)mx, (double)my);
             if (!(power > 4 * expected)) /* of no interest, and soon seen */
                 continue;
-            const double p = p_value_at(search, (double)mx, (double)my, power, false);
+            const double p =
+                fmax(p_value_at(search, (double)mx, (double)my, power, false), CERTAIN);
             if (p < 1 && is_left(search, grooves, (double)mx, (double)my, power))
                 continue;
             if (p < best.p_value || (p == best.p_value && p < 1 && power > best.power))
