@@ -86,7 +86,8 @@ struct realisation {
 enum { KEPT_MODELS_MOST = 8 };
 /* Which steps are computed. */
 struct steps_order {
-    const double *z;   /* on the grid of the case */
+    const double *z;       /* on the grid of the case */
+    struct random_key key; /* of the realisation */
     const char *model; /* NULL: the most complete one, the first of those with a mesh if `meshed` */
     bool meshed;       /* models without a mesh are refused */
     size_t load_count; /* 0: all loads of the case */

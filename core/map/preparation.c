@@ -12,6 +12,7 @@
 #include "core/map/scan_lines.h"
 #include "core/map/tip.h"
 #include "core/plain_text.h"
+#include "core/statistics/grooves/map_grooves.h"
 #include "core/sum.h"
 #include <math.h>
 #include <stdarg.h>
@@ -577,6 +578,28 @@ static int level(struct preparation_record *record, struct height_map *map,
     return status;
 }
 
+static int degroove(struct preparation_record *record, struct height_map *map, struct error *err) {
+    const struct measured_map measured = {&map->grid, map->z, record->boundary};
+    struct map_grooves found;
+    char period[2][40] = {"", ""}, depth[2][40] = {"", ""};
+    int status = map_grooves_find(&found, &measured, err);
+    if (status != 0)
+        return error_context(err, "--degroove");
+    map_grooves_take(&found, &map->grid, map->z);
+    for (size_t f = 0; f < found.families; f++) {
+        preparation_length_text(map, found.family[f].period, period[f]);
+        height_text(map, found.family[f].fit.depth, depth[f]);
+    }
+    if (found.families == 0)
+        preparation_note(record, "degroove", "none found; heights stay");
+    else
+        preparation_note(record, "degroove", "every %s, %s deep%s%s%s%s%s", period[0], depth[0],
+                         found.families > 1 ? "; every " : "", period[1],
+                         found.families > 1 ? ", " : "", depth[1],
+                         found.families > 1 ? " deep" : "");
+    return 0;
+}
+
 static int fill(struct preparation_record *record, struct height_map *map, struct error *err) {
     const size_t holes = height_map_holes(map);
     int status = membrane_fill(&map->grid, map->z, record->boundary, err);
@@ -718,6 +741,8 @@ int preparation_run(struct preparation_record *record, struct height_map *map,
         status = turn(record, map, asked, err);
     if (status == 0)
         status = level(record, map, asked, err);
+    if (status == 0 && asked->degroove)
+        status = degroove(record, map, err);
     if (status == 0 && asked->fill)
         status = fill(record, map, err);
     if (status == 0 && asked->denoise)

@@ -10,6 +10,7 @@
  *   transpose exchanges x and y
  *   rotate    turns the map, in the largest rectangle inside
  *   detrend   subtracts a polynomial of least squares through the heights that are there
+ *   degroove  takes out periodic grooves of machining
  *   fill      fills holes with the smoothest membrane through their rims
  *   denoise   takes out noise by the law of the spectrum
  *   filter    S-filter, which keeps long waves, then L-filter, which removes long waves
@@ -81,7 +82,7 @@ struct preparation {
     double turn; /* degrees, counter-clockwise */
     enum asked_boundary boundary;
     enum asked_detrend detrend;
-    bool fill, denoise;
+    bool degroove, fill, denoise;
     struct asked_length short_waves; /* cut-off wavelength of the S-filter; 0: not requested */
     struct asked_length long_waves;  /* of the L-filter, likewise */
     bool robust;                     /* both filters */

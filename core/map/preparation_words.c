@@ -227,6 +227,7 @@ int preparation_parse(struct preparation *out, const struct preparation_words *w
     struct preparation asked = {.boundary = (enum asked_boundary)words->boundary,
                                 .detrend = (enum asked_detrend)words->detrend,
                                 .window = (enum map_window)words->window,
+                                .degroove = words->degroove,
                                 .fill = words->fill,
                                 .denoise = words->denoise,
                                 .lines = (enum scan_lines)words->lines,

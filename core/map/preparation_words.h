@@ -29,7 +29,7 @@ struct preparation_words {
     const char *rotate;   /* "30": degrees */
     const char *extend;   /* "1": number of the draw */
     int boundary, detrend, window, lines, lines_along; /* the enums of preparation.h */
-    bool fill, denoise, transpose;
+    bool degroove, fill, denoise, transpose;
 };
 
 /* ERROR_INPUT names the option, its value and what is allowed. */

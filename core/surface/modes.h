@@ -13,6 +13,7 @@ enum spectrum_type { RUGO_SPECTRA(SPECTRUM_TYPE) };
 struct translation;
 struct counter_face;
 struct plateau_face;
+struct grooves;
 enum spectrum_scale {
     SCALE_NONE,       /* m0 = 1 */
     SCALE_RMS_HEIGHT, /* sqrt(m00) = value */
@@ -48,6 +49,9 @@ struct spectrum {
     /* The plateau of a stratified face (plateau_face.h), borrowed: the scale above is of the
      * valleys alone. NULL: the face is of one surface. */
     const struct plateau_face *plateau;
+    /* Grooves (grooves.h) that surfaces have beside what this spectrum makes of them, borrowed:
+     * modes and moments are without them. NULL: none. Not with a translation or a counter face. */
+    const struct grooves *grooves;
 };
 
 /* The discrete spectrum on a grid: power P(mx, my) = |Z|^2, mean square height = sum over all modes

@@ -1,5 +1,6 @@
 #include "core/surface/surface.h"
 #include "core/surface/counter_face.h"
+#include "core/surface/grooves/grooves.h"
 #include "core/surface/nongaussian.h"
 #include "core/surface/plateau_face.h"
 #include "core/surface/surface_options.h"
@@ -32,6 +33,8 @@ struct generator {
     double *row_drawn;  /* amplitudes of a row, where they are random; else NULL */
     double *gaussian;   /* borrowed: where the Gaussian field is kept; NULL: nowhere */
     struct sum_of_faces *sum; /* owned; NULL: there is one face */
+    struct grooves grooves;   /* beside the random part; no families: none */
+    double rms_height;        /* of the random part, where there are grooves */
 };
 
 static void amplitudes_fill(struct generator *g) {
@@ -184,6 +187,13 @@ static void sum_destroy(struct sum_of_faces **sum) {
     *sum = NULL;
 }
 
+static void grooves_take(struct generator *g, const struct grooves *grooves) {
+    struct moments moments;
+    modes_moments(g->modes, &moments);
+    g->grooves = *grooves;
+    g->rms_height = moments.rms_height;
+}
+
 int generator_create(struct generator **out, const struct spectrum *spectrum,
                      const struct grid *grid, const struct surface_options *options,
                      struct error *err) {
@@ -191,6 +201,8 @@ int generator_create(struct generator **out, const struct spectrum *spectrum,
     int status = face_create(&g, spectrum, grid, options, err);
     if (status == 0 && (spectrum->counter != NULL || spectrum->plateau != NULL))
         status = sum_create(g, spectrum, grid, options, err);
+    if (status == 0 && spectrum->grooves != NULL)
+        grooves_take(g, spectrum->grooves);
     if (status != 0)
         generator_destroy(&g);
     else
@@ -416,8 +428,12 @@ int generator_run(struct generator *g, struct random_key key, double *z,
                   struct surface_report *report, struct error *err) {
     struct sum_of_faces *sum = g->sum;
     struct surface_report own = {0}, counter;
-    if (sum == NULL)
-        return face_run(g, key, z, report, err);
+    if (sum == NULL) {
+        int status = face_run(g, key, z, report, err);
+        if (status == 0)
+            grooves_add(&g->grooves, &g->modes->grid, key, g->rms_height, z);
+        return status;
+    }
     int status = face_run(g, key, z, &own, err);
     if (sum->transform == NULL) {
         if (report != NULL)

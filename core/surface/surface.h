@@ -18,7 +18,8 @@ struct generator;
 
 /* Copies its arguments (table spectra are sampled here). With a counter face (counter_face.h) of
  * the spectrum surfaces are the sum of both faces, with a plateau (plateau_face.h) the lower of
- * both about its mean. ERROR_INPUT, ERROR_MEMORY. */
+ * both about its mean, with grooves (grooves.h) they have them beside their random part.
+ * ERROR_INPUT, ERROR_MEMORY. */
 int generator_create(struct generator **out, const struct spectrum *spectrum,
                      const struct grid *grid, const struct surface_options *options,
                      struct error *err);

@@ -166,6 +166,8 @@ static int theories_make(struct theories *out, const struct contact_case *one_ca
         return error_memory(err, THEORIES_MOST * one_case->load_count * sizeof(double), "theories");
     /* No theory here has the mean of a wave of random amplitude. */
     bool coated = contact_case_is_coated(one_case);
+    if (one_case->surface.grooves != NULL)
+        return 0; /* none has them */
     if (is_one_wave(one_case, modes) && surface_case_exact(&one_case->surface) && !coated)
         put_wave(&list);
     if (lacks_theory(one_case, modes))

@@ -26,12 +26,32 @@ static int resample_translated(const struct contact_level *level,
     return status;
 }
 
+/* Grooves are no waves of the band: the random part alone is sampled. */
+static int resample_grooved(const struct contact_level *level, const struct surface_case *surface,
+                            const struct level_source *source, const double *z, double *out,
+                            struct error *err) {
+    const size_t points = grid_points(&surface->grid);
+    double *rest = array_create(points, sizeof *rest);
+    if (rest == NULL)
+        return error_memory(err, points * sizeof *rest, "a surface without its grooves");
+    memcpy(rest, z, points * sizeof *rest);
+    grooves_add(surface->grooves, &surface->grid, source->key, -source->rms_height, rest);
+    int status = resample(level, surface, rest, out, err);
+    if (status == 0)
+        grooves_add(surface->grooves, &level->grid, source->key, source->rms_height, out);
+    free(rest);
+    return status;
+}
+
 int contact_level_sample(const struct contact_level *level, const struct surface_case *surface,
-                         double rms_height, const double *z, double *out, struct error *err) {
+                         const struct level_source *source, const double *z, double *out,
+                         struct error *err) {
     const struct grid *grid = &level->grid;
+    if (level->stride == 0 && surface->grooves != NULL)
+        return resample_grooved(level, surface, source, z, out, err);
     if (level->stride == 0)
         return surface_case_translated(surface)
-                   ? resample_translated(level, surface, rms_height, z, out, err)
+                   ? resample_translated(level, surface, source->rms_height, z, out, err)
                    : resample(level, surface, z, out, err);
     for (size_t j = 0; j < grid->ny; j++) {
         const double *row = z + j * level->stride * surface->grid.nx;

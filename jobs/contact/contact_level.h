@@ -10,9 +10,17 @@ struct contact_level {
     size_t stride; /* every n-th point of the own grid along x and y; 0: resampled from its band */
 };
 
-/* Samples heights on the grid of a surface, of this RMS height, on the grid of a level. A surface
- * that is translated is so by its Gaussian field, of which the heights are a function. */
+/* The surface that is sampled: the RMS height of its random part, and the key of the realisation,
+ * by which its grooves lie. */
+struct level_source {
+    double rms_height;
+    struct random_key key;
+};
+/* Samples heights on the grid of a surface on the grid of a level. A surface that is translated is
+ * so by its Gaussian field, of which the heights are a function. Grooves are those at the points of
+ * the level. */
 int contact_level_sample(const struct contact_level *level, const struct surface_case *surface,
-                         double rms_height, const double *z, double *out, struct error *err);
+                         const struct level_source *source, const double *z, double *out,
+                         struct error *err);
 
 #endif

@@ -194,6 +194,14 @@ static int theories(const struct contact_case *one_case, const struct moments *m
     theory[CONTACT_SCALAR_RMS_SLOPE] = moments->rms_slope;
     if (!surface_case_exact(&one_case->surface) && one_case->surface.plateau == NULL)
         theory[CONTACT_SCALAR_NAYAK_ALPHA] = moments->nayak_alpha;
+    if (one_case->surface.grooves != NULL) {
+        const struct groove_moments grooves = grooves_cumulants(one_case->surface.grooves);
+        const double slope = moments->rms_slope * moments->rms_slope + moments->m0 * grooves.slope;
+        theory[CONTACT_SCALAR_KAPPA] = theory[CONTACT_SCALAR_ERF_KAPPA] = NAN;
+        theory[CONTACT_SCALAR_NAYAK_ALPHA] = NAN;
+        theory[CONTACT_SCALAR_RMS_HEIGHT] = sqrt(moments->m0 * (1 + grooves.second));
+        theory[CONTACT_SCALAR_RMS_SLOPE] = isfinite(slope) ? sqrt(slope) : (double)NAN;
+    }
     int status = surface_case_heights(&one_case->surface, &heights, &known, err);
     if (status == 0 && known) {
         theory[CONTACT_SCALAR_SKEWNESS] = heights.skewness;

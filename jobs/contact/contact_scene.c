@@ -285,10 +285,11 @@ int contact_scene_solve(struct contact_scene *scene, const struct contact_surfac
                         struct error *err) {
     const struct contact_case *one_case = scene->one_case;
     const struct contact_stopper stopper = {stop, context};
+    const struct level_source source = {scene->rms_height, surface->key};
     int status = 0;
     for (size_t l = 0; l < one_case->level_count && status == 0; l++) {
-        status = contact_level_sample(&one_case->levels[l], &one_case->surface, scene->rms_height,
-                                      surface->z, scene->z, err);
+        status = contact_level_sample(&one_case->levels[l], &one_case->surface, &source, surface->z,
+                                      scene->z, err);
         for (size_t m = 0; m < one_case->model_count && status == 0; m++)
             status = solve_model(scene, m, l, tally, &stopper, err);
     }

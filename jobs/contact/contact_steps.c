@@ -143,8 +143,9 @@ static int press_open(struct steps_press *press, const struct steps_order *order
         spectrum_moments(&one_case->surface.spectrum, &one_case->surface.grid, &moments, err);
     press->rms_slope = moments.rms_slope;
     if (status == 0)
-        status = contact_level_sample(finest, &one_case->surface, moments.rms_height, order->z,
-                                      press->z, err);
+        status = contact_level_sample(finest, &one_case->surface,
+                                      &(struct level_source){moments.rms_height, order->key},
+                                      order->z, press->z, err);
     if (status == 0)
         status = compliance_create(&press->compliance, &finest->grid, &one_case->blocks[m], err);
     if (status == 0)

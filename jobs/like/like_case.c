@@ -122,6 +122,10 @@ int like_case_fill(struct like_case *out, struct values *values, const struct su
     const double spacing = values_number(values, "/surface/like/spacing");
     out->spacing = spacing;
     read_fitted(out, values);
+    if (surface != NULL && surface->grooves != NULL)
+        values_fault(values, "/surface/grooves/period",
+                     "a surface like a measured one is compared with it without grooves; allowed: "
+                     "one of grooves and like");
     size_t before = values_fault_count(values);
     int status = read_points(out, values, surface_case_dimension(values) == 1, err);
     if (status == 0)

@@ -1,4 +1,5 @@
 #include "jobs/like/like_fit.h"
+#include "core/statistics/grooves/map_grooves.h"
 #include "core/statistics/measured_map.h"
 #include "core/surface/heights.h"
 #include "jobs/like/like_estimate.h"
@@ -49,6 +50,23 @@ static int check_map(const struct height_map *map, struct error *err) {
                          "same distances; give \"resample\"",
                          dx, dy);
     return 0;
+}
+
+/* Random surfaces have no grooves. */
+static int check_grooves(const struct measured_map *map, const char *unit, struct error *err) {
+    struct map_grooves grooves;
+    int status = map_grooves_find(&grooves, map, err);
+    if (status != 0 || grooves.families == 0)
+        return status;
+    const struct map_groove *first = &grooves.family[0];
+    return error_set(
+        err, ERROR_INPUT,
+        "the map has grooves (every %.4g%s%s, %.3g%s%s deep; p-value %.2g), and random "
+        "surfaces have none: give \"degroove\": true, which takes them out, and make "
+        "them by a study with /surface/grooves (`rugo characterise --group grooves` "
+        "has the values)",
+        first->period, *unit != '\0' ? " " : "", unit, first->fit.depth, *unit != '\0' ? " " : "",
+        unit, first->p_value);
 }
 
 /* --- parameters, each only where the study has none --- */
@@ -371,6 +389,8 @@ int like_fit_together(cJSON *surface, size_t count, const struct height_map *map
                       .maps = maps,
                       .longest = field_number(surface, "wavelength_ratio")};
     int status = check_map(map, err);
+    if (status == 0)
+        status = check_grooves(&fit.map, fit.unit, err);
     if (status != 0)
         return status;
     choose(&fit, surface);

@@ -2,6 +2,7 @@
 #include "core/statistics/heights/height_quantiles.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static int curve_create(struct map_curve *out, size_t count, const char *what, struct error *err) {
     double *room = array_create(count > 0 ? count : 1, 2 * sizeof *room);
@@ -152,6 +153,44 @@ static int measure_correlation(struct map_curve *out, const struct correlation *
     return status;
 }
 
+static int measure_spectra(struct map_characterisation *out, const struct measured_map *map,
+                           const struct map_spectrum *spectrum,
+                           const struct map_directions *directions, bool under_window,
+                           const struct spectrum_fit_request *trusted, struct error *err) {
+    int status =
+        map_spectra_measure(&out->spectra, map, spectrum, directions, under_window, trusted, err);
+    bool taken = out->spectra.has_fit && out->spectra.fit.to_end == SPECTRUM_END_LOW_PASS;
+    if (status == 0 && taken && out->height_fits.best != HEIGHTS_GAUSSIAN)
+        status = map_spectra_measure_scores(&out->spectra, map, directions, trusted, err);
+    return status;
+}
+
+/* Measures the spectra of what is left of a map without its grooves, which would be peaks in them.
+ */
+static int measure_rest(struct map_characterisation *out, const struct measured_map *map,
+                        const struct spectrum_fit_request *trusted, struct error *err) {
+    const size_t points = grid_points(map->grid);
+    struct map_directions directions = {.p_value = 1};
+    struct map_spectrum *spectrum = NULL;
+    struct roughness roughness;
+    double *z = array_create(points, sizeof *z);
+    if (z == NULL)
+        return error_memory(err, points * sizeof *z, "a map without its grooves");
+    const struct measured_map rest = {map->grid, z, map->boundary};
+    memcpy(z, map->z, points * sizeof *z);
+    map_grooves_take(&out->grooves, map->grid, z);
+    open_roughness_measure(&rest, &roughness);
+    out->rest_height = roughness.rms_height;
+    int status = map_spectrum_create(&spectrum, &rest, err);
+    if (status == 0 && !grid_is_profile(map->grid))
+        status = map_directions_find(&directions, &rest, spectrum, err);
+    if (status == 0)
+        status = measure_spectra(out, &rest, spectrum, &directions, false, trusted, err);
+    map_spectrum_destroy(&spectrum);
+    free(z);
+    return status;
+}
+
 static int measure_common(struct map_characterisation *out, struct common *common,
                           bool under_window, const struct spectrum_fit_request *trusted,
                           struct error *err) {
@@ -165,12 +204,13 @@ static int measure_common(struct map_characterisation *out, struct common *commo
     measure_chance(out, common);
     count_heights(&out->histogram, map);
     map_scales_measure(&out->scales, map, common->chance, &common->nearest);
-    int status = map_spectra_measure(&out->spectra, map, common->spectrum, &out->directions,
-                                     under_window, trusted, err);
-    bool taken = out->spectra.has_fit && out->spectra.fit.to_end == SPECTRUM_END_LOW_PASS;
-    if (status == 0 && taken && out->height_fits.best != HEIGHTS_GAUSSIAN)
-        status = map_spectra_measure_scores(&out->spectra, map, &out->directions, trusted, err);
-    return status;
+    out->rest_height = (double)NAN;
+    int status = under_window ? 0 : map_grooves_find(&out->grooves, map, err);
+    if (status == 0 && out->grooves.families > 0)
+        return measure_rest(out, map, trusted, err);
+    return status == 0 ? measure_spectra(out, map, common->spectrum, &out->directions, under_window,
+                                         trusted, err)
+                       : status;
 }
 
 static int measure(struct map_characterisation *out, const struct measured_map *map,

@@ -3,6 +3,7 @@
 #define RUGO_JOBS_MAPS_MAP_CHARACTERISATION_H
 
 #include "core/map/preparation.h"
+#include "core/statistics/grooves/map_grooves.h"
 #include "core/statistics/heights/areal.h"
 #include "core/statistics/heights/height_fit.h"
 #include "core/statistics/uncertainty/map_directions.h"
@@ -50,7 +51,9 @@ struct map_characterisation {
     struct stationarity stationarity; /* p-values NaN without errors, and no spreads */
     double stationarity_p_value;      /* of all divisions together */
     struct map_scales scales;
-    struct map_spectra spectra;
+    struct map_grooves grooves;
+    double rest_height;           /* RMS height without them; NaN where there are none */
+    struct map_spectra spectra;   /* of the map without grooves */
     struct map_curve correlation; /* radial: lag, autocorrelation */
     struct map_curve quantiles;   /* probability, height; empty for few heights */
 };

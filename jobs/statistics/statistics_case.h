@@ -36,7 +36,7 @@ void statistics_case_clear(struct statistics_case *one_case);
  * counted as summits. */
 static inline bool statistics_case_symmetric(const struct statistics_case *one_case) {
     return one_case->surface.options.heights.type == HEIGHTS_GAUSSIAN &&
-           one_case->surface.plateau == NULL;
+           one_case->surface.plateau == NULL && one_case->surface.grooves == NULL;
 }
 /* Returns how many kinds of summits are distinguished: summits, and pits where they differ from
  * them. */

@@ -12,7 +12,8 @@ static bool is_gaussian(const struct statistics_case *one_case) {
 }
 
 bool statistics_grid_theory_applies(const struct statistics_case *one_case) {
-    return (is_gaussian(one_case) || surface_case_translated(&one_case->surface)) &&
+    return one_case->surface.grooves == NULL &&
+           (is_gaussian(one_case) || surface_case_translated(&one_case->surface)) &&
            one_case->stencil != SUMMITS_REFINED;
 }
 

@@ -240,6 +240,34 @@ static void theory_of_summits(const struct statistics_case *one_case,
     out[SCALAR_SUMMIT_CURVATURE_MEAN] = expected.curvature;
 }
 
+/* What is known of the sum of a random part and grooves, in place of the random part alone: their
+ * waves are not counted, and those of summits are beside it. */
+static void theory_with_grooves(const struct statistics_case *one_case,
+                                const struct moments *moments, double out[SCALAR_COUNT]) {
+    static const enum statistics_scalar UNKNOWN[] = {SCALAR_RMS_CURVATURE,
+                                                     SCALAR_M2_DIFFERENCE,
+                                                     SCALAR_M4_DIFFERENCE,
+                                                     SCALAR_NAYAK_ALPHA_DIFFERENCE,
+                                                     SCALAR_M2,
+                                                     SCALAR_M4,
+                                                     SCALAR_NAYAK_ALPHA};
+    const struct groove_moments grooves = grooves_cumulants(one_case->surface.grooves);
+    const double m0 = moments->m0;
+    struct height_moments heights;
+    bool known = false;
+    for (size_t a = 0; a < sizeof UNKNOWN / sizeof *UNKNOWN; a++)
+        out[UNKNOWN[a]] = NAN;
+    out[SCALAR_M0] = m0 * (1 + grooves.second);
+    out[SCALAR_RMS_HEIGHT] = sqrt(out[SCALAR_M0]);
+    out[SCALAR_RMS_SLOPE] = sqrt(moments->rms_slope * moments->rms_slope + m0 * grooves.slope);
+    if (isinf(out[SCALAR_RMS_SLOPE]))
+        out[SCALAR_RMS_SLOPE] = NAN;
+    if (surface_case_heights(&one_case->surface, &heights, &known, NULL) == 0 && known) {
+        out[SCALAR_SKEWNESS] = heights.skewness;
+        out[SCALAR_KURTOSIS] = heights.kurtosis;
+    }
+}
+
 /* Fills in the theory of each scalar, NaN where there is none. */
 static void theory_of_scalars(const struct statistics_case *one_case, const struct moments *moments,
                               const struct summit_theories *theories, double out[SCALAR_COUNT]) {
@@ -265,6 +293,8 @@ static void theory_of_scalars(const struct statistics_case *one_case, const stru
         out[SCALAR_M4] = kinked * moments->m4;
         out[SCALAR_NAYAK_ALPHA] = kinked * moments->nayak_alpha;
     }
+    if (one_case->surface.grooves != NULL)
+        theory_with_grooves(one_case, moments, out);
     if (theories->count == 0)
         return;
     for (size_t side = 0; side < statistics_case_sides(one_case); side++)

@@ -1,7 +1,42 @@
 #include "jobs/statistics/statistics_theory.h"
 #include "core/theory/bin_averages.h"
 
-const char STATISTICS_TRANSLATION[] = "translation";
+const char STATISTICS_TRANSLATION[] = "translation", STATISTICS_REST[] = "random_part";
+
+/* Heights of the random part at each height of the profile, all equally frequent: of two families
+ * at each pair of heights, since the grooves cross. */
+static int grooved_heights(const struct statistics_case *one_case, double *pdf, double *cdf,
+                           struct error *err) {
+    enum { POINTS = 128 };
+    const struct surface_case *surface = &one_case->surface;
+    const struct grooves *grooves = surface->grooves;
+    const struct bins *bins = &one_case->height;
+    const size_t others = grooves->families > 1 ? POINTS : 1;
+    double height[POINTS];
+    struct height_moments moments;
+    int status = heights_moments(&surface->options.heights, &moments, err);
+    if (status != 0)
+        return status;
+    for (size_t a = 0; a < POINTS; a++)
+        height[a] =
+            grooves->depth * groove_profile_height(&grooves->profile, ((double)a + 0.5) / POINTS);
+    double before = 0;
+    for (size_t b = 0; b <= bins->count; b++) {
+        const double edge = bins->low + (double)b * bins_width(bins);
+        double below = 0;
+        for (size_t a = 0; a < POINTS; a++)
+            for (size_t c = 0; c < others; c++)
+                below += heights_cdf(&surface->options.heights, &moments,
+                                     edge - height[a] - (others > 1 ? height[c] : 0));
+        below /= (double)(POINTS * others);
+        if (b > 0) {
+            cdf[b - 1] = below;
+            pdf[b - 1] = (below - before) / bins_width(bins);
+        }
+        before = below;
+    }
+    return 0;
+}
 
 static void stratified_averages(const struct statistics_case *one_case, double *pdf, double *cdf) {
     const struct stratified_heights heights = surface_case_stratified(&one_case->surface);
@@ -16,12 +51,14 @@ static void stratified_averages(const struct statistics_case *one_case, double *
 
 int statistics_theory_heights(const struct statistics_case *one_case, double *pdf, double *cdf,
                               struct error *err) {
-    if (one_case->surface.plateau != NULL) {
+    const struct surface_case *surface = &one_case->surface;
+    if (surface->plateau != NULL) {
         stratified_averages(one_case, pdf, cdf);
         return 0;
     }
-    return bin_averages_heights(&one_case->surface.options.heights, &one_case->height, pdf, cdf,
-                                err);
+    return surface->grooves == NULL
+               ? bin_averages_heights(&surface->options.heights, &one_case->height, pdf, cdf, err)
+               : grooved_heights(one_case, pdf, cdf, err);
 }
 
 /* --- the theories of a case --- */
@@ -39,11 +76,15 @@ int summit_theories_create(struct summit_theories *out, const struct statistics_
     *out = (struct summit_theories){0};
     if (surface->plateau != NULL)
         return 0; /* a stratified face has kinks, where curvature is not defined */
+    if (surface->grooves != NULL && surface->options.heights.type != HEIGHTS_GAUSSIAN)
+        return 0;
     if (gaussian)
         add(out, (struct summit_theory){
-                     .name = surfaces ? "nayak" : "longuet_higgins",
+                     .name = surface->grooves != NULL ? STATISTICS_REST
+                             : surfaces               ? "nayak"
+                                                      : "longuet_higgins",
                      .surface = {.dimension = surface->dimension, .reached = basis->moments}});
-    if (!gaussian && !surface_case_translated(surface))
+    if (surface->grooves != NULL || (!gaussian && !surface_case_translated(surface)))
         return 0;
     int status = translated_case_create(&out->translated, surface, basis->modes, err);
     if (status == 0 && out->translated.exists)

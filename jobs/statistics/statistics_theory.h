@@ -20,7 +20,8 @@ struct summit_theory {
     bool translated;                   /* else of a Gaussian surface with the reached moments */
     struct translated_surface surface; /* of a Gaussian one: the dimension and those moments */
 };
-extern const char STATISTICS_TRANSLATION[]; /* "translation" */
+/* "translation", and that of the random part beside surfaces with grooves, "random_part". */
+extern const char STATISTICS_TRANSLATION[], STATISTICS_REST[];
 
 /* The theories of a case: none where the spectrum is not isotropic, has no finite moments, or an
  * alpha of at most 3/2 (profiles: 1). A translated surface has its own. An iterated surface whose

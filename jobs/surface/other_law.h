@@ -10,7 +10,7 @@
 
 /* Returns whether there are two laws: heights are not Gaussian. */
 static inline bool other_law_applies(const struct surface_case *surface) {
-    return surface->options.heights.type != HEIGHTS_GAUSSIAN;
+    return surface->options.heights.type != HEIGHTS_GAUSSIAN && surface->grooves == NULL;
 }
 
 /* Makes the translation with the spectrum and the heights of an iterated surface. *out, NULL

@@ -1,6 +1,7 @@
 #include "jobs/surface/surface_case.h"
 #include "core/cost.h"
 #include "core/surface/acf_spectrum.h"
+#include "jobs/surface/surface_grooves.h"
 #include "jobs/surface/surface_parameters.h"
 #include "jobs/surface/surface_plateau.h"
 #include <math.h>
@@ -547,6 +548,10 @@ static int read_plateau(struct surface_case *out, struct values *values, struct 
     int status = surface_plateau_fill(&out->plateau, &valleys, values, err);
     if (status != 0 || out->plateau == NULL)
         return status;
+    if (out->grooves != NULL)
+        values_fault(
+            values, "/surface/grooves/period",
+            "grooves are of a face of one random part; allowed: one of grooves and plateau");
     out->spectrum.plateau = out->plateau;
     out->heights_name = "stratified";
     surface_case_grid(out, values_number(values, POINTS), POINTS, values, &out->grid);
@@ -559,6 +564,8 @@ int surface_case_fill(struct surface_case *out, struct values *values,
     *out = (struct surface_case){0};
     *whole = NULL;
     int status = read_surface(out, values, err);
+    if (status == 0 && values_fault_count(values) == before)
+        status = surface_grooves_fill(out, values, err);
     if (status == 0 && values_fault_count(values) == before)
         status = surface_law_fill(&out->translation, &out->spectrum, out->dimension, &out->options,
                                   values, err);
@@ -591,6 +598,7 @@ static void face_clear(struct surface_case *face) {
     free(face->table);
     height_table_destroy(&face->height_table);
     translation_destroy(&face->translation);
+    free(face->grooves);
 }
 
 void surface_case_clear(struct surface_case *surface) {
@@ -658,8 +666,10 @@ struct surface_band surface_case_own_band(const struct surface_case *surface) {
 }
 
 struct surface_band surface_case_sampled_band(const struct surface_case *surface) {
-    return surface_case_translated(surface) ? surface_case_band(surface)
-                                            : surface_case_own_band(surface);
+    const struct grid *grid = &surface->grid;
+    return surface_case_translated(surface) || surface_case_random_limited(surface)
+               ? surface_case_band(surface)
+               : (struct surface_band){grid->nx / 2, grid->ny / 2};
 }
 
 double surface_case_bytes(const struct surface_case *surface) {
@@ -668,6 +678,8 @@ double surface_case_bytes(const struct surface_case *surface) {
     double bytes = generator_bytes(grid, band.x, band.y, &surface->options);
     if (surface->held != NULL)
         bytes += extension_bytes(&surface->held->map.grid);
+    if (surface->grooves != NULL)
+        bytes += sizeof(double) * (double)grid_points(grid); /* without them, for other grids */
     const struct surface_options *second = surface_case_second_options(surface);
     if (second == NULL)
         return bytes;
@@ -675,12 +687,17 @@ double surface_case_bytes(const struct surface_case *surface) {
            generator_sum_bytes(grid, band.x, band.y);
 }
 
+/* Of a point of a family of sines, the slowest of the named shapes. */
+static const double GROOVE_NANOSECONDS = 12;
+
 double surface_case_nanoseconds(const struct surface_case *surface, const struct grid *grid) {
     double own = cost_generation(&surface->options, grid);
     const struct surface_options *second = surface_case_second_options(surface);
     if (surface->held != NULL)
         own +=
             1e9 * extension_seconds(&surface->held->map.grid) / (double)grid_points(&surface->grid);
+    if (surface->grooves != NULL)
+        own += GROOVE_NANOSECONDS * (double)surface->grooves->families;
     return second == NULL ? own : own + cost_generation(second, grid);
 }
 
@@ -692,6 +709,17 @@ static struct height_moments add_heights(const struct height_moments *a, double 
     struct height_moments out = *a;
     out.skewness = a->skewness * pow(x, 3) + b->skewness * pow(y, 3);
     out.kurtosis = 3 + (a->kurtosis - 3) * pow(x, 4) + (b->kurtosis - 3) * pow(y, 4);
+    return out;
+}
+
+/* Adds the cumulants of grooves, whose units are RMS heights of the random part. */
+static struct height_moments add_grooves(const struct height_moments *rest,
+                                         const struct grooves *grooves) {
+    const struct groove_moments cumulants = grooves_cumulants(grooves);
+    const double square = 1 + cumulants.second;
+    struct height_moments out = *rest;
+    out.skewness = (rest->skewness + cumulants.third) / pow(square, 1.5);
+    out.kurtosis = 3 + (rest->kurtosis - 3 + cumulants.fourth) / (square * square);
     return out;
 }
 
@@ -712,7 +740,7 @@ int surface_case_heights(const struct surface_case *surface, struct height_momen
     if (*known && surface_case_gaussian(surface))
         counter = NULL;
     if (*known && counter == NULL)
-        *out = own;
+        *out = surface->grooves != NULL ? add_grooves(&own, surface->grooves) : own;
     if (!*known || counter == NULL)
         return 0;
     face.counter = NULL;

@@ -4,6 +4,7 @@
 
 #include "core/map/extend.h"
 #include "core/surface/counter_face.h"
+#include "core/surface/grooves/grooves.h"
 #include "core/surface/height_moments.h"
 #include "core/surface/plateau_face.h"
 #include "core/surface/surface.h"
@@ -31,6 +32,7 @@ struct surface_case {
     double *table;                       /* owned: memory behind a table spectrum */
     struct height_table *height_table;   /* owned: samples or quantiles of heights; NULL: none */
     struct translation *translation;     /* owned: that of the spectrum; NULL: none */
+    struct grooves *grooves;             /* beside the random part; owned; NULL: none */
     const char *heights_name;            /* of the theory curves of heights */
     /* A second face that this one is pressed on (surface_counter.h), with its wavelengths in
      * lambda_s of this one and no grid: owned; NULL: there is one face. */
@@ -67,9 +69,11 @@ int surface_case_hold(struct surface_case *surface, size_t nx, size_t ny, const 
 static inline bool surface_case_translated(const struct surface_case *surface) {
     return surface->spectrum.translation != NULL;
 }
-/* Returns whether the heights are Gaussian, and so is their sum with those of a counter face. */
+/* Returns whether the heights are Gaussian, and so is their sum with those of a counter face; with
+ * grooves they are not. */
 static inline bool surface_case_gaussian(const struct surface_case *surface) {
     return surface->options.heights.type == HEIGHTS_GAUSSIAN && surface->plateau == NULL &&
+           surface->grooves == NULL &&
            (surface->counter == NULL || surface->counter->options.heights.type == HEIGHTS_GAUSSIAN);
 }
 /* Returns whether surfaces, or one of two faces, are made by iteration. */
@@ -77,8 +81,9 @@ static inline bool surface_case_iterated(const struct surface_case *surface) {
     return surface_is_iterated(&surface->options) ||
            (surface->counter != NULL && surface_is_iterated(&surface->counter->options));
 }
-/* Returns whether the generated surfaces have no waves outside the prescribed band. */
-static inline bool surface_case_band_limited(const struct surface_case *surface) {
+/* Returns whether the random part has no waves outside the prescribed band, and whether the
+ * generated surfaces, with their grooves, have none. */
+static inline bool surface_case_random_limited(const struct surface_case *surface) {
     const struct surface_case *counter = surface->counter;
     if (surface->plateau != NULL)
         return false;
@@ -87,6 +92,9 @@ static inline bool surface_case_band_limited(const struct surface_case *surface)
     return own && surface->held == NULL &&
            (counter == NULL || counter->options.heights.type == HEIGHTS_GAUSSIAN ||
             counter->options.keep == KEEP_SPECTRUM);
+}
+static inline bool surface_case_band_limited(const struct surface_case *surface) {
+    return surface->grooves == NULL && surface_case_random_limited(surface);
 }
 /* Returns whether each surface has the prescribed spectrum exactly; with random amplitudes, and of
  * the sum of two faces, only their mean has. */
@@ -100,7 +108,7 @@ struct surface_band surface_case_band(const struct surface_case *surface);
  * grid. */
 struct surface_band surface_case_own_band(const struct surface_case *surface);
 /* Returns those by which surfaces are sampled on other grids: of translated ones, those of the
- * Gaussian field. */
+ * Gaussian field, and with grooves those of the random part. */
 struct surface_band surface_case_sampled_band(const struct surface_case *surface);
 static inline bool surface_band_fits(struct surface_band band, const struct grid *grid) {
     return grid->nx > 2 * band.x && (grid_is_profile(grid) || grid->ny > 2 * band.y);

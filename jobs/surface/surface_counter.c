@@ -71,6 +71,10 @@ static void check_faces(const struct surface_case *first, const struct surface_c
             values, "/surface/plateau/rms_ratio",
             "the sum of two faces is of faces of one surface each; allowed: one of plateau "
             "and counter_surface");
+    if (first->grooves != NULL)
+        values_fault(values, "/surface/grooves/period",
+                     "grooves are of one face that a flat is pressed on; allowed: one of grooves "
+                     "and counter_surface");
     if (surface_case_translated(first))
         values_fault(values, "/surface/heights/law",
                      "\"translation\": the sum of two faces is no translation; allowed: "

@@ -1,5 +1,6 @@
 /* The rows of /surface/... */
 #include "jobs/surface/surface_parameters.h"
+#include "core/surface/grooves/groove_profile.h"
 #include "core/surface/surface.h"
 
 static const struct choice ALPHA_FORMULAS[] = {
@@ -24,6 +25,10 @@ static const struct choice LAWS[] = {
     {"iterated", LAW_ITERATED}, {"translation", LAW_TRANSLATION}, {0}};
 static const struct choice DRAWS[] = {{"random", DRAW_RANDOM}, {"quantiles", DRAW_QUANTILES}, {0}};
 
+static const struct choice GROOVES[] = {{"sine", GROOVE_SINE},           {"arcs", GROOVE_ARCS},
+                                        {"triangle", GROOVE_TRIANGLE},   {"saw", GROOVE_SAW},
+                                        {"harmonics", GROOVE_HARMONICS}, {0}};
+
 /* The tolerance on one error of the iteration. */
 #define OWN_TOLERANCE(error, what)                                                                 \
     {                                                                                              \
@@ -43,6 +48,7 @@ static const struct choice DRAWS[] = {{"random", DRAW_RANDOM}, {"quantiles", DRA
         .maximum = (most), .sweep = true, .example_json = example, .help = words                   \
     }
 static const struct parameter ROWS[] = {
+#include "jobs/surface/surface_groove_rows.h"
 #include "jobs/surface/surface_rows.h"
     PLATEAU_ROW(
         "rms_ratio", PARAMETER_NUMBER, 0.01, 1, "0.25",

@@ -1,5 +1,6 @@
 #include "core/map/artefacts/map_artefacts.h"
 #include "core/map/despike.h"
+#include "core/statistics/grooves/map_grooves.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -87,6 +88,25 @@ static int find_lines(const struct grid *grid, const double *z,
     return status;
 }
 
+/* Grooves along the scan lines, every few of them, have heights that neighbours have not, either.
+ * So offsets count only where they are left without them. */
+static int find_lines_beside_grooves(const struct grid *grid, double *z,
+                                     const struct map_differences *differences,
+                                     struct map_artefacts *out, struct error *err) {
+    const struct measured_map map = {grid, z, BOUNDARY_OPEN};
+    struct map_differences without;
+    struct map_grooves grooves;
+    int status = find_lines(grid, z, differences, out, err);
+    if (status != 0 || !out->lines.found)
+        return status;
+    status = map_grooves_find(&grooves, &map, err);
+    if (status != 0 || grooves.families == 0)
+        return status;
+    map_grooves_take(&grooves, grid, z);
+    map_differences_measure(grid, z, &without);
+    return find_lines(grid, z, &without, out, err);
+}
+
 int map_artefacts_find_left(const struct grid *grid, const double *z, struct map_artefacts *out,
                             struct error *err) {
     const size_t points = grid_points(grid);
@@ -100,7 +120,7 @@ int map_artefacts_find_left(const struct grid *grid, const double *z, struct map
         find_spikes(grid, z, out->steps.step, copy, &differences, &without, &out->spikes, err);
     height_steps_weigh(grid, &without, &out->steps);
     if (status == 0)
-        status = find_lines(grid, copy, &without, out, err);
+        status = find_lines_beside_grooves(grid, copy, &without, out, err);
     free(copy);
     return status;
 }

@@ -96,12 +96,13 @@ static int asperities_solve(void *workspace, const struct contact_surface *surfa
                             const struct contact_stopper *stopper, struct error *err) {
     struct asperities *asperities = workspace;
     const struct contact_case *one_case = tally->one_case;
+    const struct level_source source = {asperities->rms_height, surface->key};
     int status = 0;
     for (size_t g = 0; g < grids_of(one_case) && status == 0; g++) {
         if (stopper->stop(stopper->context) != 0)
             return error_set(err, ERROR_STOPPED, "stopped at the summits of a surface");
-        status = contact_level_sample(level_of(one_case, g), &one_case->surface,
-                                      asperities->rms_height, surface->z, asperities->z, err);
+        status = contact_level_sample(level_of(one_case, g), &one_case->surface, &source,
+                                      surface->z, asperities->z, err);
         if (status == 0)
             status = counted_asperities_take(asperities->of[g], asperities->z,
                                              asperities->rms_height, asperities->rms_slope, err);

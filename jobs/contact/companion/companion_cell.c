@@ -173,6 +173,9 @@ static bool plateau_holds_waves(const struct surface_case *surface, double lengt
 
 static bool holds_waves(const struct contact_case *one_case, double length) {
     const struct surface_case *surface = &one_case->surface;
+    if (surface->grooves != NULL &&
+        !grooves_fit(surface->grooves, length * surface->grid.lx, length * surface->grid.ly))
+        return false;
     return face_holds_waves(surface, length) &&
            (surface->counter == NULL || face_holds_waves(surface->counter, length)) &&
            (surface->plateau == NULL || plateau_holds_waves(surface, length));
@@ -266,7 +269,8 @@ static int cell_solve(void *workspace, const struct contact_surface *surface,
     double *series = companion_series(tally->one_case, out, 0);
     int status = generator_run(cell->generator, key, cell->own, NULL, err);
     if (status == 0)
-        status = contact_level_sample(&plan->level, &plan->surface, cell->rms_height, cell->own,
+        status = contact_level_sample(&plan->level, &plan->surface,
+                                      &(struct level_source){cell->rms_height, key}, cell->own,
                                       cell->z, err);
     if (status == 0)
         status = coarse_solver_press(cell->halfspace, cell->z, series, stopper, err);

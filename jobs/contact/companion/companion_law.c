@@ -88,8 +88,10 @@ static int press_other(struct law *law, const struct contact_surface *surface, d
     const double *z;
     int status = other_law_make(law->law, surface->key, &z, &report, err);
     if (status == 0)
-        status = contact_level_sample(&law->plan->level, other_law_surface(law->law),
-                                      other_law_moments(law->law)->rms_height, z, law->z, err);
+        status = contact_level_sample(
+            &law->plan->level, other_law_surface(law->law),
+            &(struct level_source){other_law_moments(law->law)->rms_height, surface->key}, z,
+            law->z, err);
     return status != 0 ? status : coarse_solver_press(law->other, law->z, series, stopper, err);
 }
 

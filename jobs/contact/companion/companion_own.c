@@ -10,7 +10,8 @@ int companion_press_own(const struct companion_own *own, const struct contact_su
                measure_paired(one_case) * contact_case_slots(one_case) * sizeof *series);
         return 0;
     }
-    int status = contact_level_sample(own->level, &one_case->surface, own->rms_height, surface->z,
-                                      own->z, err);
+    const struct level_source source = {own->rms_height, surface->key};
+    int status =
+        contact_level_sample(own->level, &one_case->surface, &source, surface->z, own->z, err);
     return status != 0 ? status : coarse_solver_press(own->halfspace, own->z, series, stopper, err);
 }

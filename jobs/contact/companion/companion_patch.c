@@ -85,8 +85,8 @@ static int press_drawn(struct patch *patch, const struct contact_surface *surfac
     if (level->stride == 0 &&
         !surface_band_fits(surface_case_sampled_band(drawn.surface), &level->grid))
         return 0;
-    status = contact_level_sample(level, drawn.surface, drawn.moments.rms_height, drawn.z, patch->z,
-                                  err);
+    const struct level_source source = {drawn.moments.rms_height, surface->key};
+    status = contact_level_sample(level, drawn.surface, &source, drawn.z, patch->z, err);
     return status != 0 ? status
                        : coarse_solver_press(patch->halfspace, patch->z, series, stopper, err);
 }

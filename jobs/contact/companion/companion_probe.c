@@ -106,8 +106,9 @@ static int probe_solve(void *workspace, const struct contact_surface *surface,
                        const struct contact_stopper *stopper, struct error *err) {
     const struct probe *probe = workspace;
     const struct contact_case *one_case = tally->one_case;
-    int status = contact_level_sample(&probe->plan->level, &one_case->surface, probe->rms_height,
-                                      surface->z, probe->z, err);
+    const struct level_source source = {probe->rms_height, surface->key};
+    int status = contact_level_sample(&probe->plan->level, &one_case->surface, &source, surface->z,
+                                      probe->z, err);
     for (size_t b = 0; b < probe->plan->series && status == 0; b++) {
         double *series = companion_series(one_case, out, b);
         if (probe->blocks[b] != NULL)

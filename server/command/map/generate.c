@@ -223,7 +223,7 @@ static int generate_one(const struct generate_order *order, const struct study *
     double *z = NULL;
     int status = realisation_surface(surface, key, &z, &report, err);
     if (status == 0 && step_words_ask(&order->options->steps))
-        status = generate_steps(&order->options->steps, study, case_number, z, err);
+        status = generate_steps(&order->options->steps, study, case_number, key, z, err);
     if (status == 0 && order->options->picture != NULL)
         status = write_picture(order, study, &surface->grid, z, err);
     if (status == 0 && writes_surface(order))

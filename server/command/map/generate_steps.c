@@ -58,12 +58,13 @@ static const struct job_kind *kind_with_contact(void) {
 }
 
 static int press(struct step_files *files, const struct job_kind *kind, const cJSON *parameters,
-                 const double *z, struct error *err) {
+                 struct random_key key, const double *z, struct error *err) {
     static const double UNLOADED = 0;
     const struct step_words *words = files->words;
     double loads[STEP_LOADS_MOST];
     void *one_case = NULL;
-    struct steps_order order = {.z = z, .model = words->model, .meshed = words->mesh != NULL};
+    struct steps_order order = {
+        .z = z, .key = key, .model = words->model, .meshed = words->mesh != NULL};
     const struct steps_sink sink = {put_step, files};
     (void)read_loads(words, loads, &order.load_count);
     order.loads = loads;
@@ -79,7 +80,7 @@ static int press(struct step_files *files, const struct job_kind *kind, const cJ
 }
 
 int generate_steps(const struct step_words *words, const struct study *study, size_t case_number,
-                   const double *z, struct error *err) {
+                   struct random_key key, const double *z, struct error *err) {
     const struct job_kind *kind = kind_of(study->kind), *contact = kind_with_contact();
     struct step_files files = {.words = words, .mesh = {.path = words->mesh}};
     if (kind->press_steps == NULL)
@@ -92,7 +93,7 @@ int generate_steps(const struct step_words *words, const struct study *study, si
     if (status == 0)
         status = step_folder_open(&files.folder, words->steps, words->nodes, err);
     if (status == 0)
-        status = press(&files, kind, study->cases[case_number].parameters, z, err);
+        status = press(&files, kind, study->cases[case_number].parameters, key, z, err);
     status = step_folder_close(&files.folder, status, err);
     mesh_file_clear(&files.mesh);
     return status;

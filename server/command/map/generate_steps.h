@@ -2,6 +2,7 @@
 #ifndef RUGO_SERVER_COMMAND_MAP_GENERATE_STEPS_H
 #define RUGO_SERVER_COMMAND_MAP_GENERATE_STEPS_H
 
+#include "core/random.h"
 #include "schema/study/study.h"
 #include "server/command/options.h"
 
@@ -41,6 +42,6 @@ bool step_words_ask(const struct step_words *words);
 int step_words_check(const struct step_words *words);
 /* Presses the surface z of a case as the words ask, and writes the files. */
 int generate_steps(const struct step_words *words, const struct study *study, size_t case_number,
-                   const double *z, struct error *err);
+                   struct random_key key, const double *z, struct error *err);
 
 #endif

@@ -69,6 +69,8 @@ struct map_options {
                 "turn counter-clockwise: by right angles exactly, else in the rectangle inside"),  \
         MAP_ROW(type, member, "detrend", OPTION_CHOICE, words.detrend, MAP_DETRENDS, standard,     \
                 "trend taken out first; auto: a plane, of an open map"),                           \
+        MAP_ROW(type, member, "degroove", OPTION_FLAG, words.degroove, NULL, NULL,                 \
+                "take out periodic grooves, as turning, grinding and honing leave them"),          \
         MAP_ROW(type, member, "fill", OPTION_FLAG, words.fill, NULL, NULL,                         \
                 "fill holes with the smoothest membrane"),                                         \
         MAP_ROW(type, member, "denoise", OPTION_FLAG, words.denoise, NULL, NULL,                   \

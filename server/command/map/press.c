@@ -1,9 +1,7 @@
 /* rugo press FILE: the contact of a height map in a file with a rigid flat, or with a second map.
  */
 #include "jobs/allotment.h"
-#include "jobs/maps/map_artefact_words.h"
 #include "jobs/maps/map_counter.h"
-#include "jobs/maps/map_noise.h"
 #include "jobs/maps/map_press_curves.h"
 #include "jobs/maps/map_press_error.h"
 #include "schema/result/csv.h"
@@ -17,6 +15,7 @@
 #include "server/command/map/press_loads.h"
 #include "server/command/map/press_path.h"
 #include "server/command/map/press_room.h"
+#include "server/command/map/press_warnings.h"
 #include "server/show/map/press_print.h"
 #include <stdlib.h>
 #include <string.h>
@@ -348,33 +347,6 @@ static void warn_of_few_nodes(const struct press_order *order, const struct pres
                 "rugo press: warning: %s: at p/(E* h') = %.3g only %.3g %s in contact, so that "
                 "areas and pressures are rough there\n",
                 order->path, row->value[PRESS_LOAD], nodes, nodes > 1 ? "points are" : "point is");
-}
-
-/* Slopes with noise in them are no measure of loads; press takes the map as it is. Of larger maps
- * the spectrum would take longer than a load. */
-static int warn_of_noise(const struct press_order *order, const struct height_map *map,
-                         struct error *err) {
-    enum { POINTS_SEEN = 1 << 20 };
-    const struct measured_map measured = {&map->grid, map->z, order->record.boundary};
-    struct map_noise noise;
-    if (grid_points(&map->grid) > POINTS_SEEN || order->record.window_power < 1)
-        return 0;
-    int status = map_noise_measure(&noise, &measured, err);
-    if (status == 0 && noise.governs)
-        fprintf(stderr,
-                "rugo press: warning: %s: noise governs the slopes, whose RMS is %.3g with it and "
-                "%.3g without; --denoise takes it out (`rugo characterise` shows it)\n",
-                order->path, noise.slope, noise.without);
-    return status;
-}
-
-/* So are those that hold what the instrument left. */
-static void warn_of_artefacts(const struct press_order *order, const struct height_map *map) {
-    char sentences[ARTEFACT_SENTENCES_MOST][ARTEFACT_SENTENCE_SIZE];
-    const size_t count =
-        map_artefact_sentences(sentences, &order->record.artefacts, &map->grid, map->z_unit, true);
-    for (size_t n = 0; n < count; n++)
-        fprintf(stderr, "rugo press: warning: %s: %s\n", order->path, sentences[n]);
 }
 
 static double map_area(const struct map_press *press) {
@@ -769,9 +741,7 @@ static int run(const void *values, const char *const *arguments) {
     if (status == 0)
         status = read_map(&map, order, &err);
     if (status == 0)
-        warn_of_artefacts(order, &map);
-    if (status == 0)
-        status = warn_of_noise(order, &map, &err);
+        status = press_warn(order->path, &map, &order->record, &err);
     if (status == 0)
         status = press_map(order, &map, &err);
     height_map_clear(&map);

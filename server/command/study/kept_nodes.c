@@ -59,10 +59,12 @@ static int put(void *context, const struct nodal_step *step, size_t number, size
 }
 
 /* Presses a surface by one model. Where it finds no solution, the other models go on. */
-static int press(struct kept_writer *writer, uint64_t realisation, const double *z,
+static int press(struct kept_writer *writer, struct random_key key, const double *z,
                  const char *model, struct error *err) {
+    const uint64_t realisation = key.realisation;
     const struct kept_order *order = writer->order;
     const struct steps_order steps = {.z = z,
+                                      .key = key,
                                       .model = model,
                                       .load_count = writer->kept.load_count,
                                       .loads = writer->kept.loads,
@@ -98,7 +100,7 @@ static int write_realisation(struct kept_writer *writer, uint64_t realisation, s
     key.realisation = realisation;
     int status = realisation_surface(&stopped, key, &z, &report, err);
     for (size_t m = 0; m < writer->kept.model_count && status == 0; m++)
-        status = press(writer, realisation, z, writer->kept.models[m], err);
+        status = press(writer, key, z, writer->kept.models[m], err);
     free(z);
     return status;
 }

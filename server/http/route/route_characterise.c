@@ -37,6 +37,7 @@ static const struct {
                {"deconvolve", "deconvolve", false},
                {"transpose", "transpose", true},
                {"rotate", "rotate", false},
+               {"degroove", "degroove", true},
                {"fill", "fill", true},
                {"denoise", "denoise", true},
                {"filter", "filter", false},

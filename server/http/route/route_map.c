@@ -308,6 +308,7 @@ static int press_nodes(const struct node_question *question, const struct map_or
         status = realisation_surface(&stopped, order->key, &z, &report, err);
     }
     const struct steps_order steps = {.z = z,
+                                      .key = order->key,
                                       .model = question->model,
                                       .load_count = question->load_count,
                                       .loads = question->loads,

@@ -1,5 +1,6 @@
 #include "server/show/map/map_report.h"
 #include "server/show/map/functional_report.h"
+#include "server/show/map/groove_report.h"
 #include <math.h>
 #include <string.h>
 
@@ -425,6 +426,8 @@ static int add_tables(struct named_values *out, const struct map_characterisatio
                                         {"quantile", heights->y, 1, 1}};
     int status = profile ? 0 : add_angular(out, &found->directions.angular, err);
     if (status == 0)
+        status = groove_report_tables(out, found, err);
+    if (status == 0)
         status = add_scales(out, &found->scales, profile, err);
     if (status == 0)
         status = add_spectra(out, &found->spectra, profile, err);
@@ -499,6 +502,7 @@ int map_report_fill(struct named_values *out, const struct map_characterisation 
     if (!profile)
         add_isotropy(out, &found->directions);
     add_stationarity(out, found);
+    groove_report_values(out, found);
     if (found->spectra.has_fit)
         add_fit(out, "spectrum_fit", &found->spectra.fit);
     if (found->spectra.has_scores) {

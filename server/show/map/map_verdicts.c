@@ -1,5 +1,6 @@
 #include "server/show/map/map_verdicts.h"
 #include "jobs/maps/map_artefact_words.h"
+#include "server/show/map/groove_report.h"
 #include "server/show/map/main_values.h"
 #include "server/show/map/map_figure_internal.h"
 #include "server/show/plot/plot_words.h"
@@ -163,8 +164,11 @@ static void judge_directions(struct verdicts *verdicts, const struct named_value
     if (!isfinite(p_value))
         return;
     const double ratio = named_number(found, "spectrum_fit", "lay_ratio");
+    const bool grooved = isfinite(named_number(found, "grooves", "period"));
     if (p_value >= SURE)
         say(verdicts, "Directions: none differs (p-value %.2g).", p_value);
+    else if (grooved && !isfinite(ratio))
+        say(verdicts, "Directions: they differ (p-value %.2g), as grooves make them.", p_value);
     else if (isfinite(ratio))
         say(verdicts,
             "Directions: they differ (p-value %.2g): waves are %.3g times as long at %.3g degrees "
@@ -191,6 +195,23 @@ static void judge_parts(struct verdicts *verdicts, const struct named_values *fo
             p_value);
 }
 
+static void judge_grooves(struct verdicts *verdicts, const struct map_figure *figure) {
+    const struct map_grooves *grooves = &figure->measured->grooves;
+    const struct figure_units units = figure_units_of(figure);
+    const struct groove_units lengths = {units.x, units.z, units.x_name, units.z_name};
+    char sentence[VERDICT_SIZE - 24];
+    for (size_t f = 0; f < grooves->families; f++) {
+        groove_sentence(&grooves->family[f], &lengths, sentence, sizeof sentence);
+        say(verdicts, "Grooves: %s%s.", f > 0 ? "and " : "", sentence);
+    }
+    if (grooves->families > 0)
+        say(verdicts,
+            "Spectrum and law are those of the map without its grooves (--degroove), "
+            "whose RMS height is %.3g%s%s.",
+            figure->measured->rest_height / units.z, *units.z_name != '\0' ? " " : "",
+            units.z_name);
+}
+
 static void judge_artefacts(struct verdicts *verdicts, const struct map_figure *figure) {
     const struct map_artefacts *artefacts = &figure->record->artefacts;
     char sentences[ARTEFACT_SENTENCES_MOST][ARTEFACT_SENTENCE_SIZE];
@@ -206,6 +227,7 @@ static void judge_artefacts(struct verdicts *verdicts, const struct map_figure *
 size_t map_verdicts_list(char out[VERDICTS_MOST][VERDICT_SIZE], const struct map_figure *figure) {
     struct verdicts verdicts = {out, 0};
     judge_errors(&verdicts, figure->found);
+    judge_grooves(&verdicts, figure);
     judge_law(&verdicts, figure->found);
     judge_short_waves(&verdicts, figure);
     judge_noise(&verdicts, figure->found, &figure->record->artefacts);

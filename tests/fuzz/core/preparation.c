@@ -60,6 +60,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     words.lines_along = letter / 5 % 2;
     words.transpose = letter / 10 % 2 == 1;
     words.denoise = letter / 40 % 2 == 1;
+    words.degroove = letter / 80 % 2 == 1;
     words.extend = letter / 80 % 2 == 1 ? "3" : NULL;
     words.stride = letter / 20 % 2 == 1 ? "2,1" : NULL;
     int status = preparation_parse(&asked, &words, &err);

@@ -39,6 +39,7 @@ static const struct {
     {"rotate", {"90", "30", "-90"}, {"361", "x", "1e300"}},
     {"detrend", {"none", "mean", "plane"}, {"quadratic", "99"}},
     {"fill", {"true", "false"}, {"yes"}},
+    {"degroove", {"true", "false"}, {"yes"}},
     {"denoise", {"true", "false"}, {"yes"}},
     {"filter", {"S=2um", "L=4um", "robust"}, {"1,2", "S=0", "L=1e300um", "S=-1um"}},
     {"resample", {"2", "4"}, {"2x2", "0", "1000000"}},

@@ -51,7 +51,9 @@ static void press(const struct contact_case *one_case, const struct moments *mom
     double series[MEASURE_PAIRED * LOADS];
     assert_non_null(coarse);
     must(coarse_solver_create(&halfspace, one_case, &level.grid, INFINITY, moments, &err), &err);
-    must(contact_level_sample(&level, &one_case->surface, moments->rms_height, z, coarse, &err),
+    must(contact_level_sample(&level, &one_case->surface,
+                              &(struct level_source){.rms_height = moments->rms_height}, z, coarse,
+                              &err),
          &err);
     must(coarse_solver_press(halfspace, coarse, series, &stopper, &err), &err);
     memcpy(areas, series + MEASURE_EDGES * LOADS, LOADS * sizeof *areas);

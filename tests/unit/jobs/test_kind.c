@@ -126,6 +126,7 @@ static void readers_and_rows_agree(void **state) {
                                           "jobs/surface/surface_law.c",
                                           "jobs/surface/surface_counter.c",
                                           "jobs/surface/surface_plateau.c",
+                                          "jobs/surface/surface_grooves.c",
                                           "jobs/contact/contact_case_read.c",
                                           "jobs/statistics/statistics_case.c",
                                           "jobs/target.c",

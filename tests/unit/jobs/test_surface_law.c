@@ -127,7 +127,9 @@ static void meshes_sample_one_surface(void **state) {
     assert_int_equal(realisation_surface(&finer, key, &expected, &report, NULL), 0);
     double *sampled = malloc(points * sizeof *sampled);
     assert_non_null(sampled);
-    assert_int_equal(contact_level_sample(&level, &own, 1, z, sampled, NULL), 0);
+    assert_int_equal(contact_level_sample(&level, &own, &(struct level_source){.rms_height = 1}, z,
+                                          sampled, NULL),
+                     0);
     for (size_t i = 0; i < points; i++)
         check_close(sampled[i], expected[i], 1e-9);
     free(z);

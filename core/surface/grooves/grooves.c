@@ -1,0 +1,55 @@
+#include "core/surface/grooves/grooves.h"
+#include <math.h>
+
+struct groove_fit groove_fit_cell(double wave_x, double wave_y, double lx, double ly) {
+    const double x = wave_x * lx, y = wave_y * ly;
+    return (struct groove_fit){round(x), round(y), fmax(fabs(x - round(x)), fabs(y - round(y)))};
+}
+
+bool grooves_fit(const struct grooves *grooves, double lx, double ly) {
+    static const double ROUNDING = 1e-6;
+    for (size_t f = 0; f < grooves->families; f++)
+        if (groove_fit_cell(grooves->wave_x[f], grooves->wave_y[f], lx, ly).off > ROUNDING)
+            return false;
+    return true;
+}
+
+/* Adds one family: whole periods along both sides, so that rounding does not grow along them. */
+static void family_add(const struct grooves *grooves, size_t family, const struct grid *grid,
+                       double phase, double height, double *z) {
+    const bool profile = grid_is_profile(grid);
+    const struct groove_fit fit =
+        groove_fit_cell(grooves->wave_x[family], profile ? 0 : grooves->wave_y[family], grid->lx,
+                        profile ? 1 : grid->ly);
+    const double by_i = fit.along_x / (double)grid->nx, by_j = fit.along_y / (double)grid->ny;
+    const double depth = height * grooves->depth;
+    for (size_t j = 0; j < grid->ny; j++) {
+        const double start = phase + by_j * (double)j;
+        for (size_t i = 0; i < grid->nx; i++)
+            z[j * grid->nx + i] +=
+                depth * groove_profile_height(&grooves->profile, start + by_i * (double)i);
+    }
+}
+
+void grooves_add(const struct grooves *grooves, const struct grid *grid, struct random_key key,
+                 double height, double *z) {
+    double phase[GROOVE_FAMILIES_MOST] = {grooves->phase, grooves->phase};
+    if (isnan(grooves->phase))
+        random_uniform(key, STREAM_GROOVES, 0, GROOVE_FAMILIES_MOST, phase);
+    for (size_t f = 0; f < grooves->families; f++)
+        family_add(grooves, f, grid, phase[f], height, z);
+}
+
+struct groove_moments grooves_cumulants(const struct grooves *grooves) {
+    const struct groove_moments one = groove_profile_moments(&grooves->profile);
+    const double d = grooves->depth, square = d * d;
+    struct groove_moments out = {0};
+    for (size_t f = 0; f < grooves->families; f++) {
+        const double wave = hypot(grooves->wave_x[f], grooves->wave_y[f]);
+        out.second += square * one.second;
+        out.third += square * d * one.third;
+        out.fourth += square * square * (one.fourth - 3 * one.second * one.second);
+        out.slope += square * one.slope * wave * wave;
+    }
+    return out;
+}

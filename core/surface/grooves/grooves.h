@@ -1,0 +1,37 @@
+/* Families of straight, evenly spaced grooves of one profile, which a machined face has beside its
+ * random part: FORMULAS.md, F18.71. */
+#ifndef RUGO_CORE_SURFACE_GROOVES_GROOVES_H
+#define RUGO_CORE_SURFACE_GROOVES_GROOVES_H
+
+#include "core/random.h"
+#include "core/surface/grid.h"
+#include "core/surface/grooves/groove_profile.h"
+
+enum { GROOVE_FAMILIES_MOST = 2 };
+struct grooves {
+    struct groove_profile profile;
+    size_t families;
+    double depth; /* of each family, over the RMS height of the random part */
+    double wave_x[GROOVE_FAMILIES_MOST], wave_y[GROOVE_FAMILIES_MOST]; /* periods a unit length */
+    double phase; /* at the origin, in periods; NaN: at random for each realisation and family */
+};
+
+/* Returns the whole numbers of periods along the sides of a cell that a wave vector is nearest to,
+ * and how far from them it is, in periods. */
+struct groove_fit {
+    double along_x, along_y, off;
+};
+struct groove_fit groove_fit_cell(double wave_x, double wave_y, double lx, double ly);
+/* Returns whether every family has whole numbers of periods along both sides of a cell, to 1e-6. */
+bool grooves_fit(const struct grooves *grooves, double lx, double ly);
+
+/* Adds the grooves of a realisation, times `height`, at the points of a grid: the same grooves on
+ * all grids of a cell. height: the RMS height of the random part, negative to take them off. */
+void grooves_add(const struct grooves *grooves, const struct grid *grid, struct random_key key,
+                 double height, double *z);
+
+/* Returns the moments of all families together, in units of the RMS height of the random part: mean
+ * square, third and fourth cumulant of heights, and the mean square slope by the unit length. */
+struct groove_moments grooves_cumulants(const struct grooves *grooves);
+
+#endif

@@ -1,0 +1,265 @@
+/* Protects: grooves in maps: found with period, angle and depth within the reported errors, not
+ * found in random faces with or without a lay, taken out so that the law of the rest is found, and
+ * no offsets of scan lines. */
+#include "core/map/artefacts/map_artefacts.h"
+#include "core/statistics/grooves/map_grooves.h"
+#include "core/statistics/spectra/spectrum_fit.h"
+#include "core/surface/grooves/grooves.h"
+#include "core/surface/surface.h"
+#include "tests/support/check.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The random part has H = 0.8, waves of 4 to 32 points and RMS height 1. A map is cut from a cell
+ * of twice its sides. */
+enum { SIDE = 128, WHOLE = 2 * SIDE, SEED = 7 };
+
+struct maker {
+    struct generator *generator;
+    double *whole, *z;
+};
+
+static struct maker maker_create(double anisotropy) {
+    const struct grid grid = {WHOLE, WHOLE, WHOLE, WHOLE};
+    const struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
+                                      .hurst = 0.8,
+                                      .wavelength_long = 32,
+                                      .wavelength_rolloff = 32,
+                                      .wavelength_short = 4,
+                                      .anisotropy = anisotropy,
+                                      .lay_angle = 0.4};
+    struct surface_options options = SURFACE_DEFAULTS;
+    struct maker out = {.whole = malloc(WHOLE * WHOLE * sizeof(double)),
+                        .z = malloc(SIDE * SIDE * sizeof(double))};
+    options.amplitudes = AMPLITUDES_RANDOM;
+    assert_true(out.whole != NULL && out.z != NULL);
+    assert_int_equal(generator_create(&out.generator, &spectrum, &grid, &options, NULL), 0);
+    return out;
+}
+
+static void maker_destroy(struct maker *maker) {
+    generator_destroy(&maker->generator);
+    free(maker->whole);
+    free(maker->z);
+}
+
+static const struct grid GRID = {SIDE, SIDE, SIDE, SIDE};
+
+static void make(struct maker *maker, uint64_t number, double height) {
+    const struct random_key key = {SEED, 0, number};
+    assert_int_equal(generator_run(maker->generator, key, maker->whole, NULL, NULL), 0);
+    for (size_t j = 0; j < SIDE; j++)
+        for (size_t i = 0; i < SIDE; i++)
+            maker->z[j * SIDE + i] = height * maker->whole[j * WHOLE + i];
+}
+
+struct truth {
+    enum groove_shape shape;
+    double period, angle, depth, phase;
+};
+
+static void add(double *z, const struct truth *truth) {
+    const struct groove_profile profile = {.shape = truth->shape};
+    for (size_t j = 0; j < SIDE; j++)
+        for (size_t i = 0; i < SIDE; i++)
+            z[j * SIDE + i] +=
+                truth->depth * groove_profile_height(&profile, ((double)i * sin(truth->angle) -
+                                                                (double)j * cos(truth->angle)) /
+                                                                       truth->period +
+                                                                   truth->phase);
+}
+
+/* Draws period (7 to 11 points), angle and phase, none of them on the grid of the waves. */
+static struct truth draw(uint64_t number, enum groove_shape shape, double depth) {
+    double u[3];
+    random_uniform((struct random_key){SEED, 0, number}, STREAM_GROOVES, 10, 3, u);
+    return (struct truth){shape, 7 + 4 * u[0], (u[1] - 0.5) * M_PI, depth, u[2]};
+}
+
+static struct map_grooves find(const double *z, enum boundary boundary) {
+    const struct measured_map map = {&GRID, z, boundary};
+    struct map_grooves out;
+    assert_int_equal(map_grooves_find(&out, &map, NULL), 0);
+    return out;
+}
+
+/* 95 % intervals hold the truth in 92 to 98 % of 120 sines of depth 1, whose errors are those of
+ * the random part: 110 to 118 of them, and two less or more by what 120 draws scatter. */
+static void errors_hold(void **state) {
+    (void)state;
+    enum { MAPS = 120, LOW = 108, HIGH = 119 };
+    struct maker maker = maker_create(1);
+    int period = 0, angle = 0, depth = 0, found = 0;
+    for (uint64_t r = 0; r < MAPS; r++) {
+        const struct truth truth = draw(r, GROOVE_SINE, 1);
+        make(&maker, r, 1);
+        add(maker.z, &truth);
+        const struct map_grooves grooves = find(maker.z, BOUNDARY_OPEN);
+        if (grooves.families != 1)
+            continue;
+        const struct map_groove *g = &grooves.family[0];
+        found++;
+        period += fabs(g->period - truth.period) < 1.96 * g->period_error;
+        angle += fabs(remainder(g->angle - truth.angle, M_PI)) < 1.96 * g->angle_error;
+        depth += fabs(g->fit.depth - truth.depth) < 1.96 * g->fit.depth_error;
+    }
+    print_message("[   NOTE   ] of %d maps %d found; period, angle, depth within %d, %d, %d\n",
+                  MAPS, found, period, angle, depth);
+    assert_true(found == MAPS);
+    assert_true(period >= LOW && period <= HIGH);
+    assert_true(angle >= LOW && angle <= HIGH);
+    assert_true(depth >= LOW && depth <= HIGH);
+    maker_destroy(&maker);
+}
+
+/* Shapes with harmonics are distinguished: all but one of 12 of each, as a fold of a saw's
+ * harmonics may look like a line of its own. */
+static void shapes_are_found(void **state) {
+    (void)state;
+    enum { MAPS = 12 };
+    struct maker maker = maker_create(1);
+    for (int shape = GROOVE_ARCS; shape <= GROOVE_SAW; shape++) {
+        int right = 0;
+        for (uint64_t r = 0; r < MAPS; r++) {
+            struct truth truth = draw(r, (enum groove_shape)shape, 1);
+            truth.period += 3;
+            make(&maker, r, 1);
+            add(maker.z, &truth);
+            const struct map_grooves grooves = find(maker.z, BOUNDARY_OPEN);
+            assert_true(grooves.families >= 1);
+            const struct map_groove *g = &grooves.family[0];
+            right += g->fit.shape == (enum groove_shape)shape &&
+                     fabs(g->period / truth.period - 1) < 0.002 && fabs(g->fit.depth - 1) < 0.1;
+        }
+        print_message("[   NOTE   ] %s: %d of %d\n", GROOVE_SHAPE_NAMES[shape], right, MAPS);
+        assert_true(right >= MAPS - 1);
+    }
+    maker_destroy(&maker);
+}
+
+/* Of 200 random faces, half of them with a lay of 4, at most 2 have grooves. */
+static void random_faces_have_none(void **state) {
+    (void)state;
+    enum { MAPS = 100, MOST = 2 };
+    size_t found = 0;
+    for (int lay = 0; lay < 2; lay++) {
+        struct maker maker = maker_create(lay == 0 ? 1 : 4);
+        for (uint64_t r = 0; r < MAPS; r++) {
+            make(&maker, r, 1);
+            found += find(maker.z, BOUNDARY_OPEN).families;
+        }
+        maker_destroy(&maker);
+    }
+    print_message("[   NOTE   ] grooves in %zu of %d random faces\n", found, 2 * MAPS);
+    assert_true(found <= MOST);
+}
+
+/* Honing: two families of arcs, each with its angle. */
+static void crossed_families_are_two(void **state) {
+    (void)state;
+    struct maker maker = maker_create(1);
+    for (uint64_t r = 0; r < 5; r++) {
+        const struct truth first = draw(r, GROOVE_ARCS, 1);
+        struct truth second = first;
+        second.angle += 0.9;
+        make(&maker, r, 1);
+        add(maker.z, &first);
+        add(maker.z, &second);
+        const struct map_grooves grooves = find(maker.z, BOUNDARY_OPEN);
+        assert_int_equal(grooves.families, 2);
+        const double apart =
+            fabs(remainder(grooves.family[0].angle - grooves.family[1].angle, M_PI));
+        check_close(apart, 0.9, 0.01);
+    }
+    maker_destroy(&maker);
+}
+
+/* The law of the rest is that of the random part, whose waves are shorter than the grooves; with
+ * them it is none. What is left has no grooves. */
+static void the_rest_has_its_law(void **state) {
+    (void)state;
+    const struct spectrum_fit_request by_the_map = {0};
+    struct maker maker = maker_create(1);
+    const struct truth truth = {GROOVE_ARCS, 13.7, 0.3, 3, 0.2};
+    const struct measured_map map = {&GRID, maker.z, BOUNDARY_OPEN};
+    struct map_spectrum *spectrum = NULL;
+    struct spectrum_fit with, without;
+    make(&maker, 1, 1);
+    add(maker.z, &truth);
+    assert_int_equal(map_spectrum_create(&spectrum, &map, NULL), 0);
+    assert_int_equal(spectrum_fit_measure(spectrum, &by_the_map, &with, NULL), 0);
+    map_spectrum_destroy(&spectrum);
+    struct map_grooves grooves = find(maker.z, BOUNDARY_OPEN);
+    assert_int_equal(grooves.families, 1);
+    map_grooves_take(&grooves, &GRID, maker.z);
+    assert_int_equal(find(maker.z, BOUNDARY_OPEN).families, 0);
+    assert_int_equal(map_spectrum_create(&spectrum, &map, NULL), 0);
+    assert_int_equal(spectrum_fit_measure(spectrum, &by_the_map, &without, NULL), 0);
+    map_spectrum_destroy(&spectrum);
+    assert_true(without.hurst.low < 0.8 && without.hurst.high > 0.8);
+    assert_true(without.deviance < without.deviance_limit);
+    assert_true(with.deviance > 2 * without.deviance);
+    maker_destroy(&maker);
+}
+
+/* Grooves along the scan lines, every 2.7 of them, are none of these; offsets are. */
+static void grooves_are_no_offsets(void **state) {
+    (void)state;
+    struct maker maker = maker_create(1);
+    for (int offsets = 0; offsets < 2; offsets++) {
+        struct map_artefacts artefacts = {.sought = false};
+        const struct truth truth = {GROOVE_SINE, 2.7, 0, 0.3, 0.1};
+        double offset[SIDE];
+        make(&maker, 3, 1);
+        random_uniform((struct random_key){SEED, 0, 1}, STREAM_GROOVES, 20, SIDE, offset);
+        if (offsets == 0)
+            add(maker.z, &truth);
+        for (size_t n = 0; n < SIDE * SIDE && offsets == 1; n++)
+            maker.z[n] += 0.3 * offset[n / SIDE];
+        assert_int_equal(map_artefacts_find_left(&GRID, maker.z, &artefacts, NULL), 0);
+        assert_int_equal(artefacts.lines.found, offsets == 1);
+        assert_true(artefacts.lines.p_value < 1 || offsets == 0);
+    }
+    maker_destroy(&maker);
+}
+
+/* Maps too small for four periods, flat ones and ones with holes. */
+static void odd_maps(void **state) {
+    (void)state;
+    const struct grid small = {15, 128, 15, 128};
+    struct maker maker = maker_create(1);
+    struct map_grooves grooves;
+    make(&maker, 0, 1);
+    const struct measured_map few = {&small, maker.z, BOUNDARY_OPEN};
+    assert_int_equal(map_grooves_find(&grooves, &few, NULL), 0);
+    assert_int_equal(grooves.families, 0);
+    memset(maker.z, 0, SIDE * SIDE * sizeof *maker.z);
+    assert_int_equal(find(maker.z, BOUNDARY_OPEN).families, 0);
+    const struct truth truth = {GROOVE_SINE, 9.3, 1.1, 1, 0.4};
+    make(&maker, 2, 1);
+    add(maker.z, &truth);
+    for (size_t n = 0; n < SIDE * SIDE; n += 31)
+        maker.z[n] = NAN;
+    grooves = find(maker.z, BOUNDARY_OPEN);
+    assert_int_equal(grooves.families, 1);
+    check_close(grooves.family[0].period, 9.3, 0.1);
+    for (size_t n = 0; n < SIDE * SIDE; n++)
+        maker.z[n] = NAN;
+    const struct measured_map holes = {&GRID, maker.z, BOUNDARY_OPEN};
+    assert_int_equal(map_grooves_find(&grooves, &holes, NULL), ERROR_INPUT);
+    maker_destroy(&maker);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(errors_hold),
+        cmocka_unit_test(shapes_are_found),
+        cmocka_unit_test(random_faces_have_none),
+        cmocka_unit_test(crossed_families_are_two),
+        cmocka_unit_test(the_rest_has_its_law),
+        cmocka_unit_test(grooves_are_no_offsets),
+        cmocka_unit_test(odd_maps),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
