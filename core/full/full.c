@@ -366,7 +366,7 @@ static int raise_load(struct full *f, double goal, struct newton_end *end,
  * fall after small changes of the face and rise where a round fails; rounds. Rounds balance to
  * DRAG_TOLERANCE; from the largest drag over the mean force of a node of DRAG_SMALL on, and after
  * each fall by DRAG_FALL, equilibrium without drag is tried. */
-static const double DRAG_FIRST = 0.02, DRAG_MOST = 1e3, DRAG_RISE = 4;
+static const double DRAG_FIRST = 0.02, DRAG_MOST = 10, DRAG_RISE = 4;
 static const double DRAG_TOLERANCE = 1e-5, DRAG_SMALL = 1e-2, DRAG_FALL = 0.25;
 enum { DRAG_ROUNDS = 200 };
 
@@ -447,8 +447,9 @@ static int jump(struct full *f, double load, struct newton_end *end, struct full
     return status;
 }
 
-/* After so many halvings of a load step it is a jump. The first step over the change of load. */
-enum { CUTS_MOST = 2 };
+/* After so many halvings of a load step it is a jump, after so many it fails. The first step over
+ * the change of load. */
+enum { CUTS_SMOOTH = 2, CUTS_MOST = 5 };
 static const double CAREFUL_STEP = 0.125;
 
 /* As raise_load, with overhangs and jumps, and from the last active set. */
@@ -461,7 +462,7 @@ static int raise_carefully(struct full *f, double goal, struct newton_end *end,
             return ERROR_NUMERIC;
         step = fabs(step) < fabs(goal - f->load) ? step : goal - f->load;
         double next = step == goal - f->load ? goal : f->load + step;
-        bool jumps = cuts >= CUTS_MOST ||
+        bool jumps = cuts >= CUTS_SMOOTH ||
                      fabs(step) < 2 * CAREFUL_STEP * f->options.least_step * fabs(whole);
         status =
             jumps ? jump(f, next, end, report, err) : step_to(f, next, &change, end, report, err);
@@ -475,7 +476,8 @@ static int raise_carefully(struct full *f, double goal, struct newton_end *end,
         cuts++;
         step /= 2;
         report->cuts++;
-        if (fabs(step) < CAREFUL_STEP * f->options.least_step * fabs(whole) || whole == 0)
+        if (cuts == CUTS_MOST || whole == 0 ||
+            fabs(step) < CAREFUL_STEP * f->options.least_step * fabs(whole))
             return end_load(f, goal, 2 * step, err);
     } while (f->load != goal || status != 0);
     return 0;
