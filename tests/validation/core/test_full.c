@@ -538,6 +538,7 @@ static void one_load_and_many_end_before_a_fold(void **state) {
             struct error err = {0};
             int status = 0;
             open_steep(&p, SEEDS[c], KINEMATICS_HENCKY);
+            full_set_overhangs(p.full, false);
             for (double k = many ? 1 : loads; k <= loads && status == 0; k++) {
                 status = full_press(p.full, GOAL * k / loads, &p.state, &p.report, &err);
                 if (status == 0)
