@@ -12,7 +12,7 @@ const struct full_options FULL_DEFAULTS = {.kinematics = KINEMATICS_HENCKY,
                                            .max_iterations = 60,
                                            .least_step = 1.0 / 256};
 
-/* A state on the way between loads; arrays are owned. */
+/* A state between loads; arrays are owned. */
 struct full_state {
     double *u;
     bool *active;
@@ -41,7 +41,7 @@ struct full {
     double used;           /* counted seconds since full_begin (struct full_limit) */
     bool flat_only;        /* overhangs are not allowed */
     bool careful;          /* the face may overhang and jump: load steps did not go on otherwise */
-    struct full_state last, held; /* when careful: of the last load, and on the way to the next */
+    struct full_state last, held; /* when careful: of the last load, and before the next */
 };
 
 static int options_check(const struct full_options *options, struct error *err) {

@@ -94,7 +94,7 @@ static double dot(struct point a, struct point b) {
     return a.x * b.x + a.y * b.y;
 }
 
-/* Returns the way from a point of an arc to a node, across the side of the cell where that is
+/* Returns the vector from a point of an arc to a node, across the side of the cell where that is
  * nearer. */
 static struct point from_arc(const struct mesh *mesh, const double *u, size_t node,
                              const struct arc *arc) {
