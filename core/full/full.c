@@ -12,6 +12,14 @@ const struct full_options FULL_DEFAULTS = {.kinematics = KINEMATICS_HENCKY,
                                            .max_iterations = 60,
                                            .least_step = 1.0 / 256};
 
+/* A state between loads; arrays are owned. */
+struct full_state {
+    double *u;
+    bool *active;
+    struct self_pair *pair;
+    size_t pairs;
+};
+
 /* All lengths in this file are in units of dx, the mesh's unit. */
 struct full {
     struct grid grid;
@@ -31,6 +39,9 @@ struct full {
     double load;           /* that load; 0: no contact */
     double rms;            /* RMS height */
     double used;           /* counted seconds since full_begin (struct full_limit) */
+    bool flat_only;        /* overhangs are not allowed */
+    bool careful;          /* the face may overhang and jump: load steps did not go on otherwise */
+    struct full_state last, held; /* when careful: of the last load, and before the next */
 };
 
 static int options_check(const struct full_options *options, struct error *err) {
@@ -103,6 +114,13 @@ int full_create(struct full **out, const struct grid *grid, const struct block *
     return status;
 }
 
+static void state_clear(struct full_state *state) {
+    free(state->u);
+    free(state->active);
+    free(state->pair);
+    *state = (struct full_state){0};
+}
+
 void full_destroy(struct full **full) {
     struct full *f = *full;
     if (f == NULL)
@@ -121,6 +139,8 @@ void full_destroy(struct full **full) {
     free(f->touches);
     free(f->kept);
     free(f->displacement);
+    state_clear(&f->last);
+    state_clear(&f->held);
     free(f);
     *full = NULL;
 }
@@ -161,6 +181,10 @@ void full_set_stop(struct full *f, int (*stop)(void *context), void *context) {
     f->newton.context = context;
 }
 
+void full_set_overhangs(struct full *f, bool allowed) {
+    f->flat_only = !allowed;
+}
+
 /* Copies the heights in units of dx, with mean 0. */
 static int take_heights(struct full *f, const double *z, struct error *err) {
     size_t n = f->mesh->face;
@@ -185,6 +209,8 @@ static int take_heights(struct full *f, const double *z, struct error *err) {
 
 static void lift(struct full *f) {
     f->load = 0;
+    f->careful = f->newton.overhangs = false;
+    f->newton.self.count = f->last.pairs = 0;
     f->newton.evaluated = false;
     memset(f->kept, 0, newton_unknowns(&f->newton) * sizeof *f->kept);
     memset(f->newton.u, 0, newton_unknowns(&f->newton) * sizeof *f->newton.u);
@@ -218,27 +244,44 @@ static void predict(struct full *f, double load) {
     }
 }
 
+/* The state between loads has arrays of its own for what carries it through a whole series. */
+static void state_take(struct full_state *state, const struct newton *n) {
+    memcpy(state->u, n->u, newton_unknowns(n) * sizeof *n->u);
+    memcpy(state->active, n->active, n->mesh->face * sizeof *n->active);
+    state->pairs = n->self.count;
+    memcpy(state->pair, n->self.pair, state->pairs * sizeof *state->pair);
+}
+
+static void state_give(const struct full_state *state, struct newton *n) {
+    n->evaluated = false;
+    memcpy(n->u, state->u, newton_unknowns(n) * sizeof *n->u);
+    memcpy(n->active, state->active, n->mesh->face * sizeof *n->active);
+    n->self.count = state->pairs;
+    memcpy(n->self.pair, state->pair, state->pairs * sizeof *state->pair);
+}
+
 static void keep(struct full *f, double load) {
     size_t face = f->mesh->face;
     f->load = load;
     memcpy(f->kept, f->newton.u, newton_unknowns(&f->newton) * sizeof *f->kept);
     memcpy(f->kept_active, f->newton.active, face * sizeof *f->kept_active);
-    memcpy(f->guess, f->touches, face * sizeof *f->guess);
+    if (f->careful)
+        state_take(&f->last, &f->newton);
+    else
+        memcpy(f->guess, f->touches, face * sizeof *f->guess);
 }
 
 static void restore(struct full *f) {
+    if (f->careful) {
+        state_give(&f->last, &f->newton);
+        return;
+    }
     f->newton.evaluated = false;
     memcpy(f->newton.u, f->kept, newton_unknowns(&f->newton) * sizeof *f->kept);
     memcpy(f->newton.active, f->kept_active, f->mesh->face * sizeof *f->kept_active);
 }
 
-/* Takes one load step; *change is face_stretch_change after it, 0 where it failed. An equilibrium
- * that changed by more than FACE_CHANGE_MOST is refused, because the face may have reached it only
- * by folding. */
-static int step_to(struct full *f, double load, double *change, struct newton_end *end,
-                   struct full_report *report, struct error *err) {
-    predict(f, load);
-    int status = newton_solve(&f->newton, load, end, err);
+static void count_work(struct full *f, const struct newton_end *end, struct full_report *report) {
     report->newton += end->iterations;
     report->linear += end->linear;
     report->factored += end->factored;
@@ -247,6 +290,17 @@ static int step_to(struct full *f, double load, double *change, struct newton_en
     f->used += f->options.limit.newton * (double)end->iterations +
                f->options.limit.linear * (double)end->linear +
                f->options.limit.factored * (double)end->factored;
+}
+
+/* Takes one load step; *change is face_stretch_change after it, 0 where it failed. An equilibrium
+ * that changed by more than FACE_CHANGE_MOST is refused, because the face may have reached it only
+ * by folding. */
+static int step_to(struct full *f, double load, double *change, struct newton_end *end,
+                   struct full_report *report, struct error *err) {
+    if (!f->careful)
+        predict(f, load);
+    int status = newton_solve(&f->newton, load, end, err);
+    count_work(f, end, report);
     *change = status == 0 ? face_stretch_change(f->mesh, f->newton.u, f->kept) : 0;
     if (*change > FACE_CHANGE_MOST)
         status = error_set(err, ERROR_NUMERIC, "the face jumps, by %.2g of a cell", *change);
@@ -267,6 +321,14 @@ static int check_limit(const struct full *f, double goal, struct error *err) {
                      "contact on the true geometry under a mean pressure of %g E* was reached up "
                      "to %g E* only: the time limit of %g s was used up",
                      goal, f->load, seconds);
+}
+
+static int end_load(const struct full *f, double goal, double step, struct error *err) {
+    return error_context(err,
+                         "contact on the true geometry under a mean pressure of %g E* was "
+                         "reached up to %g E* only (steepest slope %.3g, worst element "
+                         "%.2g); the next step of %.2g E* failed",
+                         goal, f->load, f->mesh->slope, f->mesh->quality, step);
 }
 
 /* Goes from the last load to another, in one step or in smaller ones. Steps grow again once two in
@@ -293,13 +355,174 @@ static int raise_load(struct full *f, double goal, struct newton_end *end,
         step /= 2;
         report->cuts++;
         if (fabs(step) < f->options.least_step * fabs(whole) || whole == 0)
-            return error_context(err,
-                                 "contact on the true geometry under a mean pressure of %g E* was "
-                                 "reached up to %g E* only (steepest slope %.3g, worst element "
-                                 "%.2g); the next step of %.2g E* failed",
-                                 goal, f->load, f->mesh->slope, f->mesh->quality, 2 * step);
+            return end_load(f, goal, 2 * step, err);
     } while (f->load != goal || status != 0);
     return 0;
+}
+
+/* --- overhangs and jumps --- */
+
+/* Drags of a jump: the first and the largest one, E* times the mesh's unit; factors by which they
+ * fall after small changes of the face and rise where a round fails; rounds. Rounds balance to
+ * DRAG_TOLERANCE; from the largest drag over the mean force of a node of DRAG_SMALL on, and after
+ * each fall by DRAG_FALL, equilibrium without drag is tried. */
+static const double DRAG_FIRST = 0.02, DRAG_MOST = 10, DRAG_RISE = 4;
+static const double DRAG_TOLERANCE = 1e-5, DRAG_SMALL = 1e-2, DRAG_FALL = 0.25;
+enum { DRAG_ROUNDS = 200 };
+
+static double largest_move(const struct newton *n) {
+    double most = 0;
+    for (size_t k = 0; k < mesh_degrees_of_freedom(n->mesh); k++)
+        most = fmax(most, fabs(n->u[k] - n->anchor[k]));
+    return most;
+}
+
+static void hold(struct full *f) {
+    state_take(&f->held, &f->newton);
+    memcpy(f->newton.anchor, f->held.u, mesh_degrees_of_freedom(f->mesh) * sizeof *f->held.u);
+}
+
+/* Solves with this drag from the state that is held; *change is face_stretch_change after it. */
+static int drag_on(struct full *f, double load, double drag, double tolerance, double *change,
+                   struct newton_end *end, struct full_report *report, struct error *err) {
+    struct newton *n = &f->newton;
+    double usual = n->tolerance;
+    n->drag = drag;
+    n->tolerance = tolerance;
+    n->evaluated = false;
+    int status = newton_solve(n, load, end, err);
+    n->tolerance = usual;
+    count_work(f, end, report);
+    *change = status == 0 ? face_stretch_change(f->mesh, n->u, f->held.u) : 0;
+    if (*change > FACE_CHANGE_MOST)
+        status = error_set(err, ERROR_NUMERIC, "the face jumps, by %.2g of a cell", *change);
+    return status;
+}
+
+/* The rounds of a jump: implicit steps of motion against drag, whose end is at rest. */
+static int drag_rounds(struct full *f, double load, struct newton_end *end,
+                       struct full_report *report, struct error *err) {
+    double drag = DRAG_FIRST, tried = INFINITY, change;
+    int status = ERROR_NUMERIC;
+    for (int round = 0; round < DRAG_ROUNDS && drag < DRAG_MOST; round++) {
+        status = drag_on(f, load, drag, DRAG_TOLERANCE, &change, end, report, err);
+        if (status != 0 && status != ERROR_NUMERIC)
+            return status;
+        if (status != 0) {
+            state_give(&f->held, &f->newton);
+            drag *= DRAG_RISE;
+            continue;
+        }
+        double dragged = largest_move(&f->newton) * drag / load;
+        hold(f);
+        drag /= 8 * change < FACE_CHANGE_MOST ? DRAG_RISE : 2 * change < FACE_CHANGE_MOST ? 2 : 1;
+        if (dragged > DRAG_SMALL || dragged > tried * DRAG_FALL)
+            continue;
+        status = drag_on(f, load, 0, f->newton.tolerance, &change, end, report, err);
+        if (status != ERROR_NUMERIC)
+            return status;
+        tried = dragged;
+        state_give(&f->held, &f->newton);
+    }
+    return status != 0 ? status
+                       : error_set(err, ERROR_NUMERIC,
+                                   "the face jumps and finds no rest in %d rounds", DRAG_ROUNDS);
+}
+
+/* Goes from the last load to another that no equilibrium leads to nearby: the block moves against a
+ * drag until it is at rest, as far as it jumps. */
+static int jump(struct full *f, double load, struct newton_end *end, struct full_report *report,
+                struct error *err) {
+    restore(f);
+    hold(f);
+    int status = drag_rounds(f, load, end, report, err);
+    f->newton.drag = 0;
+    if (status != 0)
+        restore(f);
+    else {
+        keep(f, load);
+        report->steps++;
+        report->jumps++;
+    }
+    return status;
+}
+
+/* After so many halvings of a load step it is a jump, after so many it fails. The first step over
+ * the change of load. */
+enum { CUTS_SMOOTH = 2, CUTS_MOST = 5 };
+static const double CAREFUL_STEP = 0.125;
+
+/* As raise_load, with overhangs and jumps, and from the last active set. */
+static int raise_carefully(struct full *f, double goal, struct newton_end *end,
+                           struct full_report *report, struct error *err) {
+    double whole = goal - f->load, step = CAREFUL_STEP * whole, change = 0;
+    int status = 0, cuts = 0;
+    do {
+        if (check_limit(f, goal, err) != 0)
+            return ERROR_NUMERIC;
+        step = fabs(step) < fabs(goal - f->load) ? step : goal - f->load;
+        double next = step == goal - f->load ? goal : f->load + step;
+        bool jumps = cuts >= CUTS_SMOOTH ||
+                     fabs(step) < 2 * CAREFUL_STEP * f->options.least_step * fabs(whole);
+        status =
+            jumps ? jump(f, next, end, report, err) : step_to(f, next, &change, end, report, err);
+        if (status == 0) {
+            step *= cuts > 0 || 2 * change > FACE_CHANGE_MOST ? 1 : 2;
+            cuts = 0;
+            continue;
+        }
+        if (status != ERROR_NUMERIC)
+            return status;
+        cuts++;
+        step /= 2;
+        report->cuts++;
+        if (cuts == CUTS_MOST || whole == 0 ||
+            fabs(step) < CAREFUL_STEP * f->options.least_step * fabs(whole))
+            return end_load(f, goal, 2 * step, err);
+    } while (f->load != goal || status != 0);
+    return 0;
+}
+
+static int state_create(struct full_state *state, const struct newton *n, struct error *err) {
+    if (state->u != NULL)
+        return 0;
+    state->u = array_create(newton_unknowns(n), sizeof *state->u);
+    state->active = array_create(n->mesh->face, sizeof *state->active);
+    state->pair = array_create(PAIRS_A_NODE * n->mesh->face, sizeof *state->pair);
+    if (state->u != NULL && state->active != NULL && state->pair != NULL)
+        return 0;
+    state_clear(state);
+    return error_memory(err, newton_unknowns(n) * sizeof *state->u, "finite elements");
+}
+
+/* Allows overhangs and jumps from the last load on. */
+static int become_careful(struct full *f, struct error *err) {
+    int status = newton_allow_overhangs(&f->newton, err);
+    if (status == 0)
+        status = state_create(&f->last, &f->newton, err);
+    if (status == 0)
+        status = state_create(&f->held, &f->newton, err);
+    if (status != 0) {
+        f->newton.overhangs = false;
+        return status;
+    }
+    state_take(&f->last, &f->newton);
+    f->careful = true;
+    return 0;
+}
+
+static int reach_load(struct full *f, double goal, struct newton_end *end,
+                      struct full_report *report, struct error *err) {
+    struct error ignored = {0};
+    int status = ERROR_NUMERIC;
+    if (!f->careful) {
+        status = raise_load(f, goal, end, report, err);
+        bool refused = f->flat_only || f->options.kinematics == KINEMATICS_SMALL;
+        if (status != ERROR_NUMERIC || refused || check_limit(f, goal, err) != 0 ||
+            become_careful(f, &ignored) != 0)
+            return status;
+    }
+    return raise_carefully(f, goal, end, report, err);
 }
 
 /* --- results --- */
@@ -323,7 +546,7 @@ static double height_scale(const struct full *f) {
     return f->rms > 0 ? f->rms : 1;
 }
 
-static void fill_report(const struct full *f, const struct newton_end *end,
+static void fill_report(struct full *f, const struct newton_end *end,
                         const struct contact_state *state, struct full_report *report) {
     struct sum force = {0};
     for (size_t node = 0; node < f->mesh->face; node++)
@@ -342,6 +565,8 @@ static void fill_report(const struct full *f, const struct newton_end *end,
         report->face_tilt = tilt.face;
         report->contact_tilt = state->nodes > 0 ? tilt.contact : 0;
     }
+    if (f->newton.overhangs)
+        report->self = self_contact_measure(&f->newton.self, f->newton.u, f->newton.active);
     report->slope = f->mesh->slope;
     report->quality = f->mesh->quality;
     report->unchanged = end->unchanged;
@@ -374,6 +599,11 @@ static int fill_state(struct full *f, const struct newton_end *end, struct conta
         out->nodes += n->active[node];
     }
     double compliance = 0;
+    if (f->options.normal_gaps && face_folds(f->mesh, n->u))
+        return error_set(err, ERROR_NUMERIC,
+                         "the face overhangs under a mean pressure of %g E*: its normals do not "
+                         "all meet the flat, and gaps along them are none",
+                         out->pressure);
     out->mean_gap = measure_gap(f);
     out->approach = out->unload_stiffness = NAN;
     out->penetration = end->penetration / height_scale(f);
@@ -400,7 +630,7 @@ int full_press(struct full *f, double pressure, struct contact_state *out,
     if (pressure == 0)
         lift(f);
     else
-        status = raise_load(f, pressure, &end, &full_report, err);
+        status = reach_load(f, pressure, &end, &full_report, err);
     if (status == 0)
         status = fill_state(f, &end, &state, err);
     full_report.reached = f->load;

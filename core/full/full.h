@@ -7,11 +7,12 @@
  * it. Pressures are contact forces over the nodes' tributary areas on the undeformed grid, so that
  * their mean equals the load exactly. full_report.stretch is how much the contact shrank or
  * stretched sideways. Mean gap and stiffness are of the face under load (F14.6), unless strains are
- * small. Contact of the face with itself is not modelled: a load under which the face would fold
- * has no equilibrium. No load step changes the area of a cell of the face by more than a quarter.
- * So one load and many lead to the same solution, or fail at the same load to within a few smallest
- * steps. A solver belongs to one thread. The elastic state has no history, but the iteration for
- * each load starts from the load before. */
+ * small. No load step changes the area of a cell of the face by more than a quarter. So one load
+ * and many lead to the same solution, or fail at the same load to within a few smallest steps.
+ * Where this ends, a profile goes on with overhangs, contact of the face with itself
+ * (self_contact.h) and jumps (F14.10), which a drag leads to the equilibrium beyond. A surface, and
+ * small strains, have no equilibrium there. A solver belongs to one thread. The elastic state has
+ * no history, but the iteration for each load starts from the load before. */
 #ifndef RUGO_CORE_FULL_FULL_H
 #define RUGO_CORE_FULL_FULL_H
 
@@ -49,15 +50,18 @@ extern const struct full_options FULL_DEFAULTS;
 /* Statistics of the last load; counts are sums over its load steps. */
 struct full_report {
     enum kinematics kinematics;
-    size_t newton;      /* iterations */
-    size_t linear;      /* iterations of the linear equations */
-    size_t factored;    /* factorisations */
-    size_t changes;     /* nodes that entered or left the active set */
-    size_t cycles;      /* active sets that were met before */
-    size_t steps, cuts; /* load steps that converged, and load steps that were halved */
-    double reached;     /* mean pressure of the last step that converged, E* */
-    double balance;     /* (sum of contact forces over load) - 1 */
-    double residual;    /* largest out-of-balance force, over the largest contact force */
+    size_t newton;            /* iterations */
+    size_t linear;            /* iterations of the linear equations */
+    size_t factored;          /* factorisations */
+    size_t changes;           /* nodes that entered or left the active set */
+    size_t cycles;            /* active sets that were met before */
+    size_t steps, cuts;       /* load steps that converged, and load steps that were halved */
+    size_t jumps;             /* load steps that drag led to their equilibrium */
+    struct self_measure self; /* what the face does to itself; lengths and force in columns, and E*
+                                 times columns */
+    double reached;           /* mean pressure of the last step that converged, E* */
+    double balance;           /* (sum of contact forces over load) - 1 */
+    double residual;          /* largest out-of-balance force, over the largest contact force */
     /* Depth of the deepest node beyond the flat, and the largest negative weighted gap outside of
      * the contact (contact_state.penetration). The solver keeps only the latter at 0; with
      * GAP_STANDARD they differ. Over the RMS height, >= 0. */
@@ -92,13 +96,17 @@ double full_bytes(const struct grid *grid, const struct block *block,
  * NULL, the initial value, never stops. */
 void full_set_stop(struct full *full, int (*stop)(void *context), void *context);
 
+/* Lets faces of profiles overhang and meet themselves where they do not go on otherwise; the
+ * initial value is true. */
+void full_set_overhangs(struct full *full, bool allowed);
+
 /* Meshes the block below a surface (copied; the mean height does not matter), without contact.
  * ERROR_INPUT for a surface that is not finite or too steep. */
 int full_begin(struct full *full, const double *z, struct error *err);
 /* Presses to a mean pressure >= 0, in load steps where needed. The message of ERROR_NUMERIC names
  * the load that was reached, as where the limit is used up, which is looked at between load
  * steps. The solver keeps that state, and another load may be tried from there.
- * report may be NULL. */
+ * Normal gaps of a face that overhangs are none: ERROR_NUMERIC. report may be NULL. */
 int full_press(struct full *full, double pressure, struct contact_state *out,
                struct full_report *report, struct error *err);
 /* The mesh, and the displacements of the last state in the grid's unit of length: component k of a

@@ -27,6 +27,10 @@ static const double ROUNDINGS = 8, ROUNDING_MOST = 0.01;
  * active set that do not improve on the best one. RETURNS: active sets met before, after which
  * Newton's method gives up. */
 enum { HALVINGS = 8, PATIENCE = 10, RETURNS = 3 };
+/* Of a face that meets itself: depth of a node in columns that makes a step too long; change of its
+ * forces over the largest contact force below which they have settled, and rounds until then. */
+static const double DEEPEST = 0.25, SETTLED = 1e-7;
+enum { RENEWALS = 60 };
 
 int newton_create(struct newton *out, const struct mesh *mesh, const struct material *material,
                   enum gap_weighting weighting, enum equation_solver solver, struct error *err) {
@@ -57,6 +61,31 @@ int newton_create(struct newton *out, const struct mesh *mesh, const struct mate
     return status;
 }
 
+/* Returns whether a factorisation is affordable: with Netlib's BLAS it takes about ten seconds and
+ * a gigabyte at these sizes. */
+static bool factorable(const struct mesh *mesh) {
+    return mesh_degrees_of_freedom(mesh) <= (mesh->dimension == 2 ? 500000 : 20000);
+}
+
+int newton_allow_overhangs(struct newton *n, struct error *err) {
+    const struct mesh *mesh = n->mesh;
+    int status = 0;
+    if (mesh->dimension != 2 || !factorable(mesh))
+        return error_set(err, ERROR_INPUT,
+                         "a face of %zu x %zu nodes may not overhang: contact of a face with "
+                         "itself is that of profiles of up to 500000 degrees of freedom",
+                         mesh->level[0].nx, mesh->level[0].ny);
+    if (n->anchor == NULL)
+        n->anchor = array_create(mesh_degrees_of_freedom(mesh), sizeof *n->anchor);
+    if (n->anchor == NULL)
+        return error_memory(err, mesh_degrees_of_freedom(mesh) * sizeof *n->anchor,
+                            "displacements");
+    if (n->self.pair == NULL)
+        status = self_contact_create(&n->self, mesh, err);
+    n->overhangs = status == 0;
+    return status;
+}
+
 size_t newton_unknowns(const struct newton *n) {
     return tangent_unknowns(n->tangent);
 }
@@ -65,9 +94,11 @@ void newton_clear(struct newton *n) {
     tangent_destroy(&n->tangent);
     factorisation_destroy(&n->factorisation);
     gmres_destroy(&n->gmres);
+    self_contact_clear(&n->self);
     free(n->u);
     free(n->force);
     free(n->before);
+    free(n->anchor);
     free(n->change);
     free(n->gap);
     free(n->opening);
@@ -186,6 +217,8 @@ static double residual(const struct newton *n, double pressure, double *out) {
         if (n->active[node])
             out[mesh_vertical(mesh, node)] = 0;
     out[mesh_vertical(mesh, far_side)] = sum_value(&far_force);
+    for (int k = 0; n->drag > 0 && k + 1 < mesh->dimension; k++)
+        out[far_side * (size_t)mesh->dimension + (size_t)k] = 0;
     for (size_t f = 0; f < newton_unknowns(n); f++)
         largest = fmax(largest, fabs(out[f]));
     return largest;
@@ -202,16 +235,24 @@ static void measure(const struct newton *n, struct newton_end *end) {
     }
 }
 
+/* Adds the drag to forces and tangent. */
+static void add_drag(struct newton *n) {
+    const size_t d = (size_t)n->mesh->dimension, slots = n->tangent->slots, own = slots / 4;
+    for (size_t f = 0; f < mesh_degrees_of_freedom(n->mesh); f++) {
+        n->force[f] += n->drag * (n->u[f] - n->anchor[f]);
+        n->tangent->values[((f / d * slots + own) * d + f % d) * d + f % d] += n->drag;
+    }
+}
+
 /* Computes forces and tangent at u. */
 static bool evaluate(struct newton *n) {
     n->evaluated = tangent_evaluate(n->mesh, &n->material, n->u, NULL, n->force, n->tangent);
+    n->tangent->links = 0;
+    if (n->evaluated && n->drag > 0)
+        add_drag(n);
+    if (n->evaluated && n->overhangs)
+        self_contact_evaluate(&n->self, n->material.convex, n->u, n->force, n->tangent);
     return n->evaluated;
-}
-
-/* Returns whether a factorisation is affordable: with Netlib's BLAS it takes about ten seconds and
- * a gigabyte at these sizes. */
-static bool factorable(const struct mesh *mesh) {
-    return mesh_degrees_of_freedom(mesh) <= (mesh->dimension == 2 ? 500000 : 20000);
 }
 
 /* Replaces the forces in change by displacements, using a factorisation. */
@@ -232,13 +273,13 @@ static int solve_factored(struct newton *n, double tolerance, struct newton_end 
     if (status != 0)
         return status;
     end->factored++;
-    struct linear_system system = {n->tangent, n->active, n->factorisation, NULL};
+    struct linear_system system = {n->tangent, n->active, n->factorisation, NULL, n->drag > 0};
     return gmres_solve(n->gmres, &system, tolerance, n->change, &end->linear, err);
 }
 
 static int solve_iterated(struct newton *n, double tolerance, struct newton_end *end,
                           struct error *err) {
-    struct linear_system system = {n->tangent, n->active, NULL, NULL};
+    struct linear_system system = {n->tangent, n->active, NULL, NULL, n->drag > 0};
     return gmres_solve(n->gmres, &system, tolerance, n->change, &end->linear, err);
 }
 
@@ -266,7 +307,8 @@ static int advance(struct newton *n, struct error *err) {
     for (int halving = 0; halving < HALVINGS; halving++, length /= 2) {
         for (size_t f = 0; f < unknowns; f++)
             n->u[f] = n->before[f] + length * n->change[f];
-        folds = face_folds(n->mesh, n->u);
+        folds = n->overhangs ? self_contact_depth(&n->self, n->u, n->active) > DEEPEST
+                             : face_folds(n->mesh, n->u);
         if (!folds && evaluate(n))
             return 0;
     }
@@ -341,31 +383,70 @@ static int check_progress(const struct newton *n, struct newton_progress *progre
     return 0;
 }
 
-int newton_solve(struct newton *n, double pressure, struct newton_end *end, struct error *err) {
-    struct set_history history = {0};
-    struct newton_progress progress = {.least = INFINITY};
-    *end = (struct newton_end){0};
-    n->factored = n->solver == SOLVER_FACTORED;
+/* Finds contact of the face with itself anew where it has balanced. *settled: whether its forces
+ * had settled, so that nothing but rounding is left when balance is looked at again. */
+static int renew(struct newton *n, double largest, int *renewals, bool *settled,
+                 struct error *err) {
+    size_t before = n->self.count;
+    double left = self_contact_renew(&n->self, n->u, n->active);
+    *settled = left <= fmax(SETTLED, n->tolerance) * largest;
+    if (before == 0 && n->self.count == 0)
+        return 0;
+    if (++*renewals > RENEWALS)
+        return error_set(err, ERROR_NUMERIC,
+                         "contact of the face with itself does not settle: after %d rounds its "
+                         "forces change by %.2g of the largest force",
+                         RENEWALS, left / largest);
+    return evaluate(n) ? 0 : error_set(err, ERROR_NUMERIC, "an element is turned inside out");
+}
+
+/* Prepares forces, gaps and the active set. */
+static int begin(struct newton *n, double pressure, struct error *err) {
     double load = pressure * newton_node_area(n) * (double)n->mesh->face;
+    n->factored = n->solver == SOLVER_FACTORED || n->drag > 0;
     if (force_rounding(n) > ROUNDING_MOST * load)
         return error_set(err, ERROR_NUMERIC, "rounding makes forces up to %.2g of so light a load",
                          force_rounding(n) / load);
+    if (!n->evaluated && n->overhangs)
+        self_contact_search(&n->self, n->u, n->active);
     if (!n->evaluated && !evaluate(n))
         return error_set(err, ERROR_NUMERIC, "an element is turned inside out");
     newton_measure_gaps(n);
     active_fill(n);
+    return 0;
+}
+
+int newton_solve(struct newton *n, double pressure, struct newton_end *end, struct error *err) {
+    struct set_history history = {0};
+    struct newton_progress progress = {.least = INFINITY};
+    bool settled = false;
+    int renewals = 0;
+    *end = (struct newton_end){0};
+    int status = begin(n, pressure, err);
+    if (status != 0)
+        return status;
     (void)active_met(n, &history);
     for (;;) {
         bool first = end->iterations == 0;
         struct round round = assess(n, pressure, first, &history, end);
-        if (!first && round.changes == 0 && round.residual <= round.balanced &&
-            round.inside <= round.closed)
+        bool balanced = !first && round.changes == 0 && round.residual <= round.balanced &&
+                        round.inside <= round.closed;
+        if (balanced && (settled || !n->overhangs))
             return 0;
+        settled = false;
+        if (balanced) {
+            status = renew(n, round.largest, &renewals, &settled, err);
+            if (status != 0)
+                return status;
+            progress.least = INFINITY;
+            continue;
+        }
         double off = fmax(end->residual, round.inside * COMPLEMENTARITY / round.largest);
-        int status = check_progress(n, &progress, off, round.changes > 0, end, err);
+        status = check_progress(n, &progress, off, round.changes > 0, end, err);
         if (status != 0)
             return status;
         end->iterations++;
+        n->factored = n->factored || n->tangent->links > 0;
         status = newton_change(n, off, end, err);
         if (status == ERROR_NUMERIC && !n->factored && factorable(n->mesh)) {
             n->factored = true;

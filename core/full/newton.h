@@ -11,6 +11,7 @@
 
 #include "core/full/linear/factorisation.h"
 #include "core/full/linear/gmres.h"
+#include "core/full/self_contact.h"
 
 enum { NEWTON_HISTORY = 64 };
 
@@ -33,7 +34,13 @@ struct newton {
                   (gmres.h), pressures of elements; whoever changes them sets evaluated to false */
     double *force;  /* newton_unknowns values: inner forces, which at active nodes include the
                        contact force, and the excess of the pressures over those of the dilatation */
-    bool evaluated; /* force and tangent belong to u */
+    bool overhangs; /* the face may turn from the flat and meet itself (newton_allow_overhangs) */
+    struct self_contact self;
+    /* Each displacement from the anchor (mesh_degrees_of_freedom values) is dragged by a force of
+     * so many E* times the mesh's unit. 0: equilibrium. Whoever changes either sets evaluated to
+     * false. The first node of the far side then does not move sideways. */
+    double drag, *anchor;
+    bool evaluated;          /* force and tangent belong to u */
     double *before, *change; /* newton_unknowns: scratch */
     double *gap, *opening;   /* by node of the face, at u: the gap, and the weighted gap */
     bool *active;            /* by node of the face: whether it is in contact */
@@ -46,6 +53,10 @@ struct newton {
 
 int newton_create(struct newton *out, const struct mesh *mesh, const struct material *material,
                   enum gap_weighting weighting, enum equation_solver solver, struct error *err);
+
+/* Prepares a profile for overhangs and drag. From then on the face may turn from the flat, and
+ * meets itself. ERROR_INPUT for a surface, or a profile with too many nodes for a factorisation. */
+int newton_allow_overhangs(struct newton *newton, struct error *err);
 
 size_t newton_unknowns(const struct newton *newton);
 void newton_clear(struct newton *newton);

@@ -111,11 +111,21 @@ INLINE void apply(int d, const struct tangent *tangent, const double *x, double 
             }
 }
 
-WIDE_VECTORS void tangent_apply(const struct tangent *tangent, const double *x, double *y) {
+WIDE_VECTORS static void apply_stencil(const struct tangent *tangent, const double *x, double *y) {
     if (tangent->mesh->dimension == 2)
         apply(2, tangent, x, y);
     else
         apply(3, tangent, x, y);
+}
+
+void tangent_apply(const struct tangent *tangent, const double *x, double *y) {
+    apply_stencil(tangent, x, y);
+    for (size_t l = 0; l < tangent->links; l++) {
+        const struct tangent_link *link = &tangent->link[l];
+        for (int i = 0; i < LINK_MOST; i++)
+            for (int j = 0; j < LINK_MOST; j++)
+                y[link->at[i]] += link->stiffness[i][j] * x[link->at[j]];
+    }
 }
 
 /* --- assembly --- */

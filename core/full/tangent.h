@@ -8,6 +8,13 @@
 
 enum { NEIGHBOURS_MOST = 18 };
 
+/* Stiffness between degrees of freedom at[i] and at[j] that need be no neighbours; symmetric. */
+enum { LINK_MOST = 8 };
+struct tangent_link {
+    size_t at[LINK_MOST];
+    double stiffness[LINK_MOST][LINK_MOST];
+};
+
 /* values[((node*slots + slot)*d + i)*d + j]: force i of the node by displacement j of its
  * neighbour in the slot. The conditions on the far side are not applied here but in gmres.c and
  * factorisation.c. */
@@ -15,6 +22,8 @@ struct tangent {
     const struct mesh *mesh; /* borrowed */
     size_t slots;            /* 2 * 3^(dimension - 1): neighbours on the own level, then below */
     double *values;          /* owned */
+    const struct tangent_link *link; /* borrowed */
+    size_t links;
     struct volumetric
         *volumetric; /* owned: the volumetric part apart, which values hold too; or NULL */
 };

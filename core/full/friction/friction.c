@@ -79,6 +79,7 @@ int friction_create(struct friction **out, const struct grid *grid, const struct
     struct material material = material_of(block->poisson, options->kinematics);
     status = full_create(&f->full, grid, block, options, err);
     if (status == 0) {
+        full_set_overhangs(f->full, false);
         f->mesh = full_mesh(f->full);
         f->face = f->mesh->face;
         f->sideways = (size_t)f->mesh->dimension - 1;

@@ -10,6 +10,7 @@ struct factorisation {
     int *unknown;            /* by degree of freedom: number of its unknown, or HELD */
     bool *held;              /* by unknown: whether contact holds it */
     size_t unknowns;
+    size_t links; /* of the tangent that was analysed */
     cholmod_common common;
     cholmod_triplet *triplet;
     cholmod_factor *factor;
@@ -38,10 +39,15 @@ static cholmod_dense *vector(struct factorisation *f, size_t n) {
     return cholmod_allocate_dense(n, 1, n, CHOLMOD_REAL, &f->common);
 }
 
+static size_t entries_of(const struct mesh *mesh) {
+    return mesh_degrees_of_freedom(mesh) * (mesh->dimension == 2 ? 6 : 18) *
+               (size_t)mesh->dimension +
+           mesh->face;
+}
+
 int factorisation_create(struct factorisation **out, const struct mesh *mesh, struct error *err) {
     *out = NULL;
-    size_t degrees_of_freedom = mesh_degrees_of_freedom(mesh), d = (size_t)mesh->dimension;
-    size_t entries = degrees_of_freedom * (mesh->dimension == 2 ? 6 : 18) * d + mesh->face;
+    size_t degrees_of_freedom = mesh_degrees_of_freedom(mesh), entries = entries_of(mesh);
     struct factorisation *f = array_create(1, sizeof *f);
     if (f == NULL)
         return error_memory(err, sizeof *f, "a factorisation");
@@ -105,6 +111,34 @@ static size_t fill_block(struct factorisation *f, size_t r0, size_t c0, bool twi
     return count;
 }
 
+static size_t fill_link(struct factorisation *f, const struct tangent_link *link, size_t count) {
+    int *row = f->triplet->i, *column = f->triplet->j;
+    double *entry = f->triplet->x;
+    for (int i = 0; i < LINK_MOST; i++)
+        for (int j = 0; j < LINK_MOST; j++) {
+            int r = f->unknown[link->at[i]], c = f->unknown[link->at[j]];
+            if (r < c || f->held[r] || f->held[c])
+                continue;
+            row[count] = r;
+            column[count] = c;
+            entry[count++] = link->stiffness[i][j];
+        }
+    return count;
+}
+
+/* Makes room for the entries of links. What was analysed without them, or with others, is
+ * forgotten. */
+static bool make_room(struct factorisation *f, const struct tangent *tangent) {
+    if (tangent->links == 0 && f->links == 0)
+        return true;
+    size_t most = entries_of(f->mesh) + tangent->links * LINK_MOST * LINK_MOST;
+    f->links = tangent->links;
+    cholmod_free_factor(&f->factor, &f->common);
+    cholmod_free_dense(&f->beyond, &f->common);
+    return f->triplet->nzmax >= most ||
+           cholmod_reallocate_triplet(most, f->triplet, &f->common) != 0;
+}
+
 /* CHOLMOD adds entries of the same row and column. Zeros are kept, so that the pattern stays the
  * same. */
 static void fill(struct factorisation *f, const struct tangent *tangent) {
@@ -119,6 +153,8 @@ static void fill(struct factorisation *f, const struct tangent *tangent) {
                         fill_block(f, node * d, neighbour[slot] * d, slot < tangent->slots / 2,
                                    tangent->values + (node * tangent->slots + slot) * d * d, count);
             }
+    for (size_t l = 0; l < tangent->links; l++)
+        count = fill_link(f, &tangent->link[l], count);
     for (size_t u = 0; u < f->unknowns; u++)
         if (f->held[u]) {
             ((int *)f->triplet->i)[count] = ((int *)f->triplet->j)[count] = (int)u;
@@ -142,6 +178,8 @@ int factorisation_run(struct factorisation *f, const struct tangent *tangent, co
         f->held[u] = false;
     for (size_t node = 0; node < f->mesh->face; node++)
         f->held[f->unknown[mesh_vertical(f->mesh, node)]] = active[node];
+    if (!make_room(f, tangent))
+        return failure(f, err);
     fill(f, tangent);
     cholmod_sparse *matrix = cholmod_triplet_to_sparse(f->triplet, 0, &f->common);
     if (matrix != NULL && f->factor == NULL)

@@ -246,6 +246,9 @@ static void operate(struct gmres *gmres, const struct linear_system *system, con
     for (size_t node = 0; node < mesh->face; node++)
         if (touches(system, node))
             y[mesh_vertical(mesh, node)] = gmres->face[node];
+    for (int k = 0; system->pinned && k + 1 < mesh->dimension; k++)
+        y[far_side * (size_t)mesh->dimension + (size_t)k] =
+            x[far_side * (size_t)mesh->dimension + (size_t)k];
 }
 
 /* x: displacements by the factorised tangent, with the displacements of nodes in contact prescribed

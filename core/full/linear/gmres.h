@@ -51,6 +51,7 @@ struct linear_system {
         *factorisation; /* of that tangent and active set; NULL: the flat block preconditions */
     const struct face_conditions
         *friction; /* in place of both, after gmres_add_friction; or NULL */
+    bool pinned;   /* the first node of the far side does not move sideways, whatever its force */
 };
 
 /* Solves for x, which has tangent_unknowns values. On entry x holds forces (at the first node of

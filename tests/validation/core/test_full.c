@@ -538,6 +538,7 @@ static void one_load_and_many_end_before_a_fold(void **state) {
             struct error err = {0};
             int status = 0;
             open_steep(&p, SEEDS[c], KINEMATICS_HENCKY);
+            full_set_overhangs(p.full, false);
             for (double k = many ? 1 : loads; k <= loads && status == 0; k++) {
                 status = full_press(p.full, GOAL * k / loads, &p.state, &p.report, &err);
                 if (status == 0)
@@ -567,6 +568,7 @@ static void failures_are_cheap(void **state) {
         struct pressed p;
         struct error err = {0};
         open_steep(&p, CASES[c].seed, CASES[c].kinematics);
+        full_set_overhangs(p.full, false);
         assert_int_equal(full_press(p.full, 0.3, &p.state, &p.report, &err), ERROR_NUMERIC);
         print_message("%zu iterations of Newton's, %zu steps, %zu cuts: %s\n", p.report.newton,
                       p.report.steps, p.report.cuts, err.text);
@@ -582,6 +584,7 @@ static void failures_name_the_load_reached(void **state) {
     struct pressed p;
     struct error err = {0};
     open_steep(&p, 3, KINEMATICS_HENCKY);
+    full_set_overhangs(p.full, false);
     press_both(&p, 0.05);
     assert_int_equal(full_press(p.full, 0.3, &p.state, &p.report, &err), ERROR_NUMERIC);
     assert_non_null(strstr(err.text, "mean pressure of 0.3 E* was reached up to 0.1"));

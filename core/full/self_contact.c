@@ -1,0 +1,401 @@
+#include "core/full/self_contact.h"
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* E*: a hundred times the stiffness of a node of the face, so that multipliers take a few rounds.
+ */
+static const double STIFFNESS = 100;
+/* Distance, in columns, within which a node and an arc are a pair. */
+static const double REACH = 1;
+/* Width of a bin of the search in columns: neighbours within REACH are in the same one or beside
+ * it, as arcs are filed by their node and shorter along x than BIN less REACH. */
+static const double BIN = 4;
+/* Bends of the face at a node lie in one turn: sharper than this to the right, into the block, they
+ * count as to the left. */
+static const double SHARPEST = 1.1 * M_PI;
+static const size_t NONE = SIZE_MAX;
+/* Steps of Newton's method towards the nearest point of an arc. */
+enum { PROJECTIONS = 20 };
+
+int self_contact_create(struct self_contact *out, const struct mesh *mesh, struct error *err) {
+    size_t face = mesh->dimension == 2 ? mesh->face : 0;
+    *out = (struct self_contact){.mesh = mesh};
+    if (face == 0)
+        return 0;
+    out->pair = array_create(PAIRS_A_NODE * face, sizeof *out->pair);
+    out->old = array_create(PAIRS_A_NODE * face, sizeof *out->old);
+    out->link = array_create(PAIRS_A_NODE * face, sizeof *out->link);
+    out->bin = array_create(face, sizeof *out->bin);
+    out->next = array_create(face, sizeof *out->next);
+    out->turning = array_create(2 * face, sizeof *out->turning);
+    if (out->pair != NULL && out->link != NULL && out->old != NULL && out->bin != NULL &&
+        out->next != NULL && out->turning != NULL)
+        return 0;
+    self_contact_clear(out);
+    return error_memory(err, (size_t)self_contact_bytes(mesh), "contact of a face with itself");
+}
+
+void self_contact_clear(struct self_contact *self) {
+    free(self->pair);
+    free(self->link);
+    free(self->old);
+    free(self->bin);
+    free(self->next);
+    free(self->turning);
+    *self = (struct self_contact){0};
+}
+
+double self_contact_bytes(const struct mesh *mesh) {
+    size_t pair = 2 * sizeof(struct self_pair) + sizeof(struct tangent_link);
+    size_t node = PAIRS_A_NODE * pair + 2 * sizeof(double) + 2 * sizeof(size_t);
+    return mesh->dimension == 2 ? (double)(mesh->face * node) : 0;
+}
+
+/* --- the curve --- */
+
+struct point {
+    double x, y;
+};
+
+/* Position of a node, whose number may go beyond the last. */
+static struct point point_of(const struct mesh *mesh, const double *u, size_t number) {
+    size_t node = number % mesh->face;
+    return (struct point){(double)number + u[2 * node], mesh->height[node] + u[2 * node + 1]};
+}
+
+/* The arc around a node: its shape functions and their derivatives, and what they make of the
+ * nodes. */
+struct arc {
+    double shape[ARC_NODES], slope[ARC_NODES];
+    struct point at, along, bend;
+};
+
+static struct arc arc_of(const struct mesh *mesh, const double *u, size_t number, double t) {
+    struct arc arc = {.shape = {(1 - t) * (1 - t) / 2, 0.5 + t * (1 - t), t * t / 2},
+                      .slope = {t - 1, 1 - 2 * t, t}};
+    static const double CURVE[ARC_NODES] = {1, -2, 1};
+    size_t before = number > 0 ? number - 1 : mesh->face - 1;
+    for (size_t i = 0; i < ARC_NODES; i++) {
+        struct point p = point_of(mesh, u, i == 0 ? before : number + i - 1);
+        p.x -= i == 0 && number == 0 ? (double)mesh->face : 0;
+        arc.at.x += arc.shape[i] * p.x;
+        arc.at.y += arc.shape[i] * p.y;
+        arc.along.x += arc.slope[i] * p.x;
+        arc.along.y += arc.slope[i] * p.y;
+        arc.bend.x += CURVE[i] * p.x;
+        arc.bend.y += CURVE[i] * p.y;
+    }
+    return arc;
+}
+
+static double dot(struct point a, struct point b) {
+    return a.x * b.x + a.y * b.y;
+}
+
+/* Returns the vector from a point of an arc to a node, across the side of the cell where that is
+ * nearer. */
+static struct point from_arc(const struct mesh *mesh, const double *u, size_t node,
+                             const struct arc *arc) {
+    struct point p = point_of(mesh, u, node);
+    double x = p.x - arc->at.x;
+    return (struct point){x - (double)mesh->face * round(x / (double)mesh->face), p.y - arc->at.y};
+}
+
+/* The distance of two lips along the flat. */
+static void measure_lips(const struct mesh *mesh, const double *u, struct self_pair *pair) {
+    double x = point_of(mesh, u, pair->arc).x - point_of(mesh, u, pair->node).x;
+    pair->gap = x - (double)mesh->face * round(x / (double)mesh->face);
+    pair->normal[0] = -1;
+    pair->normal[1] = 0;
+}
+
+/* Fills a pair from its node, arc and t. */
+static void measure_pair(const struct mesh *mesh, const double *u, struct self_pair *pair) {
+    struct arc arc = arc_of(mesh, u, pair->arc, pair->at);
+    struct point from = from_arc(mesh, u, pair->node, &arc);
+    double length = hypot(arc.along.x, arc.along.y);
+    pair->along[0] = arc.along.x;
+    pair->along[1] = arc.along.y;
+    pair->normal[0] = arc.along.y / length;
+    pair->normal[1] = -arc.along.x / length;
+    pair->bend = pair->normal[0] * arc.bend.x + pair->normal[1] * arc.bend.y;
+    pair->gap = pair->normal[0] * from.x + pair->normal[1] * from.y;
+}
+
+/* Moves t to the point of the curve nearest to the node, over to other arcs where that is beyond an
+ * end. */
+static void project(const struct mesh *mesh, const double *u, struct self_pair *pair) {
+    for (int step = 0; step < PROJECTIONS; step++) {
+        struct arc arc = arc_of(mesh, u, pair->arc, pair->at);
+        struct point from = from_arc(mesh, u, pair->node, &arc);
+        double slope = dot(arc.along, from), curve = dot(arc.along, arc.along);
+        double convex = curve - dot(arc.bend, from);
+        double move = slope / (convex > curve / 8 ? convex : curve);
+        pair->at += fmax(-0.5, fmin(0.5, move));
+        if (pair->at < 0 || pair->at > 1) {
+            size_t on = pair->at > 1 ? 1 : mesh->face - 1;
+            pair->at += pair->at > 1 ? -1 : 1;
+            pair->arc = (pair->arc + on) % mesh->face;
+        }
+        if (fabs(move) < 1e-14)
+            break;
+    }
+    measure_pair(mesh, u, pair);
+}
+
+/* --- the search --- */
+
+/* Fills the angles of segments, which begin at the nodes, over that of the first. */
+static void measure_turning(struct self_contact *self, const double *u) {
+    const struct mesh *mesh = self->mesh;
+    struct point before = {0};
+    for (size_t k = 0; k < 2 * mesh->face; k++) {
+        struct point a = point_of(mesh, u, k), b = point_of(mesh, u, k + 1);
+        struct point here = {b.x - a.x, b.y - a.y};
+        double bend =
+            atan2(before.x * here.y - before.y * here.x, before.x * here.x + before.y * here.y);
+        bend -= bend > 2 * M_PI - SHARPEST ? 2 * M_PI : 0;
+        self->turning[k] = k > 0 ? self->turning[k - 1] + bend : 0;
+        before = here;
+    }
+}
+
+static size_t bins_of(const struct mesh *mesh) {
+    size_t bins = (size_t)((double)mesh->face / BIN);
+    return bins > 0 ? bins : 1;
+}
+
+static size_t bin_of(const struct mesh *mesh, double x) {
+    double bins = (double)bins_of(mesh), at = floor(x * bins / (double)mesh->face);
+    return (size_t)fmax(0, fmin(bins - 1, at - bins * floor(at / bins)));
+}
+
+static void prepare(struct self_contact *self, const double *u) {
+    const struct mesh *mesh = self->mesh;
+    measure_turning(self, u);
+    for (size_t b = 0; b < bins_of(mesh); b++)
+        self->bin[b] = NONE;
+    for (size_t k = mesh->face; k-- > 0;) {
+        size_t bin = bin_of(mesh, point_of(mesh, u, k).x);
+        self->next[k] = self->bin[bin];
+        self->bin[bin] = k;
+    }
+}
+
+/* Returns whether an arc is across air from a node before it: from the segment behind the one to
+ * that before the other the face turns by about half a turn to the right, into the block. Around a
+ * crest it turns to the left. */
+static bool faces(const struct self_contact *self, size_t node, size_t arc) {
+    size_t face = self->mesh->face, number = arc > node ? arc : arc + face;
+    if (number - node < ARC_NODES - 1 || number - node > face / 2)
+        return false;
+    double turned = self->turning[number - 1] - self->turning[node];
+    return turned < -M_PI / 2 && turned > -3 * M_PI / 2;
+}
+
+/* Fills the pair of a node with the nearest arc across air. Returns whether there is one within
+ * REACH. */
+static bool nearest(const struct self_contact *self, const double *u, size_t node,
+                    struct self_pair *out) {
+    static const double MIDDLE = 0.5, NEAR = 3;
+    const struct mesh *mesh = self->mesh;
+    size_t bins = bins_of(mesh), at = bin_of(mesh, point_of(mesh, u, node).x);
+    size_t around = bins < 3 ? bins : 3;
+    double least = INFINITY;
+    for (size_t side = 0; side < around; side++)
+        for (size_t k = self->bin[(at + bins - 1 + side) % bins]; k != NONE; k = self->next[k]) {
+            if (k == node || !faces(self, node, k))
+                continue;
+            struct arc arc = arc_of(mesh, u, k, MIDDLE);
+            struct point from = from_arc(mesh, u, node, &arc);
+            double distance = hypot(from.x, from.y);
+            if (!(distance < least))
+                continue;
+            least = distance;
+            *out = (struct self_pair){.node = node, .arc = k, .at = MIDDLE};
+        }
+    if (!(least < NEAR))
+        return false;
+    project(mesh, u, out);
+    struct point own = arc_of(mesh, u, node, MIDDLE).along;
+    return fabs(out->gap) < REACH && out->arc != node && faces(self, node, out->arc) &&
+           out->normal[0] * own.y - out->normal[1] * own.x < 0;
+}
+
+/* Returns the first node that touches the flat behind one that does; that one where none else
+ * does. *over: whether the face overhangs between both. */
+static size_t next_lip(const struct mesh *mesh, const double *u, const bool *active, size_t node,
+                       bool *over) {
+    size_t next = node;
+    *over = false;
+    do {
+        *over = *over || mesh_stretch(mesh, u, 0, next) <= 0;
+        next = (next + 1) % mesh->face;
+    } while (!active[next] && next != node);
+    return next;
+}
+
+/* Fills the pair of a lip. Returns whether there is one within REACH. */
+static bool meets_lip(const struct mesh *mesh, const double *u, const bool *active, size_t node,
+                      struct self_pair *out) {
+    bool over = false;
+    if (!active[node] || active[(node + 1) % mesh->face])
+        return false;
+    *out = (struct self_pair){
+        .node = node, .arc = next_lip(mesh, u, active, node, &over), .lips = true};
+    measure_lips(mesh, u, out);
+    return over && out->arc != node && fabs(out->gap) < REACH;
+}
+
+static bool overhangs(const struct mesh *mesh, const double *u) {
+    for (size_t i = 0; i < mesh->face; i++)
+        if (mesh_stretch(mesh, u, 0, i) <= 0)
+            return true;
+    return false;
+}
+
+/* Finds the pair of a node with an arc, or of lips. */
+static bool find(const struct self_contact *self, const double *u, const bool *active, bool lips,
+                 size_t node, struct self_pair *out) {
+    return lips ? meets_lip(self->mesh, u, active, node, out) : nearest(self, u, node, out);
+}
+
+void self_contact_search(struct self_contact *self, const double *u, const bool *active) {
+    size_t before = self->count, count = 0, old = 0;
+    self->count = 0;
+    if (!overhangs(self->mesh, u))
+        return;
+    memcpy(self->old, self->pair, before * sizeof *self->pair);
+    prepare(self, u);
+    for (size_t n = 0; n < PAIRS_A_NODE * self->mesh->face; n++) {
+        size_t node = n % self->mesh->face;
+        bool lips = n >= self->mesh->face;
+        const struct self_pair *had = self->old;
+        while (old < before && had[old].lips == lips && had[old].node < node)
+            old++;
+        while (old < before && lips && !had[old].lips)
+            old++;
+        if (!find(self, u, active, lips, node, &self->pair[count]))
+            continue;
+        if (old < before && had[old].lips == lips && had[old].node == node)
+            self->pair[count].multiplier = had[old].multiplier;
+        count++;
+    }
+    self->count = count;
+}
+
+double self_contact_depth(struct self_contact *self, const double *u, const bool *active) {
+    struct self_pair pair;
+    double deepest = 0;
+    if (!overhangs(self->mesh, u))
+        return 0;
+    prepare(self, u);
+    for (size_t n = 0; n < PAIRS_A_NODE * self->mesh->face; n++)
+        if (find(self, u, active, n >= self->mesh->face, n % self->mesh->face, &pair))
+            deepest = fmax(deepest, -pair.gap);
+    return deepest;
+}
+
+/* --- forces --- */
+
+/* As link_of, of lips. */
+static struct tangent_link lips_of(const struct self_pair *pair, double by[LINK_MOST]) {
+    struct tangent_link link = {.at = {2 * pair->node, 2 * pair->arc}};
+    memset(by, 0, LINK_MOST * sizeof *by);
+    by[0] = -1;
+    by[1] = 1;
+    /* The others repeat the first degree of freedom, with 0. */
+    for (size_t i = 2; i < LINK_MOST; i++)
+        link.at[i] = link.at[0];
+    for (size_t i = 0; i < 2; i++)
+        for (size_t j = 0; j < 2; j++)
+            link.stiffness[i][j] = STIFFNESS * by[i] * by[j];
+    return link;
+}
+
+/* Fills by, the derivative N of the gap. With A = as N along c', and B = n . dc' by the
+ * displacements, the second derivative is -(A B^T + B A^T + (n . c''/|c'|^2) A A^T + g B B^T)/m, m
+ * = |c'|^2 - g n . c''. */
+static struct tangent_link link_of(const struct mesh *mesh, const double *u,
+                                   const struct self_pair *pair, bool convex,
+                                   double by[LINK_MOST]) {
+    struct tangent_link link;
+    struct arc arc = arc_of(mesh, u, pair->arc, pair->at);
+    double along[LINK_MOST], turn[LINK_MOST], square = dot(arc.along, arc.along);
+    double bends = convex ? 0 : pair->force / (square - pair->gap * pair->bend);
+    for (size_t a = 0; a <= ARC_NODES; a++)
+        for (size_t k = 0; k < 2; k++) {
+            size_t node = a == 0 ? pair->node : (pair->arc + mesh->face + a - 2) % mesh->face;
+            double weight = a == 0 ? 1 : -arc.shape[a - 1];
+            link.at[2 * a + k] = 2 * node + k;
+            by[2 * a + k] = weight * pair->normal[k];
+            along[2 * a + k] = weight * pair->along[k];
+            turn[2 * a + k] = a == 0 ? 0 : arc.slope[a - 1] * pair->normal[k];
+        }
+    for (size_t i = 0; i < LINK_MOST; i++)
+        for (size_t j = 0; j < LINK_MOST; j++)
+            link.stiffness[i][j] =
+                STIFFNESS * by[i] * by[j] +
+                bends * (along[i] * turn[j] + turn[i] * along[j] +
+                         pair->bend / square * along[i] * along[j] + pair->gap * turn[i] * turn[j]);
+    return link;
+}
+
+void self_contact_evaluate(struct self_contact *self, bool convex, const double *u, double *force,
+                           struct tangent *tangent) {
+    size_t links = 0;
+    double by[LINK_MOST];
+    for (size_t c = 0; c < self->count; c++) {
+        struct self_pair *pair = &self->pair[c];
+        if (pair->lips)
+            measure_lips(self->mesh, u, pair);
+        else
+            project(self->mesh, u, pair);
+        pair->force = fmax(0, pair->multiplier - STIFFNESS * pair->gap);
+        if (pair->force == 0)
+            continue;
+        self->link[links] =
+            pair->lips ? lips_of(pair, by) : link_of(self->mesh, u, pair, convex, by);
+        for (int i = 0; i < LINK_MOST; i++)
+            force[self->link[links].at[i]] -= pair->force * by[i];
+        links++;
+    }
+    tangent->link = self->link;
+    tangent->links = links;
+}
+
+double self_contact_renew(struct self_contact *self, const double *u, const bool *active) {
+    double change = 0;
+    for (size_t c = 0; c < self->count; c++)
+        self->pair[c].multiplier = self->pair[c].force;
+    self_contact_search(self, u, active);
+    for (size_t c = 0; c < self->count; c++) {
+        const struct self_pair *pair = &self->pair[c];
+        double force = pair->multiplier;
+        change = fmax(change, fabs(fmax(0, force - STIFFNESS * pair->gap) - force));
+    }
+    return change;
+}
+
+struct self_measure self_contact_measure(struct self_contact *self, const double *u,
+                                         const bool *active) {
+    const struct mesh *mesh = self->mesh;
+    struct self_measure out = {.penetration =
+                                   self->count > 0 ? self_contact_depth(self, u, active) : 0};
+    for (size_t c = 0; c < self->count; c++) {
+        const struct self_pair *pair = &self->pair[c];
+        if (!(pair->force > 0))
+            continue;
+        out.force += pair->force;
+        struct point before = point_of(mesh, u, pair->node + mesh->face - 1),
+                     here = point_of(mesh, u, pair->node + mesh->face),
+                     after = point_of(mesh, u, pair->node + mesh->face + 1);
+        out.nodes++;
+        out.length += (hypot(here.x - before.x, here.y - before.y) +
+                       hypot(after.x - here.x, after.y - here.y)) /
+                      2;
+    }
+    return out;
+}

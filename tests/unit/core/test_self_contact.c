@@ -1,0 +1,195 @@
+/* Protects contact of a face with itself: what counts as a pair, forces that are the gradient of an
+ * energy and balance, their tangent, the periodic images, and multipliers that take the forces. */
+#include "tests/support/check.h"
+
+#include "core/full/self_contact.h"
+#include <stdlib.h>
+#include <string.h>
+
+enum { NODES = 24, FIRST = 8, DEEP = 4, FACE_VALUES = 2 * NODES };
+
+struct folded {
+    struct mesh *mesh;
+    struct tangent *tangent;
+    struct self_contact self;
+    double *u, *force, *change;
+    bool active[NODES];
+};
+
+static void open_fold(struct folded *f) {
+    struct error err = {0};
+    struct grid grid = {.nx = NODES, .ny = 1, .lx = NODES, .ly = 1};
+    struct block block = {.poisson = 0.3, .height = 12, .layer_growth = 1.3};
+    struct material material = material_of(block.poisson, KINEMATICS_HENCKY);
+    *f = (struct folded){0};
+    if (mesh_create(&f->mesh, &grid, &block, INFINITY, &err) != 0 ||
+        tangent_create(&f->tangent, f->mesh, &material, false, &err) != 0 ||
+        self_contact_create(&f->self, f->mesh, &err) != 0)
+        fail_msg("%s", err.text);
+    size_t count = mesh_degrees_of_freedom(f->mesh);
+    f->u = array_create(count, sizeof *f->u);
+    f->force = array_create(count, sizeof *f->force);
+    f->change = array_create(count, sizeof *f->change);
+    assert_true(f->u != NULL && f->force != NULL && f->change != NULL);
+}
+
+static void close_fold(struct folded *f) {
+    self_contact_clear(&f->self);
+    tangent_destroy(&f->tangent);
+    mesh_destroy(&f->mesh);
+    free(f->u);
+    free(f->force);
+    free(f->change);
+}
+
+/* A fold DEEP columns deep, upward (into the block) or downward (a crest), whose flanks lean over
+ * and are `width` apart at their narrowest, from node `first` on. */
+static void fold(struct folded *f, size_t first, double width, double up) {
+    memset(f->u, 0, mesh_degrees_of_freedom(f->mesh) * sizeof *f->u);
+    for (size_t a = 0; a <= 2 * DEEP; a++) {
+        size_t number = first + a, node = number % NODES;
+        double depth = a <= DEEP ? (double)a : (double)(2 * DEEP - a);
+        double lean = width / 2 + 0.05 * depth + (a == 0 || a == 2 * DEEP ? 0.5 : 0);
+        double side = a < DEEP ? -1 : a > DEEP ? 1 : 0;
+        f->u[2 * node] = (double)(first + DEEP) + side * lean - (double)number;
+        f->u[2 * node + 1] = up * depth + 0.02 * (double)a;
+    }
+}
+
+static double find(struct folded *f) {
+    double energy = 0;
+    memset(f->force, 0, mesh_degrees_of_freedom(f->mesh) * sizeof *f->force);
+    self_contact_evaluate(&f->self, false, f->u, f->force, f->tangent);
+    for (size_t c = 0; c < f->self.count; c++) {
+        const struct self_pair *pair = &f->self.pair[c];
+        double stiffness = (pair->force - pair->multiplier) / -pair->gap;
+        if (pair->force > 0)
+            energy += pair->force * pair->force / (2 * stiffness);
+    }
+    return energy;
+}
+
+static void flanks_meet_across_air_alone(void **state) {
+    (void)state;
+    struct folded f;
+    open_fold(&f);
+    for (size_t first = FIRST; first < FIRST + NODES; first += 5) {
+        fold(&f, first, 0.2, 1);
+        self_contact_search(&f.self, f.u, f.active);
+        assert_true(f.self.count >= 2);
+        (void)find(&f);
+        for (size_t c = 0; c < f.self.count; c++) {
+            assert_true(f.self.pair[c].gap > 0.1 && f.self.pair[c].gap < 1);
+            assert_true(f.self.pair[c].force == 0);
+        }
+        assert_int_equal(f.tangent->links, 0);
+        assert_true(self_contact_depth(&f.self, f.u, f.active) == 0);
+        fold(&f, first, 0.2, -1);
+        self_contact_search(&f.self, f.u, f.active);
+        assert_int_equal(f.self.count, 0);
+    }
+    memset(f.u, 0, mesh_degrees_of_freedom(f.mesh) * sizeof *f.u);
+    self_contact_search(&f.self, f.u, f.active);
+    assert_int_equal(f.self.count, 0);
+    close_fold(&f);
+}
+
+/* Lips that touch the flat meet along it. */
+static void lips_on_the_flat_meet(void **state) {
+    (void)state;
+    struct folded f;
+    open_fold(&f);
+    fold(&f, FIRST, 0.2, 1);
+    f.u[2 * FIRST] += 0.68;
+    f.u[2 * (FIRST + 2 * DEEP)] -= 0.68;
+    f.active[FIRST] = f.active[FIRST + 2 * DEEP] = true;
+    self_contact_search(&f.self, f.u, f.active);
+    (void)find(&f);
+    const struct self_pair *last = &f.self.pair[f.self.count - 1];
+    assert_true(f.self.count > 0 && last->lips && last->node == FIRST);
+    check_close(last->gap, -0.16, 1e-12);
+    check_close(f.force[2 * FIRST], last->force, 1e-12);
+    check_close(f.force[2 * (FIRST + 2 * DEEP)], -last->force, 1e-12);
+    check_close(self_contact_depth(&f.self, f.u, f.active), 0.16, 1e-12);
+    close_fold(&f);
+}
+
+/* Central differences of an energy and of forces, whose errors are of second order; a pair's arc
+ * and point follow each displacement. */
+static void forces_and_tangent_are_derivatives(void **state) {
+    (void)state;
+    static const double STEP = 1e-5;
+    struct folded f;
+    double force[FACE_VALUES], plus[FACE_VALUES];
+    open_fold(&f);
+    fold(&f, FIRST, -0.3, 1);
+    self_contact_search(&f.self, f.u, f.active);
+    assert_true(find(&f) > 0 && f.tangent->links > 0);
+    for (int multiplied = 0; multiplied < 2; multiplied++) {
+        for (size_t c = 0; multiplied != 0 && c < f.self.count; c++)
+            f.self.pair[c].multiplier = 1;
+        for (size_t i = 2 * FIRST; i < 2 * (FIRST + 2 * DEEP + 1); i++) {
+            double here = f.u[i];
+            (void)find(&f);
+            memcpy(force, f.force, sizeof force);
+            memset(f.change, 0, mesh_degrees_of_freedom(f.mesh) * sizeof *f.change);
+            f.change[i] = 1;
+            tangent_apply(f.tangent, f.change, f.force);
+            double stiffness[FACE_VALUES];
+            memcpy(stiffness, f.force, sizeof stiffness);
+            f.u[i] = here + STEP;
+            double above = find(&f);
+            memcpy(plus, f.force, sizeof plus);
+            f.u[i] = here - STEP;
+            double below = find(&f);
+            f.u[i] = here;
+            check_close((above - below) / (2 * STEP), force[i], 1e-6);
+            for (size_t k = 0; k < FACE_VALUES; k++)
+                check_close((plus[k] - f.force[k]) / (2 * STEP), stiffness[k], 1e-5);
+        }
+    }
+    close_fold(&f);
+}
+
+static void forces_balance_and_become_multipliers(void **state) {
+    (void)state;
+    struct folded f, across;
+    open_fold(&f);
+    open_fold(&across);
+    fold(&f, FIRST, -0.3, 1);
+    fold(&across, FIRST + 12, -0.3, 1);
+    self_contact_search(&f.self, f.u, f.active);
+    self_contact_search(&across.self, across.u, across.active);
+    check_relative(find(&across), find(&f), 1e-12);
+    double x = 0, y = 0, most = 0;
+    for (size_t i = 0; i < NODES; i++) {
+        x += f.force[2 * i];
+        y += f.force[2 * i + 1];
+        most = fmax(most, fabs(f.force[2 * i]));
+        for (size_t k = 0; k < 2; k++)
+            check_close(across.force[2 * ((i + 12) % NODES) + k], f.force[2 * i + k], 1e-10);
+    }
+    assert_true(most > 1);
+    check_close(x, 0, 1e-12 * most);
+    check_close(y, 0, 1e-12 * most);
+    double first = 0, second = 0;
+    for (size_t c = 0; c < f.self.count; c++)
+        first = fmax(first, f.self.pair[c].force);
+    check_relative(self_contact_renew(&f.self, f.u, f.active), first, 1e-9);
+    (void)find(&f);
+    for (size_t c = 0; c < f.self.count; c++)
+        second = fmax(second, f.self.pair[c].force);
+    check_relative(second, 2 * first, 1e-9);
+    close_fold(&f);
+    close_fold(&across);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(flanks_meet_across_air_alone),
+        cmocka_unit_test(lips_on_the_flat_meet),
+        cmocka_unit_test(forces_and_tangent_are_derivatives),
+        cmocka_unit_test(forces_balance_and_become_multipliers),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
