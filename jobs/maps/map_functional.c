@@ -1,4 +1,5 @@
 #include "jobs/maps/map_functional.h"
+#include <math.h>
 
 static const double RATIOS[MAP_RATIOS] = {0,    0.01, 0.02, 0.025, 0.05, 0.1,  0.15,
                                           0.2,  0.3,  0.4,  0.5,   0.6,  0.7,  0.8,
@@ -22,4 +23,17 @@ int map_functional_measure(struct map_functional *out, const struct measured_map
         return ten_points_measure(map, hills, mean, sz, &out->ten_points, err);
     profile_spacing_measure(map, mean, &out->spacing);
     return 0;
+}
+
+void map_functional_leave_out(struct map_functional *out) {
+    const double none = (double)NAN;
+    const struct material_core core = {none, none, none, none, none};
+    *out = (struct map_functional){.found = {core, core, none, none, none, none, none},
+                                   .plateau = {none, none, none, none, none, none, none},
+                                   .ten_points = {.s5p = none, .s5v = none, .s10z = none},
+                                   .spacing = {.rsm = none, .rsm_old = none}};
+    for (size_t r = 0; r < MAP_RATIOS; r++) {
+        out->ratio[r] = RATIOS[r];
+        out->height[r] = none;
+    }
 }

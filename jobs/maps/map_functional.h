@@ -19,5 +19,7 @@ struct map_functional {
 /* hills: those of areal_measure(), with Sz; NULL for profiles. ERROR_MEMORY. */
 int map_functional_measure(struct map_functional *out, const struct measured_map *map,
                            const struct summit_list *hills, double sz, struct error *err);
+/* Fills what is not measured: NaN, and no hills or elements. */
+void map_functional_leave_out(struct map_functional *out);
 
 #endif
