@@ -59,6 +59,9 @@ static int characterise(void *context, struct error *err) {
     if (status == 0)
         expect_same(work, found.areal.sdr + found.spectra.rings.density[3]);
     map_characterisation_clear(&found);
+    if (status == 0)
+        status = map_characterise(&found, &map, &record, &trusted, MAP_MAIN, err);
+    map_characterisation_clear(&found);
     return status;
 }
 

@@ -122,7 +122,8 @@ static void what_stays_in_cache_is_the_same(void **state) {
         const size_t points = grid_points(grid), mode_x = grid->nx / 3, mode_y = grid->ny / 2;
         struct transform *whole = NULL, *parts = NULL;
         double *z = malloc(points * sizeof *z), *same = malloc(points * sizeof *same);
-        assert_true(z != NULL && same != NULL);
+        assert_non_null(z);
+        assert_non_null(same);
         for (size_t p = 0; p < points; p++)
             same[p] = z[p] = noise(&seed);
         assert_int_equal(transform_create(&whole, grid, mode_x, mode_y, NULL), 0);
