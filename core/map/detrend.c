@@ -1,26 +1,29 @@
 #include "core/map/detrend.h"
 #include "core/sum.h"
+#include "core/vectors.h"
 #include <math.h>
+#include <string.h>
 
 #define NAME(type, name, value) name,
 const char *const DETREND_NAMES[] = {"none", RUGO_TRENDS(NAME)};
 #undef NAME
 
-enum { TERMS = 6, PASSES = 2, ORDERS = 5 };
+enum { TERMS = 6, PASSES = 2, DEGREE_MOST = 2, ORDERS = 2 * DEGREE_MOST + 1 };
 
 /* The terms are u^px v^py; u and v run from -1 to 1 over the points of the map. */
 static const size_t POWER_X[TERMS] = {0, 1, 0, 2, 1, 0}, POWER_Y[TERMS] = {0, 0, 1, 0, 1, 2};
 
 /* The terms that are fitted: all of the kind's degree, of a profile those without v. */
 struct terms {
-    size_t count, list[TERMS];
+    size_t count, degree, list[TERMS];
 };
 
 static struct terms terms_of(const struct grid *grid, enum detrend kind) {
     struct terms terms = {0};
     if (kind == DETREND_NONE)
         return terms;
-    size_t degree = kind == DETREND_MEAN ? 0 : kind == DETREND_PLANE ? 1 : 2;
+    size_t degree = kind == DETREND_MEAN ? 0 : kind == DETREND_PLANE ? 1 : DEGREE_MOST;
+    terms.degree = degree;
     for (size_t t = 0; t < TERMS; t++)
         if (POWER_X[t] + POWER_Y[t] <= degree && (POWER_Y[t] == 0 || !grid_is_profile(grid)))
             terms.list[terms.count++] = t;
@@ -28,7 +31,7 @@ static struct terms terms_of(const struct grid *grid, enum detrend kind) {
 }
 
 /* Returns the position of point i of n, between -1 and 1. */
-static double position(size_t i, size_t n) {
+static inline double position(size_t i, size_t n) {
     return n > 1 ? (2 * (double)i - (double)(n - 1)) / (double)(n - 1) : 0;
 }
 
@@ -44,28 +47,54 @@ struct equations {
     double matrix[TERMS][TERMS], vector[TERMS];
 };
 
-/* Sums u^a and z u^a over one row, where there is a height. */
-static void row_powers(const double *row, size_t nx, double *powers, double *heights) {
-    for (size_t a = 0; a < ORDERS; a++)
-        powers[a] = heights[a] = 0;
-    for (size_t i = 0; i < nx; i++) {
-        double u = position(i, nx), term = 1;
-        if (isnan(row[i]))
+enum { TOGETHER = 128 }; /* points whose positions are computed at once */
+
+WIDE_VECTORS static void positions_fill(size_t first, size_t count, size_t n, double *restrict u) {
+    for (size_t l = 0; l < count; l++)
+        u[l] = position(first + l, n);
+}
+
+/* Adds u^a up to twice the degree, and z u^a up to the degree, of points where there is a height.
+ */
+INLINE void powers_add(const double *z, const double *u, size_t count, size_t degree,
+                       double *restrict powers, double *restrict heights) {
+    for (size_t l = 0; l < count; l++) {
+        double term = 1;
+        if (isnan(z[l]))
             continue;
-        for (size_t a = 0; a < ORDERS; a++, term *= u) {
+        for (size_t a = 0; a <= 2 * degree; a++, term *= u[l]) {
             powers[a] += term;
-            heights[a] += row[i] * term;
+            if (a <= degree)
+                heights[a] += z[l] * term;
         }
     }
+}
+
+/* The same of one row, from 0 on. */
+static void row_powers(const double *row, size_t nx, size_t degree, double *powers,
+                       double *heights) {
+    double u[TOGETHER], sums[ORDERS] = {0}, products[DEGREE_MOST + 1] = {0};
+    for (size_t i = 0; i < nx; i += TOGETHER) {
+        const size_t count = nx - i < TOGETHER ? nx - i : TOGETHER;
+        positions_fill(i, count, nx, u);
+        if (degree == 0)
+            powers_add(row + i, u, count, 0, sums, products);
+        else if (degree == 1)
+            powers_add(row + i, u, count, 1, sums, products);
+        else
+            powers_add(row + i, u, count, DEGREE_MOST, sums, products);
+    }
+    memcpy(powers, sums, sizeof sums);
+    memcpy(heights, products, sizeof products);
 }
 
 static void equations_make(const struct grid *grid, const double *z, const struct terms *terms,
                            struct equations *out) {
     struct sum matrix[TERMS][TERMS] = {0}, vector[TERMS] = {0};
-    double powers[ORDERS], heights[ORDERS];
+    double powers[ORDERS], heights[DEGREE_MOST + 1];
     for (size_t j = 0; j < grid->ny; j++) {
         double v = position(j, grid->ny);
-        row_powers(z + j * grid->nx, grid->nx, powers, heights);
+        row_powers(z + j * grid->nx, grid->nx, terms->degree, powers, heights);
         for (size_t a = 0; a < terms->count; a++) {
             size_t s = terms->list[a];
             sum_add(&vector[a], heights[POWER_X[s]] * power(v, POWER_Y[s]));
@@ -107,14 +136,11 @@ static bool equations_solve(struct equations *e, size_t n) {
     return true;
 }
 
-static void subtract(const struct grid *grid, double *z, const double *coefficient) {
-    const double *c = coefficient;
-    for (size_t j = 0; j < grid->ny; j++) {
-        double *row = z + j * grid->nx, v = position(j, grid->ny);
-        for (size_t i = 0; i < grid->nx; i++) {
-            double u = position(i, grid->nx);
-            row[i] -= c[0] + c[1] * u + c[2] * v + c[3] * u * u + c[4] * u * v + c[5] * v * v;
-        }
+WIDE_VECTORS static void row_subtract(size_t nx, double v, const double *restrict c,
+                                      double *restrict row) {
+    for (size_t i = 0; i < nx; i++) {
+        double u = position(i, nx);
+        row[i] -= c[0] + c[1] * u + c[2] * v + c[3] * u * u + c[4] * u * v + c[5] * v * v;
     }
 }
 
@@ -134,7 +160,8 @@ int detrend(const struct grid *grid, double *z, enum detrend kind, struct trend 
                              terms.count);
         for (size_t a = 0; a < terms.count; a++)
             total[terms.list[a]] += coefficient[terms.list[a]] = equations.vector[a];
-        subtract(grid, z, coefficient);
+        for (size_t j = 0; j < grid->ny; j++)
+            row_subtract(grid->nx, position(j, grid->ny), coefficient, z + j * grid->nx);
     }
     double half_x = grid->nx > 1 ? grid_dx(grid) * (double)(grid->nx - 1) / 2 : 1;
     double half_y = grid->ny > 1 ? grid_dy(grid) * (double)(grid->ny - 1) / 2 : 1;

@@ -7,7 +7,6 @@
 #include "core/surface/transform.h"
 #include "core/vectors.h"
 #include <complex.h>
-#include <fftw3.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -37,28 +36,34 @@ static void mirror_column_impose(double complex *column, const double *amplitude
     }
 }
 
-/* Sets the amplitudes of a half spectrum (as transforms on the grid and band of modes have it),
- * laid out as modes->power; all other modes become zero. */
-static void amplitudes_impose(const struct modes *modes, const double *amplitude,
-                              double complex *spectrum) {
-    const struct grid *grid = &modes->grid;
-    size_t mode_x = modes->mode_x;
-    size_t mode_y = modes->mode_y;
-    size_t ny = grid->ny;
-    for (size_t mx = 0; mx <= mode_x; mx++) {
-        double complex *column = spectrum + mx * ny;
-        const double *wanted = amplitude + mx * (2 * mode_y + 1);
-        if (2 * mode_y + 1 < ny)
-            memset(column + mode_y + 1, 0, (ny - 2 * mode_y - 1) * sizeof *column);
-        if (mx == 0 || 2 * mx == grid->nx) {
-            mirror_column_impose(column, wanted, ny, mode_y);
-            continue;
-        }
-        for (size_t my = 0; my <= mode_y; my++)
-            column[my] = with_amplitude(column[my], wanted[mode_y + my]);
-        for (size_t my = 1; my <= mode_y && 2 * my != ny; my++)
-            column[ny - my] = with_amplitude(column[ny - my], wanted[mode_y - my]);
+/* Amplitudes of a band, laid out as modes->power. */
+struct band {
+    const struct modes *modes;
+    const double *amplitude;
+};
+
+/* Sets the amplitudes of a column of a half spectrum (as transforms on the grid and band of modes
+ * have it); its other modes become zero. */
+static void column_impose(const void *context, size_t mx, double complex *column) {
+    const struct band *band = context;
+    const struct grid *grid = &band->modes->grid;
+    size_t mode_y = band->modes->mode_y, ny = grid->ny;
+    const double *wanted = band->amplitude + mx * (2 * mode_y + 1);
+    if (2 * mode_y + 1 < ny)
+        memset(column + mode_y + 1, 0, (ny - 2 * mode_y - 1) * sizeof *column);
+    if (mx == 0 || 2 * mx == grid->nx) {
+        mirror_column_impose(column, wanted, ny, mode_y);
+        return;
     }
+    for (size_t my = 0; my <= mode_y; my++)
+        column[my] = with_amplitude(column[my], wanted[mode_y + my]);
+    for (size_t my = 1; my <= mode_y && 2 * my != ny; my++)
+        column[ny - my] = with_amplitude(column[ny - my], wanted[mode_y - my]);
+}
+
+static void amplitudes_impose(const struct band *band, double complex *spectrum) {
+    for (size_t mx = 0; mx <= band->modes->mode_x; mx++)
+        column_impose(band, mx, spectrum + mx * band->modes->grid.ny);
 }
 
 /* A step of the alternation between spectrum and heights that ranks by a table (rank_table.h) and
@@ -76,9 +81,9 @@ struct fast_move {
     bool first; /* the first step of its kind: x is s, and h of the step before is h */
 };
 
-/* Rows handled together fit into the second-level cache up to 16384 points, points into the
- * first. */
-enum { ROWS = TRANSFORM_ROWS, POINTS = 1024 };
+/* Points handled together fit into the first-level cache, two rows of up to PREFETCHED into the
+ * second. */
+enum { POINTS = 1024, PREFETCHED = 8192 };
 /* The range of keys of a step is that of the step before, widened by this part on both sides. */
 static const double WIDER = 1.0 / 16;
 
@@ -131,27 +136,43 @@ WIDE_VECTORS static void reflect(size_t n, const double *restrict s, double *res
         y[i] = 2 * s[i] - x[i];
 }
 
-/* Computes and counts all keys y; where errors are given, the surfaces s, too. */
-static void keys_count(struct fast_step *step, struct transform *transform, struct fast_move move,
-                       double *z, double *x, struct height_error *errors) {
-    size_t nx = step->modes->grid.nx, ny = step->modes->grid.ny;
-    double wider = WIDER * (step->high - step->low);
-    rank_table_start(step->table, step->low - wider, step->high + wider);
-    for (size_t j = 0; j < ny; j += ROWS) {
-        size_t rows = ny - j < ROWS ? ny - j : ROWS;
-        const double *s = transform_inverse_strip(transform, j, rows);
-        for (size_t i = 0; i < rows * nx; i += POINTS) {
-            size_t n = rows * nx - i < POINTS ? rows * nx - i : POINTS;
-            double *y = z + j * nx + i;
-            if (errors != NULL)
-                height_error_heights_add(errors, n, s + i);
-            if (move.kind == FAST_REFLECTION)
-                reflect(n, s + i, x + j * nx + i, move.first, y);
-            else
-                memcpy(y, s + i, n * sizeof *y);
-            rank_table_count(step->table, n, y);
-        }
+/* One pass of a step over the rows. z, x: one value a point. */
+struct sweep {
+    struct fast_step *step;
+    struct fast_move move;
+    double *z, *x;
+    struct height_error *errors; /* NULL: none are counted */
+};
+
+/* Has row j of an array brought near while the row before it is transformed: two arrays of 1024 x
+ * 1024 points are no longer in cache when their turn comes. */
+static void row_prefetch(const struct sweep *sweep, const double *array, size_t j) {
+    enum { LINE = 8 };
+    const struct grid *grid = &sweep->step->modes->grid;
+    if (j >= grid->ny || grid->nx > PREFETCHED)
+        return;
+    for (size_t i = 0; i < grid->nx; i += LINE)
+        __builtin_prefetch(array + j * grid->nx + i);
+}
+
+/* Computes and counts the keys y of a row s; where errors are given, s itself, too. */
+static void row_count(void *context, size_t j, double *s) {
+    const struct sweep *sweep = context;
+    const size_t nx = sweep->step->modes->grid.nx;
+    const bool reflected = sweep->move.kind == FAST_REFLECTION;
+    for (size_t i = 0; i < nx; i += POINTS) {
+        size_t n = nx - i < POINTS ? nx - i : POINTS;
+        double *y = sweep->z + j * nx + i;
+        if (sweep->errors != NULL)
+            height_error_heights_add(sweep->errors, n, s + i);
+        if (reflected)
+            reflect(n, s + i, sweep->x + j * nx + i, sweep->move.first, y);
+        else
+            memcpy(y, s + i, n * sizeof *y);
+        rank_table_count(sweep->step->table, n, y);
     }
+    if (reflected)
+        row_prefetch(sweep, sweep->x, j + 1);
 }
 
 /* Replaces n heights h by the next iterate, and updates x. s is the mean of x and y. */
@@ -169,31 +190,37 @@ WIDE_VECTORS static void move_points(struct fast_move move, size_t n, const doub
         }
 }
 
-/* From the transform's spectrum of an iterate to that of the next. amplitude: of s, laid out as
- * modes->power. sorted: the heights, rising. z, x: one value a point; z is overwritten by y, and x
- * is kept between steps of a kind. Returns eps_h of s where errors are given, NaN where NULL. */
+/* Fills a row with the next iterate. */
+static void row_move(void *context, size_t j, double *h) {
+    const struct sweep *sweep = context;
+    const size_t nx = sweep->step->modes->grid.nx;
+    for (size_t i = 0; i < nx; i += POINTS) {
+        size_t n = nx - i < POINTS ? nx - i : POINTS;
+        const double *y = sweep->z + j * nx + i;
+        rank_table_order(sweep->step->table, n, y, h + i);
+        move_points(sweep->move, n, y, h + i, sweep->x + j * nx + i);
+    }
+    row_prefetch(sweep, sweep->z, j + 1);
+    row_prefetch(sweep, sweep->x, j + 1);
+}
+
+/* From the rows of an iterate, transformed forward without their columns, to those of the next.
+ * amplitude: of s, laid out as modes->power. sorted: the heights, rising. z, x: one value a point;
+ * z is overwritten by y, and x is kept between steps of a kind. Returns eps_h of s where errors are
+ * given, NaN where NULL. */
 static double fast_step_run(struct fast_step *step, struct transform *transform,
                             const double *amplitude, const double *sorted, struct fast_move move,
                             double *z, double *x, struct height_error *errors) {
-    size_t nx = step->modes->grid.nx, ny = step->modes->grid.ny;
-    amplitudes_impose(step->modes, amplitude, transform_spectrum(transform));
-    transform_inverse_columns(transform);
+    const struct band band = {step->modes, amplitude};
+    transform_change_columns(transform, column_impose, &band);
+    struct sweep sweep = {step, move, z, x, errors};
+    double wider = WIDER * (step->high - step->low);
     if (errors != NULL)
         height_error_heights_start(errors);
-    keys_count(step, transform, move, z, x, errors);
+    rank_table_start(step->table, step->low - wider, step->high + wider);
+    transform_inverse_each(transform, row_count, &sweep);
     rank_table_finish(step->table, sorted, &step->low, &step->high);
-    for (size_t j = 0; j < ny; j += ROWS) {
-        size_t rows = ny - j < ROWS ? ny - j : ROWS;
-        double *h = transform_strip(transform);
-        for (size_t i = 0; i < rows * nx; i += POINTS) {
-            size_t n = rows * nx - i < POINTS ? rows * nx - i : POINTS;
-            const double *y = z + j * nx + i;
-            rank_table_order(step->table, n, y, h + i);
-            move_points(move, n, y, h + i, x + j * nx + i);
-        }
-        transform_forward_strip(transform, j, rows);
-    }
-    transform_forward_columns(transform);
+    transform_forward_each(transform, row_move, &sweep);
     return errors != NULL ? height_error_heights(errors) : (double)NAN;
 }
 
@@ -291,9 +318,9 @@ static int arrays_create(struct nongaussian *g, struct error *err) {
     int status = ranker_create(&g->ranker, g->points, err);
     if (status != 0)
         return status;
-    g->sorted = fftw_alloc_real(g->points);
-    g->h = fftw_alloc_real(g->points);
-    g->x = plain ? NULL : fftw_alloc_real(g->points);
+    g->sorted = array_create(g->points, sizeof *g->sorted);
+    g->h = array_create(g->points, sizeof *g->h);
+    g->x = plain ? NULL : array_create(g->points, sizeof *g->x);
     if (g->sorted == NULL || g->h == NULL || (!plain && g->x == NULL))
         return error_memory(err, g->points * sizeof(double), "heights of one iteration");
     return is_fast(&g->options) ? fast_step_create(&g->fast, g->modes, err) : 0;
@@ -331,9 +358,9 @@ void nongaussian_destroy(struct nongaussian **nongaussian) {
     if (g == NULL)
         return;
     ranker_destroy(&g->ranker);
-    fftw_free(g->sorted);
-    fftw_free(g->h);
-    fftw_free(g->x);
+    free(g->sorted);
+    free(g->h);
+    free(g->x);
     fast_step_destroy(&g->fast);
     height_error_destroy(&g->height_error);
     free(g->amplitude);
@@ -353,7 +380,7 @@ static int spectral_surface(const struct nongaussian *g, struct transform *trans
                             struct error *err) {
     if (is_stopped(g))
         return error_set(err, ERROR_STOPPED, "stopped while a surface was made");
-    amplitudes_impose(g->modes, g->amplitude, transform_spectrum(transform));
+    amplitudes_impose(&(struct band){g->modes, g->amplitude}, transform_spectrum(transform));
     transform_inverse(transform, z);
     return 0;
 }
@@ -473,8 +500,9 @@ static struct fast_move fast_move(enum surface_iteration iteration, size_t numbe
     return (struct fast_move){FAST_MOMENTUM, momentum, number == 0};
 }
 
-/* Iterates until eps_h is within the tolerance, or has not fallen by the share `stall_gain` in
- * `stall_iterations` (END_LIMIT: neither, or not yet known). The opening does not stall. */
+/* From rows transformed forward to rows transformed forward, as a step. Iterates until eps_h is
+ * within the tolerance, or has not fallen by the share `stall_gain` in `stall_iterations`
+ * (END_LIMIT: neither, or not yet known). The opening does not stall. */
 static void fast_phase(struct nongaussian *g, struct transform *transform, double *z, size_t limit,
                        struct surface_report *report) {
     const struct surface_options *options = &g->options;
@@ -510,8 +538,9 @@ static int iterate_fast(struct nongaussian *g, struct transform *transform, doub
                         struct surface_report *report, struct error *err) {
     size_t most = g->options.max_iterations;
     size_t polishing = most < POLISHING ? most : POLISHING;
-    transform_forward(transform, z);
+    transform_forward_rows(transform, 0, g->modes->grid.ny, z);
     fast_phase(g, transform, z, most - polishing, report);
+    transform_forward_columns(transform);
     enum surface_end end = report->end;
     if (end == END_CONVERGED)
         polishing = most - report->iterations;

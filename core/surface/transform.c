@@ -248,27 +248,45 @@ static double scale_of(const struct transform *t) {
 
 /* --- lines of a group of rows, on one thread's desk --- */
 
-/* Computes the lines of rows j .. j + rows - 1, at most a group, from the spectrum. */
-static void inverse_lines(const struct transform *t, const struct desk *desk, size_t j,
-                          size_t rows) {
+/* Gathers the half spectra of rows j .. j + rows - 1, at most a group. */
+static void rows_gather(const struct transform *t, const struct desk *desk, size_t j, size_t rows) {
     for (size_t row = 0; row < rows; row++)
         memset(desk->rows + row * t->half + t->columns, 0,
                (t->half - t->columns) * sizeof *desk->rows);
     for (size_t i = 0; i < t->columns; i++)
         for (size_t row = 0; row < rows; row++)
             desk->rows[row * t->half + i] = t->spectrum[i * t->ny + j + row];
+}
+
+static void rows_scatter(const struct transform *t, const struct desk *desk, size_t j, size_t rows,
+                         double scale) {
+    for (size_t i = 0; i < t->columns; i++)
+        for (size_t row = 0; row < rows; row++)
+            t->spectrum[i * t->ny + j + row] = scale * desk->rows[row * t->half + i];
+}
+
+/* Transforms a batch of the half spectra of a desk into lines, from this row on, or back. */
+static void batch_inverse(const struct transform *t, const struct desk *desk, size_t row) {
+    fftw_execute_dft_c2r(t->row_inverse, desk->rows + row * t->half, desk->lines + row * t->nx);
+}
+static void batch_forward(const struct transform *t, const struct desk *desk, size_t row) {
+    fftw_execute_dft_r2c(t->row_forward, desk->lines + row * t->nx, desk->rows + row * t->half);
+}
+
+/* Computes the lines of rows j .. j + rows - 1, at most a group, from the spectrum. */
+static void inverse_lines(const struct transform *t, const struct desk *desk, size_t j,
+                          size_t rows) {
+    rows_gather(t, desk, j, rows);
     for (size_t row = 0; row < rows; row += t->batch)
-        fftw_execute_dft_c2r(t->row_inverse, desk->rows + row * t->half, desk->lines + row * t->nx);
+        batch_inverse(t, desk, row);
 }
 
 /* Transforms the lines as rows j .. j + rows - 1, at most a group, into the spectrum. */
 static void forward_lines(const struct transform *t, const struct desk *desk, size_t j, size_t rows,
                           double scale) {
     for (size_t row = 0; row < rows; row += t->batch)
-        fftw_execute_dft_r2c(t->row_forward, desk->lines + row * t->nx, desk->rows + row * t->half);
-    for (size_t i = 0; i < t->columns; i++)
-        for (size_t row = 0; row < rows; row++)
-            t->spectrum[i * t->ny + j + row] = scale * desk->rows[row * t->half + i];
+        batch_forward(t, desk, row);
+    rows_scatter(t, desk, j, rows, scale);
 }
 
 /* --- rows and columns of a field, shared by the team --- */
@@ -346,17 +364,66 @@ void transform_inverse_columns(struct transform *t) {
     columns_transform(t, t->column_inverse, inverse_columns);
 }
 
+/* What becomes of columns between their transforms. */
+struct changed {
+    struct transform *transform;
+    transform_change *change;
+    const void *context;
+};
+
+static void change_columns(void *context, size_t first, size_t end, size_t thread) {
+    const struct changed *c = context;
+    const struct transform *t = c->transform;
+    double complex *line = t->desks[thread].line;
+    for (size_t i = first; i < end; i++) {
+        double complex *column = t->spectrum + i * t->ny;
+        fftw_execute_dft(t->one_forward, column, line);
+        c->change(c->context, i, line);
+        fftw_execute_dft(t->one_inverse, line, column);
+    }
+}
+
+void transform_change_columns(struct transform *t, transform_change *change, const void *context) {
+    struct changed changed = {t, change, context};
+    if (t->ny > 1 && t->column_forward == NULL) {
+        team_share_ranges(t->team, t->columns, SHARE, change_columns, &changed);
+        return;
+    }
+    transform_forward_columns(t);
+    for (size_t i = 0; i < t->columns; i++)
+        change(context, i, t->spectrum + i * t->ny);
+    transform_inverse_columns(t);
+}
+
 double *transform_inverse_strip(struct transform *t, size_t first, size_t count) {
     inverse_lines(t, t->desks, first, count);
     return t->desks->lines;
 }
 
-double *transform_strip(struct transform *t) {
-    return t->desks->lines;
+void transform_inverse_each(struct transform *t, transform_row *row, void *context) {
+    const struct desk *desk = t->desks;
+    for (size_t j = 0; j < t->ny; j += t->group) {
+        size_t rows = least(t->ny - j, t->group);
+        rows_gather(t, desk, j, rows);
+        for (size_t r = 0; r < rows; r++) {
+            if (r % t->batch == 0)
+                batch_inverse(t, desk, r);
+            row(context, j + r, desk->lines + r * t->nx);
+        }
+    }
 }
 
-void transform_forward_strip(struct transform *t, size_t first, size_t count) {
-    forward_lines(t, t->desks, first, count, scale_of(t));
+void transform_forward_each(struct transform *t, transform_row *row, void *context) {
+    const struct desk *desk = t->desks;
+    for (size_t j = 0; j < t->ny; j += t->group) {
+        size_t rows = least(t->ny - j, t->group);
+        for (size_t r = 0; r < rows; r++) {
+            row(context, j + r, desk->lines + r * t->nx);
+            if ((r + 1) % t->batch == 0 || r + 1 == rows)
+                batch_forward(t, desk, r - r % t->batch);
+        }
+        rows_scatter(t, desk, j, rows, scale_of(t));
+    }
 }
 
 void transform_inverse_rows(struct transform *t, size_t first, size_t count, double *z) {

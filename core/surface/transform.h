@@ -45,10 +45,12 @@ void transform_inverse_rows(struct transform *transform, size_t first, size_t co
  * caller may change until the plan is used again. */
 enum { TRANSFORM_ROWS = 8 };
 double *transform_inverse_strip(struct transform *transform, size_t first, size_t count);
-/* As transform_forward_rows, of at most TRANSFORM_ROWS rows that the caller has put into memory of
- * the plan, which transform_strip() returns. */
-double *transform_strip(struct transform *transform);
-void transform_forward_strip(struct transform *transform, size_t first, size_t count);
+/* As transform_inverse_rows, of all rows on this thread, each of which `row` is given in cache and
+ * may change. */
+typedef void transform_row(void *context, size_t j, double *line);
+void transform_inverse_each(struct transform *transform, transform_row *row, void *context);
+/* As transform_forward_rows, of all rows on this thread, each of which `row` fills. */
+void transform_forward_each(struct transform *transform, transform_row *row, void *context);
 /* Copies the spectrum of `from` into that of `to`, which has the same band and another grid: zero
  * padding. A Nyquist mode of an even grid stands for two modes of a finer one, each of half its
  * amplitude. */
@@ -60,6 +62,13 @@ void transform_forward(struct transform *transform, const double *z);
 void transform_forward_rows(struct transform *transform, size_t first, size_t count,
                             const double *z);
 void transform_forward_columns(struct transform *transform);
+/* Between transform_forward_rows() and transform_inverse_rows(): transforms each column, of ny
+ * values, hands it to `change` with its mx, and transforms it back while it is in cache. The same
+ * digits as by transform_forward_columns(), the change, and transform_inverse_columns(). `change`
+ * may be called from any thread of the team. */
+typedef void transform_change(const void *context, size_t mx, double complex *column);
+void transform_change_columns(struct transform *transform, transform_change *change,
+                              const void *context);
 /* out = the real field whose spectrum is factor * symbol * that of in (symbol real and even, one
  * value a wave of the half spectrum): forward, product and inverse with each column in cache.
  * Needs the whole band in y; in and out may be the same. */

@@ -12,6 +12,12 @@ static int curve_create(struct map_curve *out, size_t count, const char *what, s
     return 0;
 }
 
+/* Fills a curve that is not measured with NaN. */
+static void curve_leave_out(struct map_curve *curve) {
+    for (size_t n = 0; n < curve->count; n++)
+        curve->x[n] = curve->y[n] = (double)NAN;
+}
+
 void map_characterisation_clear(struct map_characterisation *characterisation) {
     map_spectra_clear(&characterisation->spectra);
     free(characterisation->correlation.x);
@@ -22,12 +28,15 @@ void map_characterisation_clear(struct map_characterisation *characterisation) {
 /* --- heights --- */
 
 static int measure_quantiles(struct map_curve *out, const struct measured_map *map, size_t heights,
-                             struct error *err) {
+                             enum map_extent extent, struct error *err) {
     size_t count = height_quantiles_count(heights);
     if (count == 0)
         return 0;
     int status = curve_create(out, count, "quantiles of the heights", err);
-    return status == 0 ? height_quantiles_measure(map, heights, out->x, out->y, err) : status;
+    if (status != 0 || extent == MAP_WHOLE)
+        return status == 0 ? height_quantiles_measure(map, heights, out->x, out->y, err) : status;
+    curve_leave_out(out);
+    return 0;
 }
 
 static void count_heights(struct map_histogram *out, const struct measured_map *map) {
@@ -91,11 +100,16 @@ static int measure_hill_errors(struct map_characterisation *out, const struct me
 }
 
 static int measure_areal(struct map_characterisation *out, const struct measured_map *map,
-                         const struct map_chance *chance, struct error *err) {
+                         const struct map_chance *chance, enum map_extent extent,
+                         struct error *err) {
     struct summit_list hills = {0};
     struct roughness roughness = out->parameters.roughness;
     if (map->boundary != BOUNDARY_OPEN)
         open_roughness_measure(map, &roughness);
+    if (extent == MAP_MAIN) {
+        areal_measure_heights(map, &roughness, chance->correlation, &out->areal);
+        return map_functional_measure_strata(&out->functional, map, err);
+    }
     int status = areal_measure(map, &roughness, chance->correlation, &hills, &out->areal, err);
     if (status == 0)
         status = map_functional_measure(&out->functional, map, &hills, out->areal.sz, chance, err);
@@ -123,6 +137,7 @@ struct common {
     const struct map_chance *chance;
     struct map_spectrum *spectrum;   /* owned; NULL for a profile under a window */
     struct cell_differences nearest; /* at a lag of one point */
+    enum map_extent extent;
 };
 
 static void measure_chance(struct map_characterisation *out, const struct common *common) {
@@ -146,19 +161,22 @@ static void measure_chance(struct map_characterisation *out, const struct common
 /* --- all --- */
 
 static int measure_correlation(struct map_curve *out, const struct correlation *correlation,
-                               struct error *err) {
+                               enum map_extent extent, struct error *err) {
     int status = curve_create(out, correlation_rings(correlation), "an autocorrelation", err);
-    if (status == 0)
+    if (status == 0 && extent == MAP_WHOLE)
         correlation_radial(correlation, out->x, out->y);
+    else if (status == 0)
+        curve_leave_out(out);
     return status;
 }
 
 static int measure_spectra(struct map_characterisation *out, const struct measured_map *map,
                            const struct map_spectrum *spectrum,
                            const struct map_directions *directions, bool under_window,
-                           const struct spectrum_fit_request *trusted, struct error *err) {
-    int status =
-        map_spectra_measure(&out->spectra, map, spectrum, directions, under_window, trusted, err);
+                           const struct spectrum_fit_request *trusted, enum map_extent extent,
+                           struct error *err) {
+    int status = map_spectra_measure(&out->spectra, map, spectrum, directions, under_window,
+                                     trusted, extent, err);
     bool taken = out->spectra.has_fit && out->spectra.fit.to_end == SPECTRUM_END_LOW_PASS;
     if (status == 0 && taken && out->height_fits.best != HEIGHTS_GAUSSIAN)
         status = map_spectra_measure_scores(&out->spectra, map, directions, trusted, err);
@@ -168,7 +186,8 @@ static int measure_spectra(struct map_characterisation *out, const struct measur
 /* Measures the spectra of what is left of a map without its grooves, which would be peaks in them.
  */
 static int measure_rest(struct map_characterisation *out, const struct measured_map *map,
-                        const struct spectrum_fit_request *trusted, struct error *err) {
+                        const struct spectrum_fit_request *trusted, enum map_extent extent,
+                        struct error *err) {
     const size_t points = grid_points(map->grid);
     struct map_directions directions = {.p_value = 1};
     struct map_spectrum *spectrum = NULL;
@@ -185,7 +204,7 @@ static int measure_rest(struct map_characterisation *out, const struct measured_
     if (status == 0 && !grid_is_profile(map->grid))
         status = map_directions_find(&directions, &rest, spectrum, err);
     if (status == 0)
-        status = measure_spectra(out, &rest, spectrum, &directions, false, trusted, err);
+        status = measure_spectra(out, &rest, spectrum, &directions, false, trusted, extent, err);
     map_spectrum_destroy(&spectrum);
     free(z);
     return status;
@@ -202,36 +221,47 @@ static int measure_common(struct map_characterisation *out, struct common *commo
     }
     cell_differences_measure(map, &common->chance->modes, 1, &common->nearest);
     measure_chance(out, common);
-    count_heights(&out->histogram, map);
-    map_scales_measure(&out->scales, map, common->chance, &common->nearest);
+    if (common->extent == MAP_WHOLE) {
+        count_heights(&out->histogram, map);
+        map_scales_measure(&out->scales, map, common->chance, &common->nearest);
+    }
     out->rest_height = (double)NAN;
     int status = under_window ? 0 : map_grooves_find(&out->grooves, map, err);
     if (status == 0 && out->grooves.families > 0)
-        return measure_rest(out, map, trusted, err);
+        return measure_rest(out, map, trusted, common->extent, err);
     return status == 0 ? measure_spectra(out, map, common->spectrum, &out->directions, under_window,
-                                         trusted, err)
+                                         trusted, common->extent, err)
                        : status;
+}
+
+static int measure_profile(struct map_characterisation *out, const struct measured_map *map,
+                           const struct map_chance *chance, enum map_extent extent,
+                           struct error *err) {
+    return extent == MAP_WHOLE ? map_functional_measure(&out->functional, map, NULL, 0, chance, err)
+                               : map_functional_measure_strata(&out->functional, map, err);
 }
 
 static int measure(struct map_characterisation *out, const struct measured_map *map,
                    const struct map_chance *chance, bool under_window,
-                   const struct spectrum_fit_request *trusted, struct error *err) {
-    struct common common = {.map = map, .chance = chance};
+                   const struct spectrum_fit_request *trusted, enum map_extent extent,
+                   struct error *err) {
+    struct common common = {.map = map, .chance = chance, .extent = extent};
     int status = map_parameters_measure(&out->parameters, map, map->grid->nx / 2, map->grid->ny / 2,
-                                        chance, err);
+                                        chance, extent, err);
     if (status == 0)
-        status = grid_is_profile(map->grid)
-                     ? map_functional_measure(&out->functional, map, NULL, 0, chance, err)
-                     : measure_areal(out, map, chance, err);
+        status = grid_is_profile(map->grid) ? measure_profile(out, map, chance, extent, err)
+                                            : measure_areal(out, map, chance, extent, err);
     if (status == 0)
         status = measure_common(out, &common, under_window, trusted, err);
     map_spectrum_destroy(&common.spectrum);
-    return status == 0 ? measure_correlation(&out->correlation, chance->correlation, err) : status;
+    return status == 0 ? measure_correlation(&out->correlation, chance->correlation, extent, err)
+                       : status;
 }
 
 int map_characterise(struct map_characterisation *out, const struct height_map *map,
                      const struct preparation_record *record,
-                     const struct spectrum_fit_request *trusted, struct error *err) {
+                     const struct spectrum_fit_request *trusted, enum map_extent extent,
+                     struct error *err) {
     const struct measured_map measured = {&map->grid, map->z, record->boundary};
     const bool under_window = record->window_power < 1;
     struct map_chance *chance = NULL;
@@ -240,8 +270,9 @@ int map_characterise(struct map_characterisation *out, const struct height_map *
         return status;
     if (under_window)
         map_chance_forgo(chance, "none: the map is under a window");
-    status = measure(out, &measured, chance, under_window, trusted, err);
+    status = measure(out, &measured, chance, under_window, trusted, extent, err);
     map_chance_destroy(&chance);
     size_t heights = grid_points(&map->grid) - height_map_holes(map);
-    return status == 0 ? measure_quantiles(&out->quantiles, &measured, heights, err) : status;
+    return status == 0 ? measure_quantiles(&out->quantiles, &measured, heights, extent, err)
+                       : status;
 }

@@ -8,6 +8,7 @@
 #include "core/statistics/heights/height_fit.h"
 #include "core/statistics/uncertainty/map_directions.h"
 #include "core/statistics/uncertainty/stationarity.h"
+#include "jobs/maps/map_extent.h"
 #include "jobs/maps/map_functional.h"
 #include "jobs/maps/map_parameters.h"
 #include "jobs/maps/map_scales.h"
@@ -62,7 +63,8 @@ struct map_characterisation {
  * {0} where they follow from the map. ERROR_INPUT where these leave no wave; ERROR_MEMORY. */
 int map_characterise(struct map_characterisation *out, const struct height_map *map,
                      const struct preparation_record *record,
-                     const struct spectrum_fit_request *trusted, struct error *err);
+                     const struct spectrum_fit_request *trusted, enum map_extent extent,
+                     struct error *err);
 void map_characterisation_clear(struct map_characterisation *characterisation);
 
 /* The distribution that fits the heights best, ready to be drawn. */

@@ -24,5 +24,8 @@ struct map_functional {
 int map_functional_measure(struct map_functional *out, const struct measured_map *map,
                            const struct summit_list *hills, double sz,
                            const struct map_chance *chance, struct error *err);
+/* Fits the plateau law alone; all else is NaN, and there are no hills or elements. ERROR_MEMORY. */
+int map_functional_measure_strata(struct map_functional *out, const struct measured_map *map,
+                                  struct error *err);
 
 #endif

@@ -4,6 +4,8 @@
 #include "core/statistics/summits/open_summits.h"
 #include <math.h>
 
+#define NONE ((double)NAN)
+
 /* searched: the area, or length, that they were found in. */
 static void average(struct map_summits *out, double searched, const struct summit_list *list) {
     double n = (double)list->count, height = 0, variance = 0, curvature = 0;
@@ -60,7 +62,8 @@ int map_summits_find(const struct measured_map *map, enum summit_stencil stencil
 }
 
 static int find_summits(struct map_parameters *out, const struct measured_map *map, size_t mode_x,
-                        size_t mode_y, const struct map_chance *chance, struct error *err) {
+                        size_t mode_y, const struct map_chance *chance, enum map_extent extent,
+                        struct error *err) {
     const bool open = map->boundary == BOUNDARY_OPEN;
     struct summit_list list = {0};
     int status = 0;
@@ -72,6 +75,11 @@ static int find_summits(struct map_parameters *out, const struct measured_map *m
         out->summits[s] = (struct map_summits){.sought = false};
         if (grid_is_profile(map->grid) && s == SUMMITS_FIVE_POINT)
             continue;
+        if (extent == MAP_MAIN && s != SUMMITS_NINE_POINT) {
+            out->summits[s] =
+                (struct map_summits){true, NONE, NONE, NONE, NONE, NONE, .has_errors = false};
+            continue;
+        }
         status = map_summits_find(map, s, mode_x, mode_y, &list, &searched, err);
         if (status == 0) {
             average(&out->summits[s], searched, &list);
@@ -82,16 +90,27 @@ static int find_summits(struct map_parameters *out, const struct measured_map *m
     return status;
 }
 
+static const struct moments NO_MOMENTS = {.m0 = NONE,
+                                          .m2 = NONE,
+                                          .m4 = NONE,
+                                          .nayak_alpha = NONE,
+                                          .rms_height = NONE,
+                                          .rms_slope = NONE,
+                                          .rms_curvature = NONE};
+
 int map_parameters_measure(struct map_parameters *out, const struct measured_map *map,
                            size_t mode_x, size_t mode_y, const struct map_chance *chance,
-                           struct error *err) {
+                           enum map_extent extent, struct error *err) {
     const bool open = map->boundary == BOUNDARY_OPEN;
     out->grid = *map->grid;
     out->boundary = map->boundary;
-    int status = open ? local_moments_measure(map, &out->moments, err)
+    out->moments = NO_MOMENTS;
+    int status = 0;
+    if (extent == MAP_WHOLE)
+        status = open ? local_moments_measure(map, &out->moments, err)
                       : roughness_spectral(map->grid, map->z, &out->moments, err);
     if (status != 0)
         return status;
     map_roughness_measure(map, &out->roughness);
-    return find_summits(out, map, mode_x, mode_y, chance, err);
+    return find_summits(out, map, mode_x, mode_y, chance, extent, err);
 }

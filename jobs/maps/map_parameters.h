@@ -6,6 +6,7 @@
 #include "core/statistics/summits/summits.h"
 #include "core/statistics/uncertainty/map_chance.h"
 #include "core/statistics/uncertainty/scalar_errors.h"
+#include "jobs/maps/map_extent.h"
 
 enum { MAP_STENCILS = SUMMITS_REFINED + 1 };
 
@@ -30,7 +31,7 @@ struct map_parameters {
  * undefined after a failure: ERROR_MEMORY. */
 int map_parameters_measure(struct map_parameters *out, const struct measured_map *map,
                            size_t mode_x, size_t mode_y, const struct map_chance *chance,
-                           struct error *err);
+                           enum map_extent extent, struct error *err);
 /* Replaces the contents of list by the summits of a map, and sets *searched to the area, of a
  * profile the length, where they were sought; modes as above. */
 int map_summits_find(const struct measured_map *map, enum summit_stencil stencil, size_t mode_x,

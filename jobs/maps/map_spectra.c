@@ -18,6 +18,14 @@ static int density_create(struct map_density *out, size_t count, struct error *e
     return 0;
 }
 
+/* Fills densities that are not measured with NaN. */
+static int density_leave_out(struct map_density *out, size_t count, struct error *err) {
+    int status = count > 0 ? density_create(out, count, err) : 0;
+    for (size_t n = 0; n < 5 * out->count && status == 0; n++)
+        out->wave_number[n] = (double)NAN;
+    return status;
+}
+
 void map_spectra_clear(struct map_spectra *spectra) {
     free(spectra->rings.wave_number);
     free(spectra->line[0].wave_number);
@@ -31,6 +39,14 @@ static void fill_law(struct map_density *rings, const struct spectrum_fit *fit) 
         double density = r > 0 ? spectrum_fit_density(fit, rings->wave_number[r]) : 0;
         rings->law[r] = density > 0 ? density : (double)NAN;
     }
+}
+
+static int leave_out(struct map_spectra *out, const struct measured_map *map,
+                     const struct map_spectrum *spectrum, struct error *err) {
+    int status = density_leave_out(&out->rings, radial_bins(map->grid), err);
+    for (int axis = 0; axis < 2 && status == 0 && spectrum != NULL; axis++)
+        status = density_leave_out(&out->line[axis], line_psd_count(spectrum, axis), err);
+    return status;
 }
 
 static int measure_rings(struct map_spectra *out, const struct map_spectrum *spectrum,
@@ -60,6 +76,14 @@ static int measure_line(struct map_density *out, const struct map_spectrum *spec
     line_psd_measure(spectrum, axis, out->wave_number, out->density, out->low, out->high);
     out->law = NULL;
     return 0;
+}
+
+static int measure_densities(struct map_spectra *out, const struct map_spectrum *spectrum,
+                             struct error *err) {
+    int status = measure_rings(out, spectrum, err);
+    for (int axis = 0; axis < 2 && status == 0; axis++)
+        status = measure_line(&out->line[axis], spectrum, axis, err);
+    return status;
 }
 
 /* The density of a map under a window of its own. */
@@ -107,14 +131,15 @@ static int law_fit(const struct measured_map *map, const struct map_spectrum *sp
 int map_spectra_measure(struct map_spectra *out, const struct measured_map *map,
                         const struct map_spectrum *spectrum,
                         const struct map_directions *directions, bool under_window,
-                        const struct spectrum_fit_request *request, struct error *err) {
+                        const struct spectrum_fit_request *request, enum map_extent extent,
+                        struct error *err) {
     if (under_window)
-        return measure_plain(&out->rings, map, err);
+        return extent == MAP_WHOLE ? measure_plain(&out->rings, map, err)
+                                   : leave_out(out, map, NULL, err);
     int status = law_fit(map, spectrum, directions, request, &out->fit, err);
     if (status == 0)
-        status = measure_rings(out, spectrum, err);
-    for (int axis = 0; axis < 2 && status == 0; axis++)
-        status = measure_line(&out->line[axis], spectrum, axis, err);
+        status = extent == MAP_WHOLE ? measure_densities(out, spectrum, err)
+                                     : leave_out(out, map, spectrum, err);
     out->has_fit = status == 0;
     return status;
 }

@@ -4,6 +4,7 @@
 
 #include "core/statistics/spectra/spectrum_fit.h"
 #include "core/statistics/uncertainty/map_directions.h"
+#include "jobs/maps/map_extent.h"
 
 /* One density; all arrays have `count` values and are owned by wave_number. */
 struct map_density {
@@ -23,11 +24,13 @@ struct map_spectra {
 };
 /* Measures a map; directions: of surfaces alone. *out is {0} at first, and the caller's to clear in
  * any case. A map under a window of its own has neither bands nor a law, since its waves scatter
- * otherwise. ERROR_INPUT where the request leaves no wave; ERROR_MEMORY. */
+ * otherwise. Of MAP_MAIN the densities are NaN. ERROR_INPUT where the request leaves no wave;
+ * ERROR_MEMORY. */
 int map_spectra_measure(struct map_spectra *out, const struct measured_map *map,
                         const struct map_spectrum *spectrum,
                         const struct map_directions *directions, bool under_window,
-                        const struct spectrum_fit_request *request, struct error *err);
+                        const struct spectrum_fit_request *request, enum map_extent extent,
+                        struct error *err);
 /* Looks whether the normal scores (F18.46) have a sharp end at short waves, where skewed heights
  * fall off, and fits the law to their waves before it. */
 int map_spectra_measure_scores(struct map_spectra *out, const struct measured_map *map,

@@ -50,16 +50,11 @@ static double developed_area(const struct measured_map *map) {
     return lane_mean_value(&area);
 }
 
-int areal_measure(const struct measured_map *map, const struct roughness *roughness,
-                  const struct correlation *correlation, struct summit_list *list,
-                  struct areal *out, struct error *err) {
-    struct hills hills;
+void areal_measure_heights(const struct measured_map *map, const struct roughness *roughness,
+                           const struct correlation *correlation, struct areal *out) {
     double shortest, longest;
     double highest = roughness->highest - roughness->mean;
     double lowest = roughness->mean - roughness->lowest;
-    int status = hills_find(map, PRUNED_SHARE * (highest + lowest), list, &hills, err);
-    if (status != 0)
-        return status;
     correlation_lengths(correlation, CORRELATION_LEVEL, &shortest, &longest);
     *out = (struct areal){.sa = mean_size(map, roughness->mean),
                           .sq = roughness->rms_height,
@@ -72,7 +67,19 @@ int areal_measure(const struct measured_map *map, const struct roughness *roughn
                           .sdr = developed_area(map),
                           .sal = shortest,
                           .str = shortest / longest,
-                          .spd = hills.density,
-                          .spc = hills.curvature};
+                          .spd = (double)NAN,
+                          .spc = (double)NAN};
+}
+
+int areal_measure(const struct measured_map *map, const struct roughness *roughness,
+                  const struct correlation *correlation, struct summit_list *list,
+                  struct areal *out, struct error *err) {
+    struct hills hills;
+    areal_measure_heights(map, roughness, correlation, out);
+    int status = hills_find(map, PRUNED_SHARE * out->sz, list, &hills, err);
+    if (status != 0)
+        return status;
+    out->spd = hills.density;
+    out->spc = hills.curvature;
     return 0;
 }

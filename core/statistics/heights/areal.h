@@ -21,5 +21,8 @@ struct areal {
 int areal_measure(const struct measured_map *map, const struct roughness *roughness,
                   const struct correlation *correlation, struct summit_list *list,
                   struct areal *out, struct error *err);
+/* The same without hills, whose values are NaN. */
+void areal_measure_heights(const struct measured_map *map, const struct roughness *roughness,
+                           const struct correlation *correlation, struct areal *out);
 
 #endif

@@ -117,11 +117,15 @@ static size_t sheet_at(const struct sheet *sheet, long mx, long my) {
 /* Adds the correlations of one mode with those nearby to the covariance of their rings. */
 static void mode_correlate(struct map_spectrum *s, const struct sheet *sheet, size_t mx, long my,
                            long reach_x, long reach_y) {
-    size_t at = sheet_at(sheet, (long)mx, my), r = sheet->ring[at];
+    const size_t ny = sheet->ny, row = (size_t)(my - sheet->lowest_y);
+    const size_t at = mx * ny + row, r = sheet->ring[at];
+    const bool inside = mx >= (size_t)reach_x && mx + (size_t)reach_x < sheet->nx &&
+                        row >= (size_t)reach_y && row + (size_t)reach_y < ny;
     double weight = images(sheet, mx, my) * sheet->weight[at];
     for (long dx = -reach_x; dx <= reach_x; dx++)
         for (long dy = -reach_y; dy <= reach_y; dy++) {
-            size_t beside = sheet_at(sheet, (long)mx + dx, my + dy);
+            size_t beside = inside ? (size_t)((long)at + dx * (long)ny + dy)
+                                   : sheet_at(sheet, (long)mx + dx, my + dy);
             if (beside == sheet->nx * sheet->ny || sheet->ring[beside] < r ||
                 sheet->ring[beside] >= s->rings || sheet->ring[beside] - r >= RING_REACH)
                 continue;

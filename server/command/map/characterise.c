@@ -222,6 +222,13 @@ static int wavelength_read(double *out, const char *option, const char *text,
     return 0;
 }
 
+/* One screen shows the main values alone. */
+static enum map_extent extent_of(const struct characterise_options *options) {
+    const bool screen = options->format == FORMAT_TEXT && !options->all && options->group == NULL &&
+                        options->report == NULL;
+    return screen ? MAP_MAIN : MAP_WHOLE;
+}
+
 static int characterise(struct map_characterisation *measured, struct named_values *found,
                         const struct height_map *map, const struct preparation_record *record,
                         const struct characterise_options *options, struct error *err) {
@@ -230,7 +237,7 @@ static int characterise(struct map_characterisation *measured, struct named_valu
     if (status == 0)
         status = wavelength_read(&trusted.shortest, "trust-to", options->trust_to, map, err);
     if (status == 0)
-        status = map_characterise(measured, map, record, &trusted, err);
+        status = map_characterise(measured, map, record, &trusted, extent_of(options), err);
     return status == 0 ? map_report_fill(found, measured, map, record, err) : status;
 }
 

@@ -197,7 +197,7 @@ static int characterise(const struct generate_order *order, const struct surface
     const struct measured_map map = {&surface->grid, z, BOUNDARY_PERIODIC};
     struct map_parameters parameters;
     struct named_values values = {0};
-    int status = map_parameters_measure(&parameters, &map, band.x, band.y, NULL, err);
+    int status = map_parameters_measure(&parameters, &map, band.x, band.y, NULL, MAP_WHOLE, err);
     if (status != 0)
         return status;
     map_report_parameters(&values, &parameters);

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -83,6 +84,65 @@ static void rows_one_by_one_are_the_whole(void **state) {
 
 /* A Nyquist mode of the coarse grid becomes two halves on the finer one: the same heights at common
  * points. */
+/* Halves the odd rows of every second column. */
+static void halve(const void *context, size_t mx, double complex *column) {
+    const struct grid *grid = context;
+    for (size_t row = 0; row < grid->ny; row++)
+        if (mx % 2 == 1 && row % 2 == 1)
+            column[row] /= 2;
+}
+
+struct field {
+    const struct grid *grid;
+    double *z;
+};
+
+static void row_give(void *context, size_t j, double *line) {
+    const struct field *field = context;
+    memcpy(line, field->z + j * field->grid->nx, field->grid->nx * sizeof *line);
+}
+
+static void row_take(void *context, size_t j, double *line) {
+    const struct field *field = context;
+    memcpy(field->z + j * field->grid->nx, line, field->grid->nx * sizeof *line);
+    line[0] = 1e300; /* the line is the caller's: no other one holds it */
+}
+
+/* Columns that stay in cache between their transforms, and rows that are handed over one by one,
+ * have the digits of whole transforms: of short sides, which are planned together, and of long
+ * ones. */
+static void what_stays_in_cache_is_the_same(void **state) {
+    (void)state;
+    static const struct grid MORE[] = {{16, 12, 1, 1}, {15, 9, 1, 1},   {32, 1, 1, 1},
+                                       {40, 19, 1, 1}, {300, 21, 1, 1}, {24, 300, 1, 1},
+                                       {257, 5, 1, 1}, {272, 288, 1, 1}};
+    uint64_t seed = seed_or(7);
+    for (size_t g = 0; g < sizeof MORE / sizeof *MORE; g++) {
+        const struct grid *grid = &MORE[g];
+        const size_t points = grid_points(grid), mode_x = grid->nx / 3, mode_y = grid->ny / 2;
+        struct transform *whole = NULL, *parts = NULL;
+        double *z = malloc(points * sizeof *z), *same = malloc(points * sizeof *same);
+        assert_non_null(z);
+        assert_non_null(same);
+        for (size_t p = 0; p < points; p++)
+            same[p] = z[p] = noise(&seed);
+        assert_int_equal(transform_create(&whole, grid, mode_x, mode_y, NULL), 0);
+        assert_int_equal(transform_create(&parts, grid, mode_x, mode_y, NULL), 0);
+        transform_forward(whole, z);
+        for (size_t mx = 0; mx <= mode_x; mx++)
+            halve(grid, mx, transform_spectrum(whole) + mx * grid->ny);
+        transform_inverse(whole, z);
+        transform_forward_each(parts, row_give, &(struct field){grid, same});
+        transform_change_columns(parts, halve, grid);
+        transform_inverse_each(parts, row_take, &(struct field){grid, same});
+        assert_memory_equal(z, same, points * sizeof *z);
+        free(z);
+        free(same);
+        transform_destroy(&whole);
+        transform_destroy(&parts);
+    }
+}
+
 static void padding_keeps_the_surface(void **state) {
     (void)state;
     const struct grid coarse = {8, 6, 1, 1}, fine = {24, 18, 1, 1};
@@ -154,6 +214,7 @@ int main(void) {
         cmocka_unit_test(little_memory_is_an_error),
         cmocka_unit_test(forward_is_the_sum),
         cmocka_unit_test(rows_one_by_one_are_the_whole),
+        cmocka_unit_test(what_stays_in_cache_is_the_same),
         cmocka_unit_test(padding_keeps_the_surface),
         cmocka_unit_test(bands_beyond_the_grid_are_refused),
     };

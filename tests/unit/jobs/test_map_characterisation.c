@@ -18,7 +18,7 @@ static int characterise(struct map_characterisation *out, double *z, bool profil
     const struct preparation_record record = {.boundary = BOUNDARY_OPEN,
                                               .window_power = window_power};
     *out = (struct map_characterisation){0};
-    return map_characterise(out, &map, &record, trusted, err);
+    return map_characterise(out, &map, &record, trusted, MAP_WHOLE, err);
 }
 
 static void noise_is_alike_everywhere(void **state) {

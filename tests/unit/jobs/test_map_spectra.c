@@ -62,7 +62,7 @@ static void characterise(struct map_characterisation *found, struct height_map *
     const struct preparation_record record = {.boundary = BOUNDARY_OPEN, .window_power = 1};
     const struct spectrum_fit_request all = {0};
     *found = (struct map_characterisation){0};
-    assert_int_equal(map_characterise(found, map, &record, &all, NULL), 0);
+    assert_int_equal(map_characterise(found, map, &record, &all, MAP_WHOLE, NULL), 0);
     height_map_clear(map);
 }
 

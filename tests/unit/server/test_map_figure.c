@@ -42,7 +42,7 @@ static void draw(struct page *page) {
     size_t size = 0;
     assert_int_equal(preparation_run(&page->record, &page->map, &page->asked, &err), 0);
     assert_int_equal(map_characterise(&page->measured, &page->map, &page->record,
-                                      &(struct spectrum_fit_request){0}, &err),
+                                      &(struct spectrum_fit_request){0}, MAP_WHOLE, &err),
                      0);
     assert_int_equal(
         map_report_fill(&page->found, &page->measured, &page->map, &page->record, &err), 0);

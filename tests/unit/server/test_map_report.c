@@ -16,7 +16,8 @@ static void report(double *z, struct map_characterisation *measured, struct name
         .boundary = BOUNDARY_OPEN, .boundary_by = "option", .window_power = 1};
     struct error err = {0};
     *measured = (struct map_characterisation){0};
-    if (map_characterise(measured, &map, &record, &(struct spectrum_fit_request){0}, &err) != 0 ||
+    if (map_characterise(measured, &map, &record, &(struct spectrum_fit_request){0}, MAP_WHOLE,
+                         &err) != 0 ||
         map_report_fill(found, measured, &map, &record, &err) != 0)
         fail_msg("%s", err.text);
 }

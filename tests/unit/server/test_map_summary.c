@@ -1,6 +1,7 @@
 /* Protects: what `characterise` prints of a map is one screen, also where all that can be wrong
  * with a map is wrong with it; its sentences follow from the values; what an instrument left is
- * named and marks what holds it; and it has no mean of 1e-18.
+ * named and marks what holds it; and it has no mean of 1e-18. What the screen does not show need
+ * not be measured for it.
  */
 #include "core/surface/surface.h"
 #include "server/show/map/map_report.h"
@@ -17,16 +18,15 @@ static double z[POINTS];
 static struct map_characterisation measured;
 static struct named_values found;
 
-/* Characterises the heights; the caller frees the text. */
-static char *summary_of(const struct preparation_record *record) {
-    const struct height_map map = {
-        .grid = {SIDE, SIDE, 128e-6, 128e-6}, .z = z, .xy_unit = "m", .z_unit = "m"};
-    const struct map_figure figure = {&measured, &found, &map, record};
+static char *summary_measured(const struct height_map *map, const struct preparation_record *record,
+                              enum map_extent extent) {
+    const struct map_figure figure = {&measured, &found, map, record};
     struct error err = {0};
     char *text = NULL;
     size_t size = 0;
-    if (map_characterise(&measured, &map, record, &(struct spectrum_fit_request){0}, &err) != 0 ||
-        map_report_fill(&found, &measured, &map, record, &err) != 0)
+    if (map_characterise(&measured, map, record, &(struct spectrum_fit_request){0}, extent, &err) !=
+            0 ||
+        map_report_fill(&found, &measured, map, record, &err) != 0)
         fail_msg("%s", err.text);
     FILE *file = open_memstream(&text, &size);
     assert_non_null(file);
@@ -35,6 +35,25 @@ static char *summary_of(const struct preparation_record *record) {
     named_values_clear(&found);
     map_characterisation_clear(&measured);
     return text;
+}
+
+/* Characterises the heights, of which the first `rows` rows are the map, and checks that its main
+ * values alone make the same screen; the caller frees the text. */
+static char *summary_of_rows(size_t rows, const struct preparation_record *record) {
+    const struct height_map map = {
+        .grid = {SIDE, rows, 128e-6, rows > 1 ? 128e-6 / SIDE * (double)rows : 1},
+        .z = z,
+        .xy_unit = "m",
+        .z_unit = "m"};
+    char *text = summary_measured(&map, record, MAP_MAIN);
+    char *whole = summary_measured(&map, record, MAP_WHOLE);
+    assert_string_equal(text, whole);
+    free(whole);
+    return text;
+}
+
+static char *summary_of(const struct preparation_record *record) {
+    return summary_of_rows(SIDE, record);
 }
 
 static void check_screen(const char *text) {
@@ -206,8 +225,48 @@ static void what_is_unknown_is_said(void **state) {
     free(text);
 }
 
+/* Of what the screen does not show nothing is measured, and no number stands for it. */
+static void the_rest_is_left_out(void **state) {
+    (void)state;
+    const struct preparation_record record = {
+        .boundary = BOUNDARY_OPEN, .boundary_by = "option", .window_power = 1};
+    const struct height_map map = {
+        .grid = {SIDE, SIDE, 128e-6, 128e-6}, .z = z, .xy_unit = "m", .z_unit = "m"};
+    const struct spectrum_fit_request trusted = {0};
+    fill_smooth(12, 1);
+    assert_int_equal(map_characterise(&measured, &map, &record, &trusted, MAP_MAIN, NULL), 0);
+    assert_true(isfinite(measured.areal.sdr) && isfinite(measured.errors.slope));
+    assert_true(measured.spectra.has_fit && measured.spectra.rings.count > 1);
+    assert_true(isnan(measured.areal.spd) && isnan(measured.functional.plateau.ratio));
+    assert_true(isnan(measured.functional.found.line.k) && isnan(measured.parameters.moments.m2));
+    assert_true(isnan(measured.parameters.summits[SUMMITS_REFINED].density));
+    assert_true(isnan(measured.spectra.rings.density[1]));
+    assert_true(measured.quantiles.count > 1 && isnan(measured.quantiles.y[1]));
+    assert_true(measured.correlation.count > 1 && isnan(measured.correlation.y[1]));
+    assert_int_equal(measured.scales.count, 0);
+    map_characterisation_clear(&measured);
+}
+
+/* One of a profile, and one under a window of its own, too. */
+static void profiles_and_windows_have_the_same_screen(void **state) {
+    (void)state;
+    struct preparation_record record = {
+        .boundary = BOUNDARY_OPEN, .boundary_by = "option", .window_power = 1};
+    fill_smooth(13, 1);
+    char *text = summary_of_rows(1, &record);
+    check_screen(text);
+    expect(text, (const char *const[]){"profile of 256 points", "peak density", NULL});
+    free(text);
+    record.window_power = 0.4;
+    text = summary_of(&record);
+    expect(text, (const char *const[]){"the map is under a window", "summit density", NULL});
+    free(text);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_rest_is_left_out),
+        cmocka_unit_test(profiles_and_windows_have_the_same_screen),
         cmocka_unit_test(a_clean_map_is_one_screen),
         cmocka_unit_test(faults_fit_on_it_too),
         cmocka_unit_test(noise_is_named),
