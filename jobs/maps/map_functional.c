@@ -44,8 +44,9 @@ int map_functional_measure_strata(struct map_functional *out, const struct measu
     }
     struct material_curve curve;
     int status = material_curve_create(&curve, map, err);
-    if (status == 0)
-        plateau_fit(&curve, &out->plateau);
+    if (status != 0)
+        return status;
+    plateau_fit(&curve, &out->plateau);
     material_curve_clear(&curve);
-    return status;
+    return 0;
 }
