@@ -36,7 +36,7 @@ static double expected_of_summits(const struct statistics_case *one_case, const 
 /* Returns the CPU seconds of one realisation. */
 static double expected_seconds(const struct statistics_case *one_case) {
     double points = (double)grid_points(&one_case->surface.grid);
-    double nanoseconds = cost_generation(&one_case->surface.options, &one_case->surface.grid);
+    double nanoseconds = surface_case_nanoseconds(&one_case->surface, &one_case->surface.grid);
     nanoseconds = nanoseconds * points + expected_of_waves(&one_case->surface) +
                   expected_of_summits(one_case, &one_case->surface.grid);
     for (size_t l = 0; l < one_case->level_count; l++) {

@@ -99,7 +99,8 @@ static void dense_solve(size_t n, double matrix[][MEASURED_MOST], double *right)
 static double plane(const struct conditional_law *law, int trend, size_t a, size_t b) {
     static const double LARGE = 1e4;
     const size_t nx = law->cell->nx;
-    return trend == 0 ? 0 : LARGE * (1 + (double)((a % nx) * (b % nx) + (a / nx) * (b / nx)));
+    const size_t row_a = a / nx, row_b = b / nx, products = a % nx * (b % nx) + row_a * row_b;
+    return trend == 0 ? 0 : LARGE * (1 + (double)products);
 }
 
 /* Fills weight[measured point] of the mean height at a point of the cell. */
