@@ -558,6 +558,14 @@ static int read_plateau(struct surface_case *out, struct values *values, struct 
     return 0;
 }
 
+static int read_grooves(struct surface_case *out, struct values *values, struct error *err) {
+    const bool translated =
+        out->options.law == LAW_TRANSLATION && out->options.heights.type != HEIGHTS_GAUSSIAN;
+    int status = surface_grooves_read(&out->grooves, &out->grid, translated, values, err);
+    out->spectrum.grooves = out->grooves;
+    return status;
+}
+
 int surface_case_fill(struct surface_case *out, struct values *values,
                       const struct surface_case **whole, struct error *err) {
     size_t before = values_fault_count(values);
@@ -565,7 +573,7 @@ int surface_case_fill(struct surface_case *out, struct values *values,
     *whole = NULL;
     int status = read_surface(out, values, err);
     if (status == 0 && values_fault_count(values) == before)
-        status = surface_grooves_fill(out, values, err);
+        status = read_grooves(out, values, err);
     if (status == 0 && values_fault_count(values) == before)
         status = surface_law_fill(&out->translation, &out->spectrum, out->dimension, &out->options,
                                   values, err);

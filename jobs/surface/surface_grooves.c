@@ -10,11 +10,10 @@ static const double DEGREE = M_PI / 180;
 
 /* Reads one family: whole numbers of periods along both sides, to OFF of a period. A fault names
  * the nearest grooves that have them. */
-static void read_family(const struct surface_case *surface, struct values *values, const char *path,
+static void read_family(const struct grid *grid, struct values *values, const char *path,
                         double period, double degrees, struct grooves *out) {
     static const double OFF = 1e-3, ROUNDING = 1e-12;
-    const struct grid *grid = &surface->grid;
-    const bool profile = surface->dimension == 1;
+    const bool profile = grid_is_profile(grid);
     const double angle = degrees * DEGREE, ly = profile ? 1 : grid->ly;
     const bool along_y = fabs(cos(angle)) < ROUNDING, along_x = fabs(sin(angle)) < ROUNDING;
     const double x = along_x ? 0 : sin(angle) / period;
@@ -80,35 +79,27 @@ static bool are_asked(struct values *values) {
     return false;
 }
 
-static void check_directions(const struct surface_case *surface, struct values *values,
-                             double angle, double cross) {
-    if (surface->dimension == 1 && !isnan(angle))
+static void check_directions(const struct grid *grid, struct values *values, double angle,
+                             double cross) {
+    if (grid_is_profile(grid) && !isnan(angle))
         values_fault(values, ANGLE, "%g: profiles have one direction", angle);
-    if (surface->dimension == 1 && !isnan(cross))
+    if (grid_is_profile(grid) && !isnan(cross))
         values_fault(values, CROSS, "%g: profiles have one direction", cross);
     if (!isnan(cross) && fabs(remainder(cross - (isnan(angle) ? 90 : angle), 180)) < 1e-6)
         values_fault(values, CROSS, "%g: both families have the same direction", cross);
 }
 
-/* What grooves do not go with. */
-static void check_others(const struct surface_case *surface, struct values *values) {
-    if (surface->options.law == LAW_TRANSLATION &&
-        surface->options.heights.type != HEIGHTS_GAUSSIAN)
-        values_fault(values, "/surface/heights/law",
-                     "\"translation\": with grooves heights are no function of a Gaussian field; "
-                     "allowed: \"iterated\"");
-}
-
-static void check_period(const struct surface_case *surface, struct values *values, double period) {
+static void check_period(const struct grid *grid, struct values *values, double period) {
     static const double POINTS_LEAST = 4;
-    const double dx = grid_dx(&surface->grid);
+    const double dx = grid_dx(grid);
     if (!(period >= POINTS_LEAST * dx * (1 - 1e-9)))
         values_fault(values, PERIOD,
                      "%g: the grid has %g points a period; allowed: at least %g, a period of %g",
                      period, period / dx, POINTS_LEAST, POINTS_LEAST * dx);
 }
 
-int surface_grooves_fill(struct surface_case *out, struct values *values, struct error *err) {
+int surface_grooves_read(struct grooves **out, const struct grid *grid, bool translated,
+                         struct values *values, struct error *err) {
     const size_t before = values_fault_count(values);
     if (!are_asked(values))
         return 0;
@@ -116,22 +107,25 @@ int surface_grooves_fill(struct surface_case *out, struct values *values, struct
     const double cross = values_number(values, CROSS), depth = values_number(values, DEPTH);
     if (isnan(depth))
         values_fault(values, DEPTH, "grooves need their depth, in RMS heights of the random part");
-    check_directions(out, values, angle, cross);
-    check_others(out, values);
-    check_period(out, values, period);
+    check_directions(grid, values, angle, cross);
+    if (translated)
+        values_fault(values, "/surface/heights/law",
+                     "\"translation\": with grooves heights are no function of a Gaussian field; "
+                     "allowed: \"iterated\"");
+    check_period(grid, values, period);
     if (values_fault_count(values) != before)
         return 0;
-    out->grooves = array_create(1, sizeof *out->grooves);
-    if (out->grooves == NULL)
-        return error_memory(err, sizeof *out->grooves, "grooves");
-    *out->grooves = (struct grooves){.depth = depth, .phase = values_number(values, PHASE)};
-    out->spectrum.grooves = out->grooves;
-    read_family(out, values, PERIOD, period, isnan(angle) ? 90 : angle, out->grooves);
+    struct grooves *grooves = array_create(1, sizeof *grooves);
+    if (grooves == NULL)
+        return error_memory(err, sizeof *grooves, "grooves");
+    *out = grooves;
+    *grooves = (struct grooves){.depth = depth, .phase = values_number(values, PHASE)};
+    read_family(grid, values, PERIOD, period, isnan(angle) ? 90 : angle, grooves);
     if (!isnan(cross))
-        read_family(out, values, CROSS, period, cross, out->grooves);
-    out->grooves->profile.shape = (enum groove_shape)values_choice(values, SHAPE);
-    if (out->grooves->profile.shape == GROOVE_HARMONICS)
-        return read_harmonics(values, &out->grooves->profile, err);
+        read_family(grid, values, CROSS, period, cross, grooves);
+    grooves->profile.shape = (enum groove_shape)values_choice(values, SHAPE);
+    if (grooves->profile.shape == GROOVE_HARMONICS)
+        return read_harmonics(values, &grooves->profile, err);
     if (values_is_given(values, AMPLITUDES))
         values_fault(values, AMPLITUDES, "belongs to the shape harmonics");
     return 0;

@@ -211,7 +211,7 @@ double groove_lines_height(const struct groove_lines *lines, double x, double y)
 static const double MEASURED = 1.12;
 
 struct shape_trial {
-    double deviance, depth, variance;
+    double deviance, depth, variance, at;
 };
 
 /* Returns what a shape leaves of the lines where it begins t periods before the middle. */
@@ -230,7 +230,7 @@ static struct shape_trial shape_at(const struct groove_lines *lines, enum groove
     }
     const double depth = fmax(product / norm, 0);
     return (struct shape_trial){2 * (total - 2 * depth * product + depth * depth * norm), depth,
-                                0.5 / norm};
+                                0.5 / norm, t};
 }
 
 static struct shape_trial shape_fit(const struct groove_lines *lines, enum groove_shape shape,
@@ -288,6 +288,7 @@ void groove_shape_find(struct groove_shape_fit *out, const struct groove_lines *
     out->shape = out->reversed ? GROOVE_SAW : (enum groove_shape)best;
     out->p_value = freedom > 0 ? gsl_cdf_chisq_Q(trial[best].deviance, freedom) : 1;
     out->depth = trial[best].depth;
+    out->at = trial[best].at;
     double low = out->depth, high = out->depth;
     for (int s = 0; s <= GROOVE_HARMONICS; s++)
         if (trial[s].deviance < trial[best].deviance + NEAR) {

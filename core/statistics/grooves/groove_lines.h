@@ -41,6 +41,7 @@ struct groove_shape_fit {
     bool reversed;           /* a saw that falls along the wave vector */
     double p_value;          /* of that shape, by the lines of all harmonics; NaN: harmonics */
     double depth, depth_error;
+    double at;       /* where that shape begins, in periods before the middle */
     size_t standing; /* harmonics up to the last that stands out of the random part */
 };
 void groove_shape_find(struct groove_shape_fit *out, const struct groove_lines *lines);

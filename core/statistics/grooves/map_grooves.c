@@ -165,21 +165,57 @@ static void family_fill(struct map_groove *out, const struct grid *grid) {
     out->period = 1 / k;
     out->period_error = hypot(kx * ex, ky * ey) / (k * k * k);
     out->angle = profile ? (double)NAN : remainder(atan2(kx, -ky), M_PI);
-    if (out->angle <= -M_PI / 2)
-        out->angle = M_PI / 2;
     out->angle_error = profile ? (double)NAN : hypot(ky * ex, kx * ey) / (k * k);
+    if (out->angle <= -M_PI / 2 + out->angle_error) /* along y, to its error */
+        out->angle = M_PI / 2;
     out->periods = hypot(lines->mx, profile ? 0 : lines->my);
     out->mean_square = 0;
     for (size_t h = 0; h < lines->count; h++)
         out->mean_square += 2 * creal(lines->coefficient[h] * conj(lines->coefficient[h]));
 }
 
+/* What a named shape has beyond the lines that the grid resolves, which it folds back. */
+enum { FOLDS = 200 };
+struct beyond {
+    size_t first, count;
+    double complex coefficient[FOLDS];
+};
+
+static void beyond_fill(struct beyond *out, const struct map_groove *family) {
+    const struct groove_shape_fit *fit = &family->fit;
+    *out = (struct beyond){.first = family->lines.count + 1};
+    if (fit->shape == GROOVE_HARMONICS || fit->shape == GROOVE_SINE || !(fit->depth > 0) ||
+        family->lines.count == GROOVE_LINES_MOST)
+        return;
+    for (size_t h = out->first; out->count < FOLDS; h++) {
+        const double complex unit = groove_shape_coefficient(fit->shape, h);
+        const double phase = 2 * M_PI * (double)h * fit->at;
+        out->coefficient[out->count++] =
+            fit->depth * (fit->reversed ? conj(unit) : unit) * (cos(phase) + sin(phase) * I);
+    }
+}
+
+static double beyond_height(const struct beyond *beyond, const struct groove_lines *lines, double x,
+                            double y) {
+    const double t = 2 * M_PI * (lines->mx * x + lines->my * y);
+    const double complex turn = cos(t) + sin(t) * I;
+    const double start = (double)beyond->first * t;
+    double complex sum = 0;
+    for (size_t h = beyond->count; h-- > 0;)
+        sum = sum * turn + beyond->coefficient[h];
+    return beyond->count > 0 ? 2 * creal(sum * (cos(start) + sin(start) * I)) : 0;
+}
+
 static void family_take(const struct map_groove *family, const struct grid *grid, double *z) {
     const double nx = (double)grid->nx, ny = (double)grid->ny;
+    struct beyond beyond;
+    beyond_fill(&beyond, family);
     for (size_t j = 0; j < grid->ny; j++)
-        for (size_t i = 0; i < grid->nx; i++)
-            z[j * grid->nx + i] -= groove_lines_height(&family->lines, ((double)i + 0.5) / nx - 0.5,
-                                                       ((double)j + 0.5) / ny - 0.5);
+        for (size_t i = 0; i < grid->nx; i++) {
+            const double x = ((double)i + 0.5) / nx - 0.5, y = ((double)j + 0.5) / ny - 0.5;
+            z[j * grid->nx + i] -= groove_lines_height(&family->lines, x, y) +
+                                   beyond_height(&beyond, &family->lines, x, y);
+        }
 }
 
 /* Fits the family of a candidate, and takes it out of the heights. */
@@ -190,6 +226,7 @@ static int family_find(struct map_groove *out, struct search *search,
     groove_refine(&map, &mx, &my);
     const double part = 1 / (double)divisor_of(search, &map, mx, my);
     groove_lines_fit(&out->lines, &map, search->background, part * mx, part * my);
+    groove_shape_find(&out->fit, &out->lines);
     family_fill(out, search->map->grid);
     family_take(out, search->map->grid, search->z);
     return search_measure(search, &LAY_NONE, err);
