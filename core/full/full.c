@@ -362,12 +362,13 @@ static int raise_load(struct full *f, double goal, struct newton_end *end,
 
 /* --- overhangs and jumps --- */
 
-/* Drags of a jump: the first and the largest one, E* times the mesh's unit; factors by which they
- * fall after small changes of the face and rise where a round fails; rounds. Rounds balance to
- * DRAG_TOLERANCE; from the largest drag over the mean force of a node of DRAG_SMALL on, and after
- * each fall by DRAG_FALL, equilibrium without drag is tried. */
-static const double DRAG_FIRST = 0.02, DRAG_MOST = 10, DRAG_RISE = 4;
-static const double DRAG_TOLERANCE = 1e-5, DRAG_SMALL = 1e-2, DRAG_FALL = 0.25;
+/* Drags of a jump: the first and the largest one, E* times the mesh's unit; factor by which they
+ * rise where a round fails, and fall after small changes of the face; rounds. From the largest drag
+ * over the mean force of a node of DRAG_SMALL on, and after each fall by DRAG_FALL, equilibrium
+ * without drag is tried. Rounds balance to DRAG_TOLERANCE, and from DRAG_REST on to the tolerance
+ * of a load, at which a drag counts as none. */
+static const double DRAG_FIRST = 0.02, DRAG_MOST = 10, DRAG_RISE = 4, DRAG_FALL = 0.25;
+static const double DRAG_TOLERANCE = 1e-5, DRAG_SMALL = 1e-2, DRAG_REST = 1e-4;
 enum { DRAG_ROUNDS = 200 };
 
 static double largest_move(const struct newton *n) {
@@ -402,10 +403,12 @@ static int drag_on(struct full *f, double load, double drag, double tolerance, d
 /* The rounds of a jump: implicit steps of motion against drag, whose end is at rest. */
 static int drag_rounds(struct full *f, double load, struct newton_end *end,
                        struct full_report *report, struct error *err) {
-    double drag = DRAG_FIRST, tried = INFINITY, change;
+    double drag = DRAG_FIRST, tried = INFINITY, dragged = INFINITY, change;
     int status = ERROR_NUMERIC;
     for (int round = 0; round < DRAG_ROUNDS && drag < DRAG_MOST; round++) {
-        status = drag_on(f, load, drag, DRAG_TOLERANCE, &change, end, report, err);
+        bool exact = dragged < DRAG_REST;
+        double tolerance = exact ? f->newton.tolerance : DRAG_TOLERANCE;
+        status = drag_on(f, load, drag, tolerance, &change, end, report, err);
         if (status != 0 && status != ERROR_NUMERIC)
             return status;
         if (status != 0) {
@@ -413,8 +416,10 @@ static int drag_rounds(struct full *f, double load, struct newton_end *end,
             drag *= DRAG_RISE;
             continue;
         }
-        double dragged = largest_move(&f->newton) * drag / load;
+        dragged = largest_move(&f->newton) * drag / load;
         hold(f);
+        if (exact && dragged <= f->newton.tolerance)
+            return 0;
         drag /= 8 * change < FACE_CHANGE_MOST ? DRAG_RISE : 2 * change < FACE_CHANGE_MOST ? 2 : 1;
         if (dragged > DRAG_SMALL || dragged > tried * DRAG_FALL)
             continue;
@@ -451,6 +456,8 @@ static int jump(struct full *f, double load, struct newton_end *end, struct full
  * the change of load. */
 enum { CUTS_SMOOTH = 2, CUTS_MOST = 5 };
 static const double CAREFUL_STEP = 0.125;
+/* Iterations of Newton's method after which a load is given up. */
+enum { NEWTON_MOST = 2500 };
 
 /* As raise_load, with overhangs and jumps, and from the last active set. */
 static int raise_carefully(struct full *f, double goal, struct newton_end *end,
@@ -460,6 +467,11 @@ static int raise_carefully(struct full *f, double goal, struct newton_end *end,
     do {
         if (check_limit(f, goal, err) != 0)
             return ERROR_NUMERIC;
+        if (report->newton > NEWTON_MOST) {
+            (void)error_set(err, ERROR_NUMERIC, "%zu iterations of Newton's were too few",
+                            report->newton);
+            return end_load(f, goal, step, err);
+        }
         step = fabs(step) < fabs(goal - f->load) ? step : goal - f->load;
         double next = step == goal - f->load ? goal : f->load + step;
         bool jumps = cuts >= CUTS_SMOOTH ||

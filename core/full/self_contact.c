@@ -204,6 +204,7 @@ static bool nearest(const struct self_contact *self, const double *u, size_t nod
     size_t bins = bins_of(mesh), at = bin_of(mesh, point_of(mesh, u, node).x);
     size_t around = bins < 3 ? bins : 3;
     double least = INFINITY;
+    *out = (struct self_pair){.node = node};
     for (size_t side = 0; side < around; side++)
         for (size_t k = self->bin[(at + bins - 1 + side) % bins]; k != NONE; k = self->next[k]) {
             if (k == node || !faces(self, node, k))
@@ -214,7 +215,8 @@ static bool nearest(const struct self_contact *self, const double *u, size_t nod
             if (!(distance < least))
                 continue;
             least = distance;
-            *out = (struct self_pair){.node = node, .arc = k, .at = MIDDLE};
+            out->arc = k;
+            out->at = MIDDLE;
         }
     if (!(least < NEAR))
         return false;
@@ -222,6 +224,10 @@ static bool nearest(const struct self_contact *self, const double *u, size_t nod
     struct point own = arc_of(mesh, u, node, MIDDLE).along;
     return fabs(out->gap) < REACH && out->arc != node && faces(self, node, out->arc) &&
            out->normal[0] * own.y - out->normal[1] * own.x < 0;
+}
+
+static size_t node_behind(const struct mesh *mesh, size_t node) {
+    return node + 1 < mesh->face ? node + 1 : 0;
 }
 
 /* Returns the first node that touches the flat behind one that does; that one where none else
@@ -232,7 +238,7 @@ static size_t next_lip(const struct mesh *mesh, const double *u, const bool *act
     *over = false;
     do {
         *over = *over || mesh_stretch(mesh, u, 0, next) <= 0;
-        next = (next + 1) % mesh->face;
+        next = node_behind(mesh, next);
     } while (!active[next] && next != node);
     return next;
 }
@@ -241,7 +247,7 @@ static size_t next_lip(const struct mesh *mesh, const double *u, const bool *act
 static bool meets_lip(const struct mesh *mesh, const double *u, const bool *active, size_t node,
                       struct self_pair *out) {
     bool over = false;
-    if (!active[node] || active[(node + 1) % mesh->face])
+    if (!active[node] || active[node_behind(mesh, node)])
         return false;
     *out = (struct self_pair){
         .node = node, .arc = next_lip(mesh, u, active, node, &over), .lips = true};
@@ -262,28 +268,32 @@ static bool find(const struct self_contact *self, const double *u, const bool *a
     return lips ? meets_lip(self->mesh, u, active, node, out) : nearest(self, u, node, out);
 }
 
+/* Adds the pairs of one kind to count others, with the multipliers of the old ones, which begin at
+ * *old. */
+static size_t add_pairs(struct self_contact *self, const double *u, const bool *active, bool lips,
+                        size_t before, size_t *old, size_t count) {
+    const struct self_pair *had = self->old;
+    for (size_t node = 0; node < self->mesh->face; node++) {
+        while (*old < before && (had[*old].lips == lips ? had[*old].node < node : lips))
+            ++*old;
+        if (!find(self, u, active, lips, node, &self->pair[count]))
+            continue;
+        if (*old < before && had[*old].lips == lips && had[*old].node == node)
+            self->pair[count].multiplier = had[*old].multiplier;
+        count++;
+    }
+    return count;
+}
+
 void self_contact_search(struct self_contact *self, const double *u, const bool *active) {
-    size_t before = self->count, count = 0, old = 0;
+    size_t before = self->count, old = 0;
     self->count = 0;
     if (!overhangs(self->mesh, u))
         return;
     memcpy(self->old, self->pair, before * sizeof *self->pair);
     prepare(self, u);
-    for (size_t n = 0; n < PAIRS_A_NODE * self->mesh->face; n++) {
-        size_t node = n % self->mesh->face;
-        bool lips = n >= self->mesh->face;
-        const struct self_pair *had = self->old;
-        while (old < before && had[old].lips == lips && had[old].node < node)
-            old++;
-        while (old < before && lips && !had[old].lips)
-            old++;
-        if (!find(self, u, active, lips, node, &self->pair[count]))
-            continue;
-        if (old < before && had[old].lips == lips && had[old].node == node)
-            self->pair[count].multiplier = had[old].multiplier;
-        count++;
-    }
-    self->count = count;
+    self->count = add_pairs(self, u, active, false, before, &old, 0);
+    self->count = add_pairs(self, u, active, true, before, &old, self->count);
 }
 
 double self_contact_depth(struct self_contact *self, const double *u, const bool *active) {
@@ -292,9 +302,12 @@ double self_contact_depth(struct self_contact *self, const double *u, const bool
     if (!overhangs(self->mesh, u))
         return 0;
     prepare(self, u);
-    for (size_t n = 0; n < PAIRS_A_NODE * self->mesh->face; n++)
-        if (find(self, u, active, n >= self->mesh->face, n % self->mesh->face, &pair))
+    for (size_t node = 0; node < self->mesh->face; node++) {
+        if (find(self, u, active, false, node, &pair))
             deepest = fmax(deepest, -pair.gap);
+        if (find(self, u, active, true, node, &pair))
+            deepest = fmax(deepest, -pair.gap);
+    }
     return deepest;
 }
 

@@ -138,8 +138,8 @@ static void what_the_model_tells(void **state) {
     cJSON_Delete(document);
 }
 
-/* RMS slope 1.9: some surfaces are too steep to mesh or to press, the others keep their values, a
- * failure lasts, and the linear model beside sees all. */
+/* RMS slope 1.9: some surfaces are too steep to mesh, or to press in two seconds, the others keep
+ * their values, a failure lasts, and the linear model beside sees all. */
 static void steep_realisations_have_no_values(void **state) {
     (void)state;
     enum { COUNT = 12 };
@@ -148,7 +148,8 @@ static void steep_realisations_have_no_values(void **state) {
               "\"length_ratio\":"
               " 2, \"points_per_wavelength\": 6, \"rms_slope\": 1.9}, \"contact\": "
               "{\"cell_error\": \"none\", \"model\":"
-              " [\"halfspace\", \"full\"], \"pressures\": {\"values\": [0.01, 0.2, 0.5, 1]}}}",
+              " [\"halfspace\", \"full\"], \"time_limit\": 2, \"pressures\": {\"values\": [0.01, "
+              "0.2, 0.5, 1]}}}",
               COUNT);
     const cJSON *full = curve_of(document, "contact_area", "nodes", "full");
     const cJSON *linear = curve_of(document, "contact_area", "nodes", "halfspace");
