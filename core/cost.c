@@ -221,6 +221,9 @@ static const double PROFILE_TRANSFORMS = 95, SURFACE_TRANSFORMS = 280;
  * of the factorisation. */
 static const double FRICTION_NS = 8000, FRICTION_FREEDOM = 4000, FRICTION_POWER = 0.35;
 static const double FRICTION_PRESSURES = 1.9, FRICTION_BYTES = 2100;
+/* A step has so many iterations of Newton's method and half a factorisation, which takes this part
+ * of it. */
+static const double FRICTION_NEWTON = 4, FRICTION_FACTORED = 0.5;
 /* Of surfaces, loads without friction that take as long, and bytes of a degree of freedom, more
  * with pressures as unknowns. */
 static const double SURFACE_FRICTION_LOADS = 1.15;
@@ -313,6 +316,16 @@ double cost_friction_steps(const struct grid *grid, const struct full_size *size
     double slower = pow(size->degrees_of_freedom / FRICTION_FREEDOM, FRICTION_POWER) *
                     (size->pressures ? FRICTION_PRESSURES : 1);
     return 1e-9 * FRICTION_NS * slower * size->degrees_of_freedom * steps;
+}
+
+struct full_limit cost_friction_limit(const struct grid *grid, const struct full_size *size,
+                                      double seconds) {
+    if (!grid_is_profile(grid))
+        return cost_full_limit(grid, size, seconds);
+    const double step = cost_friction_steps(grid, size, 1);
+    return (struct full_limit){.seconds = seconds,
+                               .newton = (1 - FRICTION_FACTORED / 2) / FRICTION_NEWTON * step,
+                               .factored = FRICTION_FACTORED * step};
 }
 
 double cost_friction_bytes(const struct grid *grid, const struct block *block,

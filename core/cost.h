@@ -64,6 +64,9 @@ double cost_full_loads(double rms_slope, size_t count, const double *loads);
 /* What iterations on a mesh of this size count of a limit of so many of these seconds. */
 struct full_limit cost_full_limit(const struct grid *grid, const struct full_size *size,
                                   double seconds);
+/* The same of steps with friction. */
+struct full_limit cost_friction_limit(const struct grid *grid, const struct full_size *size,
+                                      double seconds);
 double cost_full_bytes(const struct grid *grid, const struct block *block,
                        const struct full_options *options, const struct full_size *size);
 /* CPU seconds of steps with friction (core/full/friction), and bytes of their solver. Of seven

@@ -237,16 +237,17 @@ static void restore(struct full *f) {
  * by folding. */
 static int step_to(struct full *f, double load, double *change, struct newton_end *end,
                    struct full_report *report, struct error *err) {
+    const struct full_limit *limit = &f->options.limit;
     predict(f, load);
+    f->newton.limit = *limit;
+    f->newton.limit.seconds = limit->seconds > 0 ? fmax(limit->seconds - f->used, DBL_MIN) : 0;
     int status = newton_solve(&f->newton, load, end, err);
     report->newton += end->iterations;
     report->linear += end->linear;
     report->factored += end->factored;
     report->changes += end->changes;
     report->cycles += end->cycles;
-    f->used += f->options.limit.newton * (double)end->iterations +
-               f->options.limit.linear * (double)end->linear +
-               f->options.limit.factored * (double)end->factored;
+    f->used += full_limit_count(limit, end->iterations, end->linear, end->factored);
     *change = status == 0 ? face_stretch_change(f->mesh, f->newton.u, f->kept) : 0;
     if (*change > FACE_CHANGE_MOST)
         status = error_set(err, ERROR_NUMERIC, "the face jumps, by %.2g of a cell", *change);
@@ -381,7 +382,13 @@ static int fill_state(struct full *f, const struct newton_end *end, struct conta
     out->stiffness = out->nodes == face ? INFINITY : 0;
     if (out->nodes == 0 || out->nodes == face)
         return 0;
+    f->newton.limit = (struct full_limit){0};
     int status = newton_compliance(&f->newton, &compliance, f->tangent, err);
+    if (status != 0)
+        error_context(err,
+                      "the stiffness of contact on the true geometry under a mean pressure of %g "
+                      "E*, which was reached, was not found",
+                      out->pressure);
     out->tangent = status == 0 ? f->tangent : NULL;
     out->stiffness = 1 / (compliance * f->mesh->unit);
     return status;
