@@ -177,13 +177,13 @@ double cost_linear_loads(const struct linear_work *of) {
 /* Iterations of Newton's method a load, of profiles and of surfaces: `least`, `doubling` for each
  * doubling of nx, `steep` h' with h' the RMS slope, the share `pressures` of it where these are
  * unknowns. Materials that give sideways, nu below UPRIGHT, have load steps cut on slopes above
- * GENTLE, which takes WIDE (h' - GENTLE)(UPRIGHT - nu) more. */
+ * GENTLE, which takes WIDE (h' - GENTLE)(UPRIGHT - nu) more, a third of it on surfaces. */
 struct newton_fit {
     double least, doubling, steep, pressures;
 };
 static const struct newton_fit PROFILE_NEWTON = {1.2, 0.18, 4.5, 0.95},
-                               SURFACE_NEWTON = {1.4, 0.47, 1.8, 0.8};
-static const double GENTLE = 0.3, UPRIGHT = 0.3, WIDE = 25;
+                               SURFACE_NEWTON = {0.6, 0.57, 1.8, 0.8};
+static const double GENTLE = 0.3, UPRIGHT = 0.3, PROFILE_WIDE = 25, SURFACE_WIDE = 8;
 /* A load further than FAR/h' from the one before it is approached in steps: of lengths l in E* h',
  * FAR_STEPS (l h' - FAR) more loads' work. */
 static const double FAR = 0.09, FAR_STEPS = 33;
@@ -195,9 +195,8 @@ static const double LINEAR_LEAST = 1.6, PROFILE_STEEP = 10, SURFACE_STEEP = 6;
 static const double PROFILE_SIDE = 512, SURFACE_SIDE = 32, SIDE_POWER = 0.15;
 static const double BULK_FRONT = 0.4, BULK_MOST = 10, BULK_POWER = 0.6, LINEAR_PRESSURES = 1.65;
 static const double PROFILE_TENS = 0.65, PROFILE_BULK = 60, SURFACE_TENS = 2.2, SURFACE_BULK = 300;
-/* Equations that need more iterations are factorised (core/full/newton.h), on surfaces only up to
- * SURFACE_FACTORED degrees of freedom. */
-static const double FACTORED_ITERATIONS = 30, SURFACE_FACTORED = 20000;
+/* Equations of profiles that need more iterations are factorised (core/full/newton.h). */
+static const double FACTORED_ITERATIONS = 30;
 /* Nanoseconds a degree of freedom: of an iteration of Newton's method without its linear equations,
  * of an iteration of these, for each iteration before it, of the pressures in it, and of an
  * iteration of Newton's method with a factorisation. */
@@ -211,7 +210,7 @@ static const double MEMORY_ROOM = 1.03;
 /* Iterations of the linear equations of a step, over their mean, at most. */
 static const double ITERATIONS_MOST = 3;
 /* Bytes a degree of freedom of a factorisation. */
-static const double PROFILE_FACTOR_BYTES = 900, SURFACE_FACTOR_BYTES = 6500;
+static const double FACTOR_BYTES = 900;
 /* Number of transforms of a point that take the time of an iteration of Newton's method on a degree
  * of freedom. */
 static const double PROFILE_TRANSFORMS = 95, SURFACE_TRANSFORMS = 280;
@@ -221,6 +220,9 @@ static const double PROFILE_TRANSFORMS = 95, SURFACE_TRANSFORMS = 280;
  * of the factorisation. */
 static const double FRICTION_NS = 8000, FRICTION_FREEDOM = 4000, FRICTION_POWER = 0.35;
 static const double FRICTION_PRESSURES = 1.9, FRICTION_BYTES = 2100;
+/* A step has so many iterations of Newton's method and half a factorisation, which takes this part
+ * of it. */
+static const double FRICTION_NEWTON = 4, FRICTION_FACTORED = 0.5;
 /* Of surfaces, loads without friction that take as long, and bytes of a degree of freedom, more
  * with pressures as unknowns. */
 static const double SURFACE_FRICTION_LOADS = 1.15;
@@ -229,7 +231,8 @@ static const double SURFACE_FRICTION_BYTES = 510, SURFACE_PRESSURE_BYTES = 100;
 static double newton_iterations(const struct grid *grid, double poisson, bool pressures,
                                 double rms_slope) {
     const struct newton_fit *fit = grid_is_profile(grid) ? &PROFILE_NEWTON : &SURFACE_NEWTON;
-    double cut = WIDE * fmax(0, rms_slope - GENTLE) * fmax(0, UPRIGHT - poisson);
+    double wide = grid_is_profile(grid) ? PROFILE_WIDE : SURFACE_WIDE;
+    double cut = wide * fmax(0, rms_slope - GENTLE) * fmax(0, UPRIGHT - poisson);
     double all = fit->least + fit->doubling * log2(mean_side(grid)) + fit->steep * rms_slope + cut;
     return pressures ? fit->pressures * all : all;
 }
@@ -258,8 +261,7 @@ struct full_size cost_full_size(const struct grid *grid, const struct block *blo
         .newton = newton_iterations(grid, block->poisson, pressures, rms_slope),
         .linear = linear_iterations(grid, block->poisson, pressures, rms_slope),
         .pressures = pressures};
-    size.factored = size.linear > FACTORED_ITERATIONS &&
-                    (profile || size.degrees_of_freedom <= SURFACE_FACTORED);
+    size.factored = profile && size.linear > FACTORED_ITERATIONS;
     return size;
 }
 
@@ -299,20 +301,26 @@ double cost_full_bytes(const struct grid *grid, const struct block *block,
     double most = ITERATIONS_MOST * size->linear;
     double bytes = MEMORY_ROOM * full_bytes(grid, block, options, most);
     if (size->factored)
-        bytes += (grid_is_profile(grid) ? PROFILE_FACTOR_BYTES : SURFACE_FACTOR_BYTES) *
-                 size->degrees_of_freedom;
+        bytes += FACTOR_BYTES * size->degrees_of_freedom;
     return isnan(bytes) ? 0 : bytes;
 }
 
 double cost_friction_steps(const struct grid *grid, const struct full_size *size, double steps) {
-    if (!grid_is_profile(grid)) {
-        struct full_size iterated = *size;
-        iterated.factored = false;
-        return SURFACE_FRICTION_LOADS * steps * cost_full_contact(grid, &iterated, 1);
-    }
+    if (!grid_is_profile(grid))
+        return SURFACE_FRICTION_LOADS * steps * cost_full_contact(grid, size, 1);
     double slower = pow(size->degrees_of_freedom / FRICTION_FREEDOM, FRICTION_POWER) *
                     (size->pressures ? FRICTION_PRESSURES : 1);
     return 1e-9 * FRICTION_NS * slower * size->degrees_of_freedom * steps;
+}
+
+struct full_limit cost_friction_limit(const struct grid *grid, const struct full_size *size,
+                                      double seconds) {
+    if (!grid_is_profile(grid))
+        return cost_full_limit(grid, size, seconds);
+    const double step = cost_friction_steps(grid, size, 1);
+    return (struct full_limit){.seconds = seconds,
+                               .newton = (1 - FRICTION_FACTORED / 2) / FRICTION_NEWTON * step,
+                               .factored = FRICTION_FACTORED * step};
 }
 
 double cost_friction_bytes(const struct grid *grid, const struct block *block,

@@ -81,6 +81,9 @@ struct realisation {
      * ERROR_STOPPED. */
     int (*stop)(void *context);
     void *stop_context;
+    /* Takes the share of the realisation's work that is done, with stop_context, from kinds whose
+     * realisations may take long; may be NULL. */
+    void (*progress)(void *context, double share);
 };
 
 enum { KEPT_MODELS_MOST = 8 };

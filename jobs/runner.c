@@ -2,6 +2,7 @@
 #include "jobs/clock.h"
 #include "jobs/partial.h"
 #include "jobs/surface/surface_case.h"
+#include <math.h>
 #include <stdlib.h>
 
 /* --- what runners share --- */
@@ -171,13 +172,20 @@ int runner_create(struct job_runner **out, const struct job_kind *kind, const cJ
 struct progress {
     const struct job_control *control; /* may be NULL */
     uint64_t done;
+    double share; /* of the realisation at work, below 1 */
 };
+
+static void take_share(void *context, double share) {
+    static const double SHARE_MOST = 0.999; /* it has not ended */
+    struct progress *progress = context;
+    progress->share = share > 0 ? fmin(share, SHARE_MOST) : 0;
+}
 
 static int is_stopped(void *context) {
     const struct progress *progress = context;
     const struct job_control *control = progress->control;
     return control != NULL && control->poll != NULL &&
-           control->poll(control->context, progress->done) != 0;
+           control->poll(control->context, (double)progress->done + progress->share) != 0;
 }
 
 static int surface_measure(const struct job_runner *runner, struct realisation *realisation,
@@ -212,8 +220,11 @@ static int surface_generate(struct job_runner *runner, struct realisation *reali
 static int realise(struct job_runner *runner, uint64_t number, struct progress *progress,
                    void *tally, double *scalars, struct error *err) {
     runner->key.realisation = number;
-    struct realisation realisation = {
-        .study = runner->study, .key = runner->key, .stop = is_stopped, .stop_context = progress};
+    struct realisation realisation = {.study = runner->study,
+                                      .key = runner->key,
+                                      .stop = is_stopped,
+                                      .stop_context = progress,
+                                      .progress = take_share};
     int status = runner->surface != NULL ? surface_generate(runner, &realisation, err) : 0;
     if (status == 0)
         status = runner->kind->realise(runner->workspace, &realisation, tally, scalars, err);
@@ -250,6 +261,7 @@ static int realise_all(struct job_runner *runner, const struct job_control *cont
     int status = 0;
     for (uint64_t r = 0; r < result->count && status == 0; r += status == 0) {
         progress.done = r;
+        progress.share = 0;
         if (is_stopped(&progress) != 0) {
             status = error_set(err, ERROR_STOPPED, "stopped after %llu of %llu realisations",
                                (unsigned long long)r, (unsigned long long)result->count);

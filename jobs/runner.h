@@ -8,9 +8,10 @@
 #include "jobs/kind.h"
 
 /* Called between realisations, and repeatedly within one that may take long, with how many of the
- * block are done; non-zero stops the block. */
+ * block are done, and the share of the next one where its kind knows it; non-zero stops the
+ * block. */
 struct job_control {
-    int (*poll)(void *context, uint64_t done);
+    int (*poll)(void *context, double done);
     void *context;
 };
 

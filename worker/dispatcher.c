@@ -51,7 +51,7 @@ struct lease {
     struct job_end end; /* of an ended one; owned */
     size_t bytes;       /* of its result, as sent */
     atomic_bool lost;
-    atomic_uint_fast64_t done;
+    _Atomic double done; /* realisations, with a part of one */
     struct lease *next;
 };
 
@@ -107,7 +107,7 @@ const struct claimed_job *lease_job(const struct lease *lease) {
     return &lease->job;
 }
 
-void lease_progress(struct lease *lease, uint64_t done) {
+void lease_progress(struct lease *lease, double done) {
     atomic_store(&lease->done, done);
 }
 

@@ -63,8 +63,9 @@ void dispatcher_published(struct dispatcher *dispatcher, bool postponed);
 
 /* Valid until the job is handed in. */
 const struct claimed_job *lease_job(const struct lease *lease);
-/* Sets the number of finished realisations that the next heartbeat reports. */
-void lease_progress(struct lease *lease, uint64_t done);
+/* Sets the number of finished realisations, and what is done of the next one, that the next
+ * heartbeat reports. */
+void lease_progress(struct lease *lease, double done);
 /* Returns whether the result is not wanted: the lease is lost or given back, or the study
  * cancelled. */
 bool lease_is_lost(const struct lease *lease);

@@ -92,7 +92,7 @@ static void runner_drop(struct worker_thread *thread) {
     thread->bytes = 0;
 }
 
-static int thread_poll(void *context, uint64_t done) {
+static int thread_poll(void *context, double done) {
     struct worker_thread *thread = context;
     lease_progress(thread->lease, done);
     return lease_is_lost(thread->lease) || atomic_load(&thread->pool->ending);

@@ -281,15 +281,20 @@ static void restore(struct full *f) {
     memcpy(f->newton.active, f->kept_active, f->mesh->face * sizeof *f->kept_active);
 }
 
+/* What is left of the limit is that of the next solution. */
+static void limit_next(struct full *f) {
+    const double seconds = f->options.limit.seconds;
+    f->newton.limit = f->options.limit;
+    f->newton.limit.seconds = seconds > 0 ? fmax(seconds - f->used, DBL_MIN) : 0;
+}
+
 static void count_work(struct full *f, const struct newton_end *end, struct full_report *report) {
     report->newton += end->iterations;
     report->linear += end->linear;
     report->factored += end->factored;
     report->changes += end->changes;
     report->cycles += end->cycles;
-    f->used += f->options.limit.newton * (double)end->iterations +
-               f->options.limit.linear * (double)end->linear +
-               f->options.limit.factored * (double)end->factored;
+    f->used += full_limit_count(&f->options.limit, end->iterations, end->linear, end->factored);
 }
 
 /* Takes one load step; *change is face_stretch_change after it, 0 where it failed. An equilibrium
@@ -299,6 +304,7 @@ static int step_to(struct full *f, double load, double *change, struct newton_en
                    struct full_report *report, struct error *err) {
     if (!f->careful)
         predict(f, load);
+    limit_next(f);
     int status = newton_solve(&f->newton, load, end, err);
     count_work(f, end, report);
     *change = status == 0 ? face_stretch_change(f->mesh, f->newton.u, f->kept) : 0;
@@ -391,6 +397,7 @@ static int drag_on(struct full *f, double load, double drag, double tolerance, d
     n->drag = drag;
     n->tolerance = tolerance;
     n->evaluated = false;
+    limit_next(f);
     int status = newton_solve(n, load, end, err);
     n->tolerance = usual;
     count_work(f, end, report);
@@ -623,7 +630,13 @@ static int fill_state(struct full *f, const struct newton_end *end, struct conta
     out->stiffness = out->nodes == face ? INFINITY : 0;
     if (out->nodes == 0 || out->nodes == face)
         return 0;
+    f->newton.limit = (struct full_limit){0};
     int status = newton_compliance(&f->newton, &compliance, f->tangent, err);
+    if (status != 0)
+        error_context(err,
+                      "the stiffness of contact on the true geometry under a mean pressure of %g "
+                      "E*, which was reached, was not found",
+                      out->pressure);
     out->tangent = status == 0 ? f->tangent : NULL;
     out->stiffness = 1 / (compliance * f->mesh->unit);
     return status;

@@ -19,14 +19,6 @@
 #include "core/contact/contact.h"
 #include "core/full/newton.h"
 
-/* A limit of what the loads of a surface may take, in counted work: the same on all machines, so
- * that results are. Seconds are those that estimates of time count (core/cost.h). */
-struct full_limit {
-    double seconds;                  /* of all loads since full_begin; 0: none */
-    double newton, linear, factored; /* seconds that an iteration of Newton's method, one of the
-                                        linear equations and a factorisation count */
-};
-
 struct full_options {
     enum kinematics kinematics;
     enum equation_solver solver;
@@ -34,7 +26,7 @@ struct full_options {
     double tolerance;      /* largest out-of-balance force over the largest contact force */
     size_t max_iterations; /* iterations of Newton's method a load step */
     double least_step;     /* smallest load step over the change of load asked; smaller ones fail */
-    struct full_limit limit; /* {0}: none */
+    struct full_limit limit; /* of all loads since full_begin; {0}: none */
     /* What is measured of a solution, which stays the same (face.h). current_areas: tilts of areas
      * are reported, and the mean gap is that over the face as it stands. normal_gaps: gaps of nodes
      * out of contact, and so their mean, are along the normal of the face. The conditions of
@@ -104,9 +96,9 @@ void full_set_overhangs(struct full *full, bool allowed);
  * ERROR_INPUT for a surface that is not finite or too steep. */
 int full_begin(struct full *full, const double *z, struct error *err);
 /* Presses to a mean pressure >= 0, in load steps where needed. The message of ERROR_NUMERIC names
- * the load that was reached, as where the limit is used up, which is looked at between load
- * steps. The solver keeps that state, and another load may be tried from there.
- * Normal gaps of a face that overhangs are none: ERROR_NUMERIC. report may be NULL. */
+ * the load that was reached, as where the limit is used up, which ends steps and iterations of the
+ * linear equations within them. The solver keeps that state, and another load may be tried from
+ * there. Normal gaps of a face that overhangs are none: ERROR_NUMERIC. report may be NULL. */
 int full_press(struct full *full, double pressure, struct contact_state *out,
                struct full_report *report, struct error *err);
 /* The mesh, and the displacements of the last state in the grid's unit of length: component k of a

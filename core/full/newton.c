@@ -15,10 +15,10 @@ static const double COMPLEMENTARITY = 1;
  * is below TRUSTED; while nodes change one at a time, below TRUSTED_ONE. */
 static const double TRUSTED = 0.1, TRUSTED_ONE = 1e-4;
 /* Residuals at which iterations of the linear equations end: LINEAR_PART times Newton's residual,
- * at most LINEAR_MOST; LINEAR_EXACT with a factorisation; LINEAR_STIFFNESS for newton_compliance.
- */
+ * at most LINEAR_MOST; LINEAR_EXACT with a factorisation; LINEAR_STIFFNESS for newton_compliance,
+ * the second where the first is not reached. */
 static const double LINEAR_MOST = 1e-2, LINEAR_PART = 0.1, LINEAR_EXACT = 1e-10;
-static const double LINEAR_STIFFNESS = 1e-6;
+static const double LINEAR_STIFFNESS[] = {1e-6, 1e-4};
 /* Gaps are sums of heights and displacements. Their rounding error is taken as ROUNDINGS units in
  * the last digit of the highest height. A load is refused when forces by strains of that size
  * exceed ROUNDING_MOST times the load. */
@@ -62,15 +62,15 @@ int newton_create(struct newton *out, const struct mesh *mesh, const struct mate
 }
 
 /* Returns whether a factorisation is affordable: with Netlib's BLAS it takes about ten seconds and
- * a gigabyte at these sizes. */
+ * a gigabyte at this size, and as long for a surface of 20 x 20 nodes. */
 static bool factorable(const struct mesh *mesh) {
-    return mesh_degrees_of_freedom(mesh) <= (mesh->dimension == 2 ? 500000 : 20000);
+    return mesh->dimension == 2 && mesh_degrees_of_freedom(mesh) <= 500000;
 }
 
 int newton_allow_overhangs(struct newton *n, struct error *err) {
     const struct mesh *mesh = n->mesh;
     int status = 0;
-    if (mesh->dimension != 2 || !factorable(mesh))
+    if (!factorable(mesh))
         return error_set(err, ERROR_INPUT,
                          "a face of %zu x %zu nodes may not overhang: contact of a face with "
                          "itself is that of profiles of up to 500000 degrees of freedom",
@@ -255,6 +255,24 @@ static bool evaluate(struct newton *n) {
     return n->evaluated;
 }
 
+static double used_by(const struct newton *n, const struct newton_end *end) {
+    return full_limit_count(&n->limit, end->iterations, end->linear, end->factored);
+}
+
+/* Returns whether more than the limit, with these seconds more, is used. */
+static bool is_used_up(const struct newton *n, const struct newton_end *end, double more) {
+    return n->limit.seconds > 0 && used_by(n, end) + more > n->limit.seconds;
+}
+
+static struct linear_system system_of(const struct newton *n, struct factorisation *factorisation,
+                                      const struct newton_end *end) {
+    return (struct linear_system){.tangent = n->tangent,
+                                  .active = n->active,
+                                  .factorisation = factorisation,
+                                  .pinned = n->drag > 0,
+                                  .most = full_limit_linear(&n->limit, used_by(n, end))};
+}
+
 /* Replaces the forces in change by displacements, using a factorisation. */
 static int solve_factored(struct newton *n, double tolerance, struct newton_end *end,
                           struct error *err) {
@@ -273,13 +291,13 @@ static int solve_factored(struct newton *n, double tolerance, struct newton_end 
     if (status != 0)
         return status;
     end->factored++;
-    struct linear_system system = {n->tangent, n->active, n->factorisation, NULL, n->drag > 0};
+    const struct linear_system system = system_of(n, n->factorisation, end);
     return gmres_solve(n->gmres, &system, tolerance, n->change, &end->linear, err);
 }
 
 static int solve_iterated(struct newton *n, double tolerance, struct newton_end *end,
                           struct error *err) {
-    struct linear_system system = {n->tangent, n->active, NULL, NULL, n->drag > 0};
+    const struct linear_system system = system_of(n, NULL, end);
     return gmres_solve(n->gmres, &system, tolerance, n->change, &end->linear, err);
 }
 
@@ -377,6 +395,8 @@ static int check_progress(const struct newton *n, struct newton_progress *progre
         return error_set(err, ERROR_NUMERIC,
                          "%zu iterations of Newton's left %.2g of the largest force",
                          end->iterations, end->residual);
+    if (is_used_up(n, end, 0))
+        return error_set(err, ERROR_NUMERIC, "the time limit was used up");
     if (n->stop != NULL && n->stop(n->context) != 0)
         return error_set(err, ERROR_STOPPED, "stopped after %zu iterations of Newton's",
                          end->iterations);
@@ -448,7 +468,8 @@ int newton_solve(struct newton *n, double pressure, struct newton_end *end, stru
         end->iterations++;
         n->factored = n->factored || n->tangent->links > 0;
         status = newton_change(n, off, end, err);
-        if (status == ERROR_NUMERIC && !n->factored && factorable(n->mesh)) {
+        if (status == ERROR_NUMERIC && !n->factored && factorable(n->mesh) &&
+            !is_used_up(n, end, n->limit.factored)) {
             n->factored = true;
             continue;
         }
@@ -482,18 +503,22 @@ static void tangent_pressures(struct newton *n, double *tangent) {
         tangent[node] /= mean;
 }
 
-int newton_compliance(struct newton *n, double *out, double *tangent, struct error *err) {
-    const struct mesh *mesh = n->mesh;
+/* Replaces change by the displacements under a mean pressure of 1 with the nodes in contact held.
+ */
+static int solve_held(struct newton *n, bool factored, double tolerance, struct error *err) {
     struct newton_end ignored = {0};
-    int status = ERROR_NUMERIC;
-    for (int factored = n->factored; status == ERROR_NUMERIC && factored <= factorable(mesh);
-         factored++) {
-        memset(n->change, 0, newton_unknowns(n) * sizeof *n->change);
-        n->change[mesh_vertical(mesh, mesh_far_side(mesh))] =
-            -newton_node_area(n) * (double)mesh->face;
-        status =
-            (factored != 0 ? solve_factored : solve_iterated)(n, LINEAR_STIFFNESS, &ignored, err);
-    }
+    memset(n->change, 0, newton_unknowns(n) * sizeof *n->change);
+    n->change[mesh_vertical(n->mesh, mesh_far_side(n->mesh))] =
+        -newton_node_area(n) * (double)n->mesh->face;
+    return (factored ? solve_factored : solve_iterated)(n, tolerance, &ignored, err);
+}
+
+int newton_compliance(struct newton *n, double *out, double *tangent, struct error *err) {
+    int status = solve_held(n, n->factored, LINEAR_STIFFNESS[0], err);
+    if (status == ERROR_NUMERIC && !n->factored && factorable(n->mesh))
+        status = solve_held(n, true, LINEAR_STIFFNESS[0], err);
+    if (status == ERROR_NUMERIC)
+        status = solve_held(n, false, LINEAR_STIFFNESS[1], err);
     if (status != 0)
         return status;
     *out = -face_mean_gap_change(n->mesh, face_displacement(n), n->gap, n->change);

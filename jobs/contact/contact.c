@@ -73,6 +73,7 @@ static int realise(void *workspace, const struct realisation *realisation, void 
     struct contact_tally *contact = tally;
     contact->realisation = realisation->key.realisation;
     const struct contact_surface surface = {realisation->key, realisation->z};
+    contact_scene_set_progress(work->scene, realisation->progress, realisation->stop_context);
     int status = contact_scene_solve(work->scene, &surface, contact, realisation->stop,
                                      realisation->stop_context, err);
     if (status != 0)

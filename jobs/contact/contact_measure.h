@@ -24,6 +24,9 @@ struct measure_context {
     /* Called by quantities that take long; non-zero ends them with ERROR_STOPPED. NULL: never. */
     int (*stop)(void *context);
     void *stop_context;
+    /* Takes the share that is done of quantities that take long; NULL: nothing does. */
+    void (*progress)(void *context, double share);
+    void *progress_context;
 };
 /* Returns a value that fits into exact sums, as its square must, too; else NaN. A stiffness so
  * large is that of full contact but for rounding. */

@@ -11,6 +11,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* How much of a realisation is done, in estimated seconds. */
+struct scene_progress {
+    void (*report)(void *context, double share); /* may be NULL */
+    void *context;
+    double loads[CONTACT_MODELS_MOST][CONTACT_LEVELS_MOST]; /* of all loads */
+    double quantities[CONTACT_MODELS_MOST][CONTACT_LEVELS_MOST];
+    double whole;           /* with companions */
+    double before, current; /* done before what is at work, and the whole of that */
+};
+
 struct contact_scene {
     const struct contact_case *one_case;
     double rms_slope, rms_height; /* of the prescribed spectrum */
@@ -21,6 +31,7 @@ struct contact_scene {
     struct patch_finder *finders[CONTACT_LEVELS_MOST];
     struct contact_quantities quantities[CONTACT_MODELS_MOST][CONTACT_LEVELS_MOST];
     struct companion_bench *companions;
+    struct scene_progress progress;
     double *z; /* heights on a level; room for the finest */
 };
 
@@ -82,6 +93,41 @@ static int scene_fill(struct contact_scene *scene, const struct contact_complian
                : error_memory(err, (points + bins) * sizeof(double), "a surface");
 }
 
+static void expect_progress(struct contact_scene *scene) {
+    const struct contact_case *one_case = scene->one_case;
+    struct scene_progress *progress = &scene->progress;
+    progress->whole = companions_seconds(one_case);
+    for (size_t l = 0; l < one_case->level_count; l++)
+        for (size_t m = 0; m < one_case->model_count; m++) {
+            const struct quantity_scene quantities = quantity_scene_of(one_case, m, l);
+            progress->loads[m][l] =
+                one_case->models[m]->seconds(one_case, m, &one_case->levels[l].grid);
+            progress->quantities[m][l] = contact_quantities_seconds(&quantities);
+            progress->whole += progress->loads[m][l] + progress->quantities[m][l];
+        }
+}
+
+void contact_scene_set_progress(struct contact_scene *scene,
+                                void (*progress)(void *context, double share), void *context) {
+    scene->progress.report = progress;
+    scene->progress.context = context;
+}
+
+/* Reports that so much is done of what is at work. */
+static void report_part(void *context, double part) {
+    const struct scene_progress *progress = context;
+    double done = progress->before + part * progress->current;
+    if (progress->report != NULL && progress->whole > 0)
+        progress->report(progress->context, fmin(done / progress->whole, 1));
+}
+
+/* Goes on to what takes so many seconds. */
+static void begin_part(struct scene_progress *progress, double seconds) {
+    progress->before += progress->current;
+    progress->current = seconds;
+    report_part(progress, 0);
+}
+
 int contact_scene_create(struct contact_scene **out, const struct contact_case *one_case,
                          const struct moments *moments,
                          const struct contact_compliances *compliances, struct error *err) {
@@ -94,6 +140,8 @@ int contact_scene_create(struct contact_scene **out, const struct contact_case *
     int status = scene_fill(scene, compliances, err);
     if (status == 0)
         status = companion_bench_create(&scene->companions, one_case, moments, err);
+    if (status == 0)
+        expect_progress(scene);
     if (status != 0)
         contact_scene_destroy(&scene);
     *out = scene;
@@ -219,9 +267,13 @@ static int solve_back(struct contact_scene *scene, size_t m, size_t level,
         if (status == 0)
             contact_quantities_measure_falling(one_case, &context, &pressed.state, cells,
                                                values + k);
+        report_part(&scene->progress, 1 - (double)k / (2 * (double)one_case->load_count));
     }
     context.stop = stopper->stop;
     context.stop_context = stopper->context;
+    context.progress = report_part;
+    context.progress_context = &scene->progress;
+    begin_part(&scene->progress, scene->progress.quantities[m][level]);
     return status != 0 ? status
                        : contact_quantities_complete(context.quantities, &context, scene->z, cells,
                                                      values, err);
@@ -236,6 +288,8 @@ static int solve_loads(struct contact_scene *scene, size_t m, size_t level,
     struct contact_solver *solver = scene->solvers[m][level];
     double unused[MODEL_FACTS_MOST];
     bool finest = level + 1 == one_case->level_count;
+    const double passes = (double)one_case->load_count * (one_case->unloads ? 2 : 1);
+    begin_part(&scene->progress, scene->progress.loads[m][level]);
     int status = model->begin(solver, scene->z, stopper->stop, stopper->context,
                               finest ? tally->facts[m] : unused, err);
     for (size_t k = 0; k < one_case->load_count && status == 0; k++) {
@@ -246,6 +300,7 @@ static int solve_loads(struct contact_scene *scene, size_t m, size_t level,
                              contact_case_cell(one_case, m, level, k), err);
         if (status == 0 && contact_tally_counts(one_case, level))
             status = count_pressures(scene, m, level, k, &pressed, tally, err);
+        report_part(&scene->progress, (double)(k + 1) / passes);
     }
     return status != 0 ? status : solve_back(scene, m, level, tally, stopper, err);
 }
@@ -287,12 +342,14 @@ int contact_scene_solve(struct contact_scene *scene, const struct contact_surfac
     const struct contact_stopper stopper = {stop, context};
     const struct level_source source = {scene->rms_height, surface->key};
     int status = 0;
+    scene->progress.before = scene->progress.current = 0;
     for (size_t l = 0; l < one_case->level_count && status == 0; l++) {
         status = contact_level_sample(&one_case->levels[l], &one_case->surface, &source, surface->z,
                                       scene->z, err);
         for (size_t m = 0; m < one_case->model_count && status == 0; m++)
             status = solve_model(scene, m, l, tally, &stopper, err);
     }
+    begin_part(&scene->progress, companions_seconds(one_case));
     if (status == 0)
         status = companion_bench_solve(scene->companions, surface, tally, &stopper, err);
     return status;

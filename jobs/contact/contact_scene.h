@@ -21,6 +21,10 @@ int contact_scene_create(struct contact_scene **out, const struct contact_case *
                          const struct contact_compliances *compliances, struct error *err);
 /* Lets a team of threads work along, with the same digits; borrowed. ERROR_MEMORY. */
 int contact_scene_set_team(struct contact_scene *scene, struct team *team, struct error *err);
+/* Sets what contact_scene_solve passes the share of its work that is done, by estimated times,
+ * after each load and each step of a path; NULL, the initial value: nothing. */
+void contact_scene_set_progress(struct contact_scene *scene,
+                                void (*progress)(void *context, double share), void *context);
 void contact_scene_destroy(struct contact_scene **scene);
 
 /* Solves every level, model and load of a realisation into the tally's values. stop is called

@@ -87,6 +87,7 @@ struct study_status {
     uint64_t cases_failed; /* whose results cannot be published */
     uint64_t realisations_total, realisations_done,
         realisations_failed; /* done counts those that running jobs reported, too */
+    double part;             /* that these reported of realisations that have not ended, added up */
     struct work_time time;   /* of completed jobs */
     double share;            /* share of its work that is done, by time, not by realisations */
     double seconds_left; /* by the clock, with the workers at work now, after older studies that no
@@ -207,9 +208,9 @@ bool store_claim_failed_jobs(const struct store *store);
 /* Sets the weight of an owner, above 0 and 1 by default: its share of the workers' time relative to
  * that of other owners. */
 int store_share(struct store *store, const char *owner, double weight, struct error *err);
-/* Renews the lease; done: realisations so far. ERROR_STATE when the lease is lost or the study
- * cancelled (the text says which). */
-int store_heartbeat(struct store *store, int64_t job, const char *token, uint64_t done,
+/* Renews the lease; done: realisations so far, with what is done of the next one. ERROR_STATE when
+ * the lease is lost or the study cancelled (the text says which). */
+int store_heartbeat(struct store *store, int64_t job, const char *token, double done,
                     struct error *err);
 
 /* A block as it is stored. A thread that queues results for the one writer makes it beforehand;
@@ -381,6 +382,7 @@ struct worker_activity {
     uint64_t case_number;     /* of a component: the case that it belongs to */
     int64_t job;              /* 0: none */
     uint64_t count, done;     /* realisations of the job, and those that it reported */
+    double part;              /* that it reported of the next one, below 1 */
     char *claimed;            /* UTC, ISO 8601; "" without a job */
     uint64_t recent_jobs;     /* all that it ended in the last hour */
     char *last_ended;         /* UTC; "": none in the last hour */

@@ -136,7 +136,7 @@ int job_lose(struct store *store, const struct job_row *job, const char *worker,
 
 /* --- under a lease --- */
 
-int store_heartbeat(struct store *store, int64_t job, const char *token, uint64_t done,
+int store_heartbeat(struct store *store, int64_t job, const char *token, double done,
                     struct error *err) {
     struct job_row row;
     int status = change_begin(store, err);
@@ -144,12 +144,12 @@ int store_heartbeat(struct store *store, int64_t job, const char *token, uint64_
         return status;
     status = read_leased(store, job, token, &row, err);
     if (status == 0) {
-        int64_t reported = done < (uint64_t)row.count ? (int64_t)done : row.count;
+        double reported = done < (double)row.count ? done : (double)row.count;
         status = store_run(store, err,
                            "UPDATE job SET lease_until = ?1 + ?2, reported_ms = CASE WHEN reported "
                            "< ?3 THEN ?1 - coalesce(claimed_ms, ?1) ELSE reported_ms END, reported "
                            "= ?3 WHERE id = ?4",
-                           "iiii", store_now(store), store->options.lease_ms, reported, job);
+                           "iidi", store_now(store), store->options.lease_ms, reported, job);
     }
     return change_end(store, status, err);
 }

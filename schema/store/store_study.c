@@ -45,7 +45,8 @@ static const char *state_name(const unsigned char *text) {
     "jobs_running, jobs_waiting, jobs_cancelled, realisations_done, realisations_failed, "         \
     "seconds, "                                                                                    \
     "revision, created, finished, id, "                                                            \
-    "(SELECT coalesce(sum(reported), 0) FROM job INDEXED BY job_running WHERE state = 'running' "  \
+    "(SELECT coalesce(sum(CAST(reported AS INTEGER)), 0) FROM job INDEXED BY job_running WHERE "   \
+    "state = 'running' "                                                                           \
     "AND study_id = study.id), "                                                                   \
     "(SELECT count(DISTINCT worker) FROM job INDEXED BY job_running WHERE state = 'running' AND "  \
     "study_id = study.id), "                                                                       \
@@ -53,7 +54,9 @@ static const char *state_name(const unsigned char *text) {
     "CASE WHEN realisations > 0 THEN cases * realisations ELSE (SELECT sum(c.realisations) FROM "  \
     "study_case c WHERE c.study_id = study.id) END, "                                              \
     "CASE WHEN realisations = 0 THEN (SELECT max(c.error_reached) FROM study_case c WHERE "        \
-    "c.study_id = study.id) END, owner, priority, program"
+    "c.study_id = study.id) END, owner, priority, program, "                                       \
+    "(SELECT total(reported - CAST(reported AS INTEGER)) FROM job INDEXED BY job_running WHERE "   \
+    "state = 'running' AND study_id = study.id)"
 
 static uint64_t column_count(sqlite3_stmt *row, int column) {
     return (uint64_t)sqlite3_column_int64(row, column);
@@ -82,6 +85,7 @@ static int read_status(sqlite3_stmt *row, struct study_status *out, struct error
     out->realisations_total = column_count(row, 26);
     out->realisations_done = column_count(row, 13) + column_count(row, 20);
     out->realisations_failed = column_count(row, 14);
+    out->part = sqlite3_column_double(row, 31);
     out->time.seconds = sqlite3_column_double(row, 15);
     out->revision = column_count(row, 16);
     column_text(row, 17, out->created, sizeof out->created);

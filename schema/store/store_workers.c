@@ -30,6 +30,8 @@ static int append_worker(sqlite3_stmt *row, struct worker_activity *all, size_t 
                                        .job = sqlite3_column_int64(row, 5),
                                        .count = (uint64_t)sqlite3_column_int64(row, 6),
                                        .done = (uint64_t)sqlite3_column_int64(row, 7),
+                                       .part = sqlite3_column_double(row, 7) -
+                                               (double)sqlite3_column_int64(row, 7),
                                        .claimed = column_copy(row, 8),
                                        .recent_jobs = (uint64_t)sqlite3_column_int64(row, 9),
                                        .last_ended = column_copy(row, 10)};

@@ -23,7 +23,7 @@ struct report {
     enum report_verb verb;
     bool permanent;                    /* of REPORT_FAIL: another try would fail, too */
     const struct claimed_job *job;     /* borrowed, as all below */
-    uint64_t done;                     /* of a heartbeat: realisations so far */
+    double done;                       /* of a heartbeat: realisations so far, with a part of one */
     const struct block_result *result; /* of REPORT_COMPLETE */
     const char *reason;                /* of REPORT_FAIL */
     /* The answer, with the codes of source.h. */

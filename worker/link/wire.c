@@ -366,9 +366,11 @@ int wire_result_read(const cJSON *value, char token[TOKEN_SIZE], struct block_re
 
 /* --- heartbeat, fail, release --- */
 
-cJSON *wire_heartbeat(const char *token, uint64_t done) {
+cJSON *wire_heartbeat(const char *token, double done) {
     cJSON *value = wire_release(token);
-    return fields_finish(value, value != NULL && field_put_count(value, "done", done));
+    return fields_finish(value, value != NULL &&
+                                    field_put_count(value, "done", (uint64_t)floor(done)) &&
+                                    field_put(value, "part", json_number(done - floor(done))));
 }
 
 cJSON *wire_fail(const char *token, const char *reason, bool permanent) {
@@ -394,11 +396,24 @@ static void text_cut(char *out, size_t size, const char *text) {
     out[length] = '\0';
 }
 
+/* Reads the whole realisations and the part of one, each 0 where it is absent. */
+static int read_done(const cJSON *value, double *out, struct error *err) {
+    const cJSON *part = field_at(value, "part");
+    uint64_t whole = 0;
+    int status = field_at(value, "done") != NULL ? field_count(value, "done", &whole, err) : 0;
+    if (status == 0 && part != NULL &&
+        !(cJSON_IsNumber(part) && part->valuedouble >= 0 && part->valuedouble < 1))
+        status = field_fault("part", "a number from 0 to below 1", err);
+    if (status == 0)
+        *out = (double)whole + (part != NULL ? part->valuedouble : 0);
+    return status;
+}
+
 int wire_report_read(const cJSON *value, struct wire_report *out, struct error *err) {
     struct wire_report report = {0};
     int status = field_copy(value, "token", TOKEN_SIZE, report.token, err);
-    if (status == 0 && field_at(value, "done") != NULL)
-        status = field_count(value, "done", &report.done, err);
+    if (status == 0)
+        status = read_done(value, &report.done, err);
     status = status != 0 ? status : field_bool(value, "permanent", &report.permanent, err);
     const cJSON *reason = field_at(value, "reason");
     if (status == 0 && reason != NULL && !cJSON_IsString(reason))

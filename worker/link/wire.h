@@ -6,7 +6,7 @@
  *       200 {"jobs": [{id, study, kind, case, seed: "decimal", sequence, first, count,
  *                      attempt, token, lease_seconds, parameters: {…}}]},
  *       or 204 when there is none
- *     POST /v1/jobs/{id}/heartbeat   {token, done}                      200 {}
+ *     POST /v1/jobs/{id}/heartbeat   {token, done, part}                200 {}
  *     POST /v1/jobs/{id}/complete    {token, seconds, cpu_seconds, first, count,
  *                                     scalars: {names: […], rows: [[…]]}, data: base64}
  *                                                                       200 {"case_done": bool}
@@ -14,9 +14,10 @@
  *     POST /v1/jobs/{id}/release     {token}                            200 {}
  *
  * Numbers read back as the same doubles; NaN crosses as null. Unknown fields are ignored, so that a
- * newer end can work with an older one. A claim without "sequence" is from a worker that draws by
- * the number of the case, and a job without it is of a study that wants that. A claim whose "forms"
- * lack a kind is from a worker that does not say in which form it makes results of it
+ * newer end can work with an older one: a heartbeat has whole realisations and the part of one
+ * apart, of which older servers take the former. A claim without "sequence" is from a worker that
+ * draws by the number of the case, and a job without it is of a study that wants that. A claim
+ * whose "forms" lack a kind is from a worker that does not say in which form it makes results of it
  * (format_version of kind.h). Encoders return NULL when out of memory. Readers return ERROR_INPUT
  * with the field at fault and leave *out untouched. */
 #ifndef RUGO_WORKER_LINK_WIRE_H
@@ -69,11 +70,11 @@ int wire_result_read(const cJSON *value, char token[TOKEN_SIZE], struct block_re
 /* --- heartbeat, fail, release --- */
 struct wire_report {
     char token[TOKEN_SIZE];
-    uint64_t done;                     /* heartbeat */
+    double done;                       /* heartbeat: whole ones, and the part of the next */
     char reason[WIRE_REASON_MOST + 1]; /* fail; a longer one is cut, "" if absent */
     bool permanent;                    /* fail; false if absent */
 };
-cJSON *wire_heartbeat(const char *token, uint64_t done);
+cJSON *wire_heartbeat(const char *token, double done);
 cJSON *wire_fail(const char *token, const char *reason, bool permanent);
 cJSON *wire_release(const char *token);
 int wire_report_read(const cJSON *value, struct wire_report *out, struct error *err);

@@ -1,6 +1,6 @@
 /* Several reports of a worker in one request, as they cross the network.
  *
- *     POST /v1/jobs/report   {"reports": [{verb: "heartbeat", job, token, done},
+ *     POST /v1/jobs/report   {"reports": [{verb: "heartbeat", job, token, done, part},
  *                                         {verb: "complete", job, token, seconds, ...},
  *                                         {verb: "fail", job, token, reason, permanent},
  *                                         {verb: "release", job, token}]}

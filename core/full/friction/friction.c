@@ -20,6 +20,8 @@ struct friction {
     struct full_options options;
     double coefficient;
     size_t press_steps;
+    struct full_limit limit;
+    double used;           /* counted seconds since friction_press began */
     size_t face, sideways; /* nodes, and directions of the face */
     struct full *full;     /* owned, as all below: the contact without friction */
     const struct mesh *mesh;
@@ -75,7 +77,8 @@ int friction_create(struct friction **out, const struct grid *grid, const struct
         return error_memory(err, sizeof *f, "contact with friction");
     *f = (struct friction){.options = *options,
                            .coefficient = friction->coefficient,
-                           .press_steps = friction->press_steps};
+                           .press_steps = friction->press_steps,
+                           .limit = friction->limit};
     struct material material = material_of(block->poisson, options->kinematics);
     status = full_create(&f->full, grid, block, options, err);
     if (status == 0) {
@@ -221,8 +224,11 @@ static int step_to(struct friction *f, const struct friction_goal *goal, double 
     *change = 0;
     settle(f);
     int status = goal->pressure != f->kept.pressure ? guess(f, goal->pressure, out, err) : 0;
+    f->newton.limit = f->limit;
+    f->newton.limit.seconds = f->limit.seconds > 0 ? fmax(f->limit.seconds - f->used, DBL_MIN) : 0;
     if (status == 0)
         status = friction_newton_solve(&f->newton, goal, &end, err);
+    f->used += full_limit_count(&f->limit, end.iterations, end.work.iterations, end.work.factored);
     out->newton += end.iterations;
     out->linear += end.work.iterations;
     out->factored += end.work.factored;
@@ -279,13 +285,16 @@ static int follow(struct friction *f, const struct friction_goal *goal, struct f
         cut = true;
         step /= 2;
         out->cuts++;
-        if (step < f->options.least_step)
-            return error_context(err,
-                                 "contact with friction %g under a mean pressure of %g E* and a "
-                                 "traction of %g E* was followed over %.3g of a step only; the "
-                                 "next %.2g of it failed",
-                                 f->coefficient, f->kept.pressure, f->kept.shear[0] / face_area(f),
-                                 done, 2 * step);
+        if (f->limit.seconds > 0 && f->used > f->limit.seconds)
+            error_set(err, ERROR_NUMERIC, "the time limit of %g s was used up", f->limit.seconds);
+        else if (step >= f->options.least_step)
+            continue;
+        return error_context(err,
+                             "contact with friction %g under a mean pressure of %g E* and a "
+                             "traction of %g E* was followed over %.3g of a step only; the "
+                             "next %.2g of it failed",
+                             f->coefficient, f->kept.pressure, f->kept.shear[0] / face_area(f),
+                             done, 2 * step);
     }
     return 0;
 }
@@ -411,6 +420,7 @@ int friction_press(struct friction *f, double pressure, struct friction_state *o
                          pressure);
     struct friction_state state = {0};
     f->pressed = false;
+    f->used = 0;
     if (f->newton.lu != NULL)
         unsymmetric_forget(f->newton.lu);
     lift(f);

@@ -20,6 +20,8 @@ struct friction_options {
     double coefficient; /* above 0; up to 1 is tested. Without friction there is core/full/full.h */
     size_t press_steps; /* 0: pressed without friction; else friction acts in so many steps of the
                            pressure, whose root rises evenly */
+    struct full_limit limit; /* of all that follows friction_press, and of it, but for the contact
+                                without friction, which full_options limit; {0}: none */
 };
 
 /* A state. The arrays belong to the workspace and are valid until its next call. Lengths are in the
@@ -68,8 +70,8 @@ int friction_begin(struct friction *friction, const double *z, struct error *err
 int friction_press(struct friction *friction, double pressure, struct friction_state *out,
                    struct error *err);
 /* Drags the flat to a displacement over the far side. ERROR_STATE before friction_press;
- * ERROR_NUMERIC, with positions and residual, where no step converges. After a failure the state is
- * that of the last step that did, which may be dragged on. */
+ * ERROR_NUMERIC, with positions and residual, where no step converges or the limit is used up.
+ * After a failure the state is that of the last step that did, which may be dragged on. */
 int friction_drag(struct friction *friction, double displacement, struct friction_state *out,
                   struct error *err);
 /* Takes the mean traction to a value whose size is below coefficient times the pressure;

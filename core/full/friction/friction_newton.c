@@ -362,11 +362,17 @@ struct motion {
     double flat[SIDEWAYS_MOST], shear[SIDEWAYS_MOST];
 };
 
+static double used_by(const struct friction_newton *n, const struct friction_end *end) {
+    return full_limit_count(&n->limit, end->iterations, end->work.iterations, end->work.factored);
+}
+
 /* Replaces the right side x by the solution. */
 static int solve(struct friction_newton *n, double tolerance, double *x, struct friction_end *end,
                  struct error *err) {
     if (n->gmres != NULL) {
-        struct linear_system system = {.tangent = n->tangent, .friction = &n->conditions};
+        const struct linear_system system = {.tangent = n->tangent,
+                                             .friction = &n->conditions,
+                                             .most = full_limit_linear(&n->limit, used_by(n, end))};
         return gmres_solve(n->gmres, &system, tolerance, x, &end->work.iterations, err);
     }
     int status = unsymmetric_set(n->lu, n->tangent, &n->conditions, err);
@@ -537,6 +543,8 @@ static int check_progress(const struct friction_newton *n, struct progress *prog
                          "%zu iterations of Newton's left %.2g of the largest force, and gaps and "
                          "slips of %.2g columns",
                          end->iterations, end->residual, end->inside);
+    if (n->limit.seconds > 0 && used_by(n, end) > n->limit.seconds)
+        return error_set(err, ERROR_NUMERIC, "the time limit was used up");
     if (n->stop != NULL && n->stop(n->context) != 0)
         return error_set(err, ERROR_STOPPED, "stopped after %zu iterations of Newton's",
                          end->iterations);

@@ -49,8 +49,9 @@ struct friction_newton {
     double shear[SIDEWAYS_MOST], flat[SIDEWAYS_MOST]; /* force along the face on the block, and the
                                                          flat's displacement */
     double energy; /* of the block at u, E* times the cube (profiles: square) of the mesh's unit */
-    double flat_height; /* vertical position of the flat */
-    double tolerance;   /* largest residual, over the largest contact force */
+    double flat_height;      /* vertical position of the flat */
+    double tolerance;        /* largest residual, over the largest contact force */
+    struct full_limit limit; /* of the next solution */
     size_t unknowns, max_iterations;
     size_t sideways;            /* directions of the face: 1 of profiles, 2 of surfaces */
     bool evaluated;             /* force, tangent and energy belong to u */

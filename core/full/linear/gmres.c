@@ -8,6 +8,7 @@
 #include <string.h>
 
 enum { BASIS = HESSENBERG_MOST, RESTARTS = 10, LANES = 8 };
+_Static_assert((int)BASIS *(int)RESTARTS == (int)LINEAR_ITERATIONS_MOST, "another most");
 /* A restart that leaves more than this part of the residual is the last one. */
 static const double STALLED = 0.5;
 /* Part of lambda on the mean dilatation over the shear modulus above which pressures are unknowns
@@ -380,14 +381,14 @@ static void combine(struct gmres *gmres, size_t n, size_t count, double *x) {
         add(n, factor[a], gmres->direction[a], x);
 }
 
-/* One restart from the residual in basis 0, whose size is *left: adds its solution to x and sets
- * *left to the size that remains. */
-static int cycle(struct gmres *gmres, const struct linear_system *system, double goal, double *x,
-                 double *left, size_t *iterations, struct error *err) {
+/* One restart from the residual in basis 0, whose size is *left, of `most` iterations at most: adds
+ * its solution to x and sets *left to the size that remains. */
+static int cycle(struct gmres *gmres, const struct linear_system *system, double goal, size_t most,
+                 double *x, double *left, size_t *iterations, struct error *err) {
     size_t n = unknowns_of(gmres, system), c = 0;
     scale(n, 1 / *left, gmres->basis[0]);
     gmres->hessenberg.right[0] = *left;
-    for (double size = 1; c<BASIS && * left> goal && size > 0; c++) {
+    for (double size = 1; c < BASIS && c<most && * left> goal && size > 0; c++) {
         double *next = gmres->basis[c + 1];
         int status = 0;
         if (system->factorisation != NULL)
@@ -441,6 +442,8 @@ int gmres_solve(struct gmres *gmres, const struct linear_system *system, double 
     if (eliminated)
         eliminate_pressures(gmres, system, x);
     double first = sqrt(dot(n, x, x)), left = first, before = INFINITY;
+    const size_t most = system->most > 0 ? system->most : LINEAR_ITERATIONS_MOST;
+    const size_t end = *iterations + most;
     memcpy(gmres->load, x, n * sizeof *x);
     memcpy(gmres->basis[0], x, n * sizeof *x);
     memset(x, 0, n * sizeof *x);
@@ -451,10 +454,11 @@ int gmres_solve(struct gmres *gmres, const struct linear_system *system, double 
                 gmres->basis[0][i] = gmres->load[i] - gmres->basis[0][i];
             left = sqrt(dot(n, gmres->basis[0], gmres->basis[0]));
         }
-        if (!(left <= STALLED * before))
+        if (!(left <= STALLED * before) || *iterations >= end)
             break;
         before = left;
-        int status = cycle(gmres, system, tolerance * first, x, &left, iterations, err);
+        int status =
+            cycle(gmres, system, tolerance * first, end - *iterations, x, &left, iterations, err);
         if (status != 0)
             return status;
     }

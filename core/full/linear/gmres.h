@@ -25,6 +25,8 @@
 #include "core/full/tangent.h"
 
 struct gmres;
+/* Iterations that a solution takes at most. */
+enum { LINEAR_ITERATIONS_MOST = 240 };
 
 int gmres_create(struct gmres **out, const struct mesh *mesh, const struct material *material,
                  enum gap_weighting weighting, struct error *err);
@@ -52,6 +54,7 @@ struct linear_system {
     const struct face_conditions
         *friction; /* in place of both, after gmres_add_friction; or NULL */
     bool pinned;   /* the first node of the far side does not move sideways, whatever its force */
+    size_t most;   /* iterations, up to LINEAR_ITERATIONS_MOST; 0: these */
 };
 
 /* Solves for x, which has tangent_unknowns values. On entry x holds forces (at the first node of

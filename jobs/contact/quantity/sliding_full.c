@@ -26,9 +26,6 @@ static const double STEP_LEAST = 1e-3, AIM_LEAST = 0.5;
 struct sliding_full {
     struct friction *friction; /* owned */
     struct block block;
-    struct full_limit limit;     /* of the path, and of pressing to it */
-    double step_seconds;         /* that a step counts */
-    double used;                 /* counted seconds of the path so far */
     struct friction_state state; /* of the last step */
     double displacement;         /* of the flat then */
 };
@@ -47,15 +44,14 @@ int sliding_full_create(struct sliding_full **out, const struct quantity_scene *
         contact_case_limited_options(one_case, &scene->grid, &scene->block);
     const struct full_size size =
         cost_full_size(&scene->grid, &scene->block, &options, one_case->rms_slope);
-    const struct friction_options friction = {.coefficient = one_case->friction,
-                                              .press_steps =
-                                                  one_case->slip_pressing ? PRESS_STEPS : 0};
+    const struct friction_options friction = {
+        .coefficient = one_case->friction,
+        .press_steps = one_case->slip_pressing ? PRESS_STEPS : 0,
+        .limit = cost_friction_limit(&scene->grid, &size, one_case->time_limit)};
     struct sliding_full *made = array_create(1, sizeof *made);
     if (made == NULL)
         return error_memory(err, sizeof *made, "sliding at finite strain");
     made->block = scene->block;
-    made->limit = options.limit;
-    made->step_seconds = cost_friction_steps(&scene->grid, &size, 1);
     int status =
         friction_create(&made->friction, &scene->grid, &made->block, &options, &friction, err);
     if (status != 0)
@@ -124,20 +120,18 @@ static int drag(struct sliding_full *sliding, const struct measure_context *cont
         by = fmax(by, STEP_LEAST * most);
         if (step > STEPS_TIMES * (one_case->slide_steps + STEPS_LEAST))
             return error_set(err, ERROR_NUMERIC, "the flat did not slide on in %zu steps", step);
-        if (sliding->limit.seconds > 0 && sliding->used > sliding->limit.seconds)
-            return error_set(err, ERROR_NUMERIC, "the time limit of %g s was used up",
-                             sliding->limit.seconds);
         int status = friction_drag(sliding->friction, sliding->displacement + forward * by,
                                    &sliding->state, err);
         if (status != 0)
             return status;
         sliding->displacement += forward * by;
-        sliding->used +=
-            sliding->step_seconds * (double)(sliding->state.steps + sliding->state.cuts);
         rate = forward * (sliding->state.sliding - before) / by;
         slides = slides_evenly(&sliding->state, one_case->friction);
         const struct sliding_sample sample = sample_of(sliding, context, record);
         sliding_record_add(record, &sample);
+        if (context->progress != NULL)
+            context->progress(context->progress_context,
+                              (double)(record->next - 1) / (double)one_case->slide_count);
     }
     return 0;
 }
@@ -147,7 +141,7 @@ int sliding_full_solve(struct sliding_full *sliding, const struct measure_contex
     const struct contact_case *one_case = context->one_case;
     const double load = one_case->loads[one_case->slip_load];
     friction_set_stop(sliding->friction, context->stop, context->stop_context);
-    sliding->displacement = sliding->used = 0;
+    sliding->displacement = 0;
     int status = friction_begin(sliding->friction, z, err);
     if (status == 0)
         status = friction_press(sliding->friction, load * context->rms_slope, &sliding->state, err);

@@ -102,6 +102,7 @@ static cJSON *progress(const struct study_status *status, bool *complete) {
                 (isnan(status->error_reached) ||
                  field_put(document, "error_reached", json_number(status->error_reached))) &&
                 put_jobs(document, status) && put_realisations(document, status) &&
+                field_put(document, "part", json_number(status->part)) &&
                 field_put_count(document, "workers", status->workers) &&
                 field_put(document, "seconds", json_number(status->time.seconds)) &&
                 field_put(document, "cpu_seconds", json_number(status->time.cpu_seconds)) &&
@@ -294,6 +295,7 @@ static bool put_job(cJSON *jobs, const struct worker_activity *worker) {
            field_put_count(job, "job", (uint64_t)worker->job) &&
            field_put_count(job, "count", worker->count) &&
            field_put_count(job, "done", worker->done) &&
+           field_put(job, "part", json_number(worker->part)) &&
            field_put_text(job, "since", worker->claimed);
 }
 

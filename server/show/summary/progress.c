@@ -20,8 +20,10 @@ static void print_bar(const struct progress_bar *bar, const struct progress_stat
     for (int i = 0; i < BAR; i++)
         text[i] = i < (int)(state->share * BAR) ? '#' : '.';
     text[BAR] = '\0';
-    fprintf(stderr, "\r[%s] %5.1f %%  %.0f of %.0f realisations, %lld:%02lld:%02lld, %s left\033[K",
-            text, 100 * state->share, state->done, state->total, seconds / 3600, seconds / 60 % 60,
+    char done[32];
+    realisations_text(state->done, done, sizeof done);
+    fprintf(stderr, "\r[%s] %5.1f %%  %s of %.0f realisations, %lld:%02lld:%02lld, %s left\033[K",
+            text, 100 * state->share, done, state->total, seconds / 3600, seconds / 60 % 60,
             seconds % 60, left);
 }
 
@@ -60,7 +62,7 @@ int progress_tick(void *context) {
     const struct progress_state state = {.study = progress->study,
                                          .share = now.share,
                                          .seconds_left = now.seconds_left,
-                                         .done = (double)now.realisations_done,
+                                         .done = (double)now.realisations_done + now.part,
                                          .total = (double)now.realisations_total};
     progress_draw(&progress->bar, &state);
     study_status_clear(&now);
@@ -78,7 +80,8 @@ void progress_of_document(struct progress_bar *bar, const cJSON *progress) {
     double share = number_of(progress, "share"); /* an older server has none */
     struct progress_state state = {.study = id != NULL ? id : "?",
                                    .seconds_left = number_of(progress, "seconds_left"),
-                                   .done = fmax(0, number_of(realisations, "done")),
+                                   .done = fmax(0, number_of(realisations, "done")) +
+                                           fmax(0, number_of(progress, "part")),
                                    .total = fmax(0, number_of(realisations, "total"))};
     state.share = share >= 0 && share <= 1 ? share : state.done / fmax(1, state.total);
     if (progress_is_due(bar))

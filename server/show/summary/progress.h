@@ -19,7 +19,7 @@ bool progress_is_due(const struct progress_bar *bar);
 struct progress_state {
     const char *study;
     double share, seconds_left;
-    double done, total; /* realisations */
+    double done, total; /* realisations; done has parts of those at work */
 };
 void progress_draw(struct progress_bar *bar, const struct progress_state *state);
 /* Ends the bar's line. */

@@ -233,6 +233,11 @@ void duration_text(double seconds, char *out, size_t size) {
                  floor(fmod(seconds, 3600) / 60));
 }
 
+void realisations_text(double realisations, char *out, size_t size) {
+    bool whole = realisations == floor(realisations);
+    snprintf(out, size, whole ? "%.0f" : "%.2f", realisations);
+}
+
 void work_time_text(const struct work_time *time, char *out, size_t size) {
     char clock[48], cpu[48];
     duration_text(time->seconds, clock, sizeof clock);

@@ -30,6 +30,8 @@ const char *source_word(const char *const *words, enum error_source source);
 #define ERROR_SHOWN 1e-4
 /* The same of the solver, which studies let follow their other errors. */
 #define SOLVER_SHOWN 5e-3
+/* Writes a number of realisations, with two digits of a part. */
+void realisations_text(double realisations, char *out, size_t size);
 /* Returns the one of a source. */
 double error_shown(size_t source);
 /* "Errors not known: cell." and "Errors below 0.01 %: block." in lines of their own; nothing where

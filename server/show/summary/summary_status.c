@@ -65,7 +65,7 @@ static void print_line(const cJSON *status, FILE *file) {
 void summary_of_status(const cJSON *status, FILE *file) {
     const cJSON *jobs = field_at(status, "jobs"), *realisations = field_at(status, "realisations");
     struct work_time time;
-    char left[96], spent[112];
+    char left[96], spent[112], done[32];
     work_time_read(status, (uint64_t)fmax(number_of(jobs, "done"), 0), &time);
     print_left(status, left, sizeof left);
     work_time_text(&time, spent, sizeof spent);
@@ -74,10 +74,11 @@ void summary_of_status(const cJSON *status, FILE *file) {
     fputc(' ', file);
     if (!isnan(number_of(status, "share")))
         fprintf(file, " %.1f %% of the work,", 100 * number_of(status, "share"));
-    fprintf(file, " realisations %.0f of %.0f, jobs %.0f of %.0f (%.0f running, %.0f failed)\n",
-            number_of(realisations, "done"), number_of(realisations, "total"),
-            number_of(jobs, "done"), number_of(jobs, "total"), number_of(jobs, "running"),
-            number_of(jobs, "failed"));
+    realisations_text(number_of(realisations, "done") + fmax(0, number_of(status, "part")), done,
+                      sizeof done);
+    fprintf(file, " realisations %s of %.0f, jobs %.0f of %.0f (%.0f running, %.0f failed)\n", done,
+            number_of(realisations, "total"), number_of(jobs, "done"), number_of(jobs, "total"),
+            number_of(jobs, "running"), number_of(jobs, "failed"));
     fprintf(file, "  workers %.0f, spent %s, left %s\n", number_of(status, "workers"), spent, left);
     print_line(status, file);
     if (time.seconds > 0)

@@ -90,7 +90,7 @@ static cJSON *drawn_report(struct choices *choices, struct served *served,
         return wire_fail(token, REASONS[choose(choices, 3)], choose_rarely(choices, 8));
     if (strcmp(verb, wire_verb(REPORT_RELEASE)) == 0)
         return wire_release(token);
-    return wire_heartbeat(token, far ? UINT64_C(1) << 53 : choose(choices, 9));
+    return wire_heartbeat(token, far ? 0x1p53 : (double)choose(choices, 9) / 4);
 }
 
 static cJSON *drawn_reports(struct choices *choices, struct served *served, bool odd) {

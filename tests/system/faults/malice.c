@@ -180,7 +180,7 @@ static void reach_out(struct world *world, const struct held *held, cJSON *docum
         refused_document(world, other, "release", wire_release(token));
         break;
     default:
-        refused_document(world, other, "heartbeat", wire_heartbeat(token, UINT64_MAX));
+        refused_document(world, other, "heartbeat", wire_heartbeat(token, 1e19));
         break;
     }
     cJSON_Delete(document);

@@ -45,6 +45,12 @@ static const char STEEP[] =
     " 2, \"points_per_wavelength\": 4, \"rms_slope\": 1.6}, \"contact\": {\"model\":"
     " [\"full\", \"halfspace\", \"layered\"], \"levels\": [2, 4], \"block_height\": {\"lengths\":"
     " 1}, \"cell_error\": \"none\", \"pressures\": {\"to\": 0.5, \"steps\": 3}}}";
+/* The flat is dragged at finite strain. */
+static const char SLIDING[] =
+    "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 2,"
+    " \"points_per_wavelength\": 4, \"rms_slope\": 0.1}, \"contact\": {\"model\": \"full\", "
+    "\"friction\":"
+    " 0.3, \"slip\": {\"to\": [0.6], \"steps\": 12}, \"pressures\": {\"values\": [0.1]}}}";
 /* Sub-maps are pressed beside a measured surface. */
 static const char LIKE[] =
     "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 4,"
@@ -454,10 +460,48 @@ struct questions {
 };
 
 /* Stops at the question after so many: one before a realisation, one a load. */
-static int stop_after(void *context, uint64_t done) {
+static int stop_after(void *context, double done) {
     struct questions *questions = context;
     (void)done;
     return ++questions->asked > questions->most;
+}
+
+/* What a job reported: how often it moved, and within a realisation. */
+struct reported {
+    double done;
+    int moves, within;
+};
+
+static int take_report(void *context, double done) {
+    struct reported *reported = context;
+    assert_true(done >= reported->done && done <= 2);
+    reported->moves += done > reported->done;
+    reported->within += done > reported->done && done != floor(done);
+    reported->done = done;
+    return 0;
+}
+
+/* A job says how far it is within a realisation: after each load, and each step of a path. */
+static void progress_within_realisations(void **state) {
+    (void)state;
+    static const struct {
+        const char *study;
+        int within; /* at least */
+    } ROWS[] = {{FULL, 2}, {STEEP, 4}, {SLIDING, 12}};
+    for (size_t row = 0; row < sizeof ROWS / sizeof *ROWS; row++) {
+        struct job_runner *runner = runner_of(ROWS[row].study, NULL);
+        struct reported reported = {0};
+        const struct job_control control = {take_report, &reported};
+        struct block_result result = {0};
+        struct error err = {0};
+        assert_int_equal(runner_run(runner, 0, 2, &control, &result, &err), 0);
+        if (reported.within < ROWS[row].within)
+            fail_msg("study %zu reported %d parts of realisations, %d in all", row, reported.within,
+                     reported.moves);
+        assert_true(reported.done > 1.3);
+        block_result_clear(&result);
+        runner_destroy(&runner);
+    }
 }
 
 /* Stops in the midst of the second realisation. */
@@ -484,7 +528,7 @@ static void stopping(void **state) {
     runner_destroy(&runner);
 }
 
-static int stop_at_number(void *context, uint64_t done) {
+static int stop_at_number(void *context, double done) {
     int *left = context;
     (void)done;
     return (*left)-- == 0;
@@ -532,6 +576,7 @@ int main(void) {
         cmocka_unit_test(pressures_are_those_in_contact),
         cmocka_unit_test(failures_are_told),
         cmocka_unit_test(no_realisation_yet),
+        cmocka_unit_test(progress_within_realisations),
         cmocka_unit_test(stopping),
         cmocka_unit_test(stopping_within_a_load),
     };

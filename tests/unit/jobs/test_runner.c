@@ -8,7 +8,7 @@
 enum { PAUSE_MS = 20, REALISATIONS = 10 };
 
 /* Keeps the thread waiting, as a busy machine does. */
-static int wait_a_while(void *context, uint64_t done) {
+static int wait_a_while(void *context, double done) {
     const struct timespec pause = {0, PAUSE_MS * 1000000L};
     (void)context, (void)done;
     nanosleep(&pause, NULL);

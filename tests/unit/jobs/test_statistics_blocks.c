@@ -131,9 +131,9 @@ static void no_realisation_yet(void **state) {
 }
 
 /* The number of realisations to stop after. */
-static int stop_at(void *context, uint64_t done) {
+static int stop_at(void *context, double done) {
     const uint64_t *most = context;
-    return done == *most;
+    return done == (double)*most;
 }
 
 /* What is done when a block is stopped is handed out, as if no more had been asked for. */

@@ -144,6 +144,44 @@ static void a_study_runs_to_its_end(void **state) {
     store_close(&store);
 }
 
+/* Jobs report parts of a realisation, too: they count in the share and the time left, and are seen,
+ * but no realisation is done by them. */
+static void parts_of_realisations_count(void **state) {
+    (void)state;
+    struct store *store = open_store("part.db");
+    char id[STUDY_ID_SIZE];
+    struct claimed_job job;
+    struct study_status begun, half, done;
+    struct worker_activity *workers;
+    size_t count;
+    submit(store, 5, NULL, id);
+    clock_ms = 5000;
+    assert_int_equal(claim(store, "one", &job), 1);
+    clock_ms = 5400;
+    assert_int_equal(store_heartbeat(store, job.id, job.token, 0.1, NULL), 0);
+    assert_int_equal(store_status(store, id, &begun, NULL), 0);
+    assert_int_equal(store_heartbeat(store, job.id, job.token, 0.5, NULL), 0);
+    assert_int_equal(store_status(store, id, &half, NULL), 0);
+    assert_int_equal(store_heartbeat(store, job.id, job.token, 1.5, NULL), 0);
+    assert_int_equal(store_status(store, id, &done, NULL), 0);
+    assert_true(begun.part == 0.1 && half.part == 0.5 && done.part == 0.5);
+    assert_true(begun.realisations_done == 0 && half.realisations_done == 0);
+    assert_int_equal(done.realisations_done, 1);
+    /* in the same time */
+    assert_true(begun.seconds_left > 2 * half.seconds_left);
+    assert_true(half.seconds_left > 2 * done.seconds_left);
+    assert_true(begun.share < half.share && half.share < done.share);
+    assert_int_equal(store_workers(store, &workers, &count, NULL), 0);
+    assert_int_equal(count, 1);
+    assert_true(workers[0].done == 1 && workers[0].part == 0.5);
+    workers_free(workers, count);
+    claimed_job_clear(&job);
+    study_status_clear(&begun);
+    study_status_clear(&half);
+    study_status_clear(&done);
+    store_close(&store);
+}
+
 static void leases_run_out_and_fence(void **state) {
     (void)state;
     struct store *store = open_store("lease.db");
@@ -728,6 +766,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(jobs_tell_their_sequence),
         cmocka_unit_test(a_study_runs_to_its_end),
+        cmocka_unit_test(parts_of_realisations_count),
         cmocka_unit_test(leases_run_out_and_fence),
         cmocka_unit_test(three_attempts_then_failed_with_its_reason),
         cmocka_unit_test(a_deadly_job_fails),

@@ -73,7 +73,8 @@ static void end_one(struct scene *scene) {
         drop(scene, at);
         scene->failed++;
     } else if (how < 11) {
-        (void)store_heartbeat(scene->store, job->id, job->token, below(scene, job->count), NULL);
+        (void)store_heartbeat(scene->store, job->id, job->token, (double)below(scene, job->count),
+                              NULL);
     } else {
         clock_ms += 700; /* leases run out, and results of theirs come later, or never */
         if (below(scene, 2) == 0)

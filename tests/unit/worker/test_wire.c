@@ -1,4 +1,5 @@
 /* Jobs and results cross the network unchanged, bit for bit, and nothing malformed gets in. */
+#include "schema/json/field.h"
 #include "tests/support/seed.h"
 #include "tests/unit/worker/crossing.h"
 #include "worker/link/wire.h"
@@ -379,6 +380,16 @@ static void reports_cross(void **state) {
     cJSON *value = cross(wire_heartbeat(TOKEN, 41));
     assert_int_equal(wire_report_read(value, &got, &err), 0);
     assert_true(got.done == 41 && !got.permanent && got.reason[0] == '\0');
+    cJSON_Delete(value);
+    value = cross(wire_heartbeat(TOKEN, 41.25));
+    assert_int_equal(wire_report_read(value, &got, &err), 0);
+    assert_true(got.done == 41.25);
+    assert_true(field_number(value, "done") == 41); /* which older servers read */
+    cJSON_SetNumberValue(cJSON_GetObjectItem(value, "part"), 1);
+    assert_int_equal(wire_report_read(value, &got, &err), ERROR_INPUT);
+    cJSON_DeleteItemFromObject(value, "part"); /* of an older worker */
+    assert_int_equal(wire_report_read(value, &got, &err), 0);
+    assert_true(got.done == 41);
     cJSON_Delete(value);
     value = cross(wire_fail(TOKEN, "no \"convergence\"\n", true));
     assert_int_equal(wire_report_read(value, &got, &err), 0);

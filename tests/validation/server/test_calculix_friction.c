@@ -6,10 +6,11 @@
  * penetration, and a tangential stiffness in place of stick. It holds each node of the far side
  * along the face, where Rugo holds their mean: the block is so high that little of the pressures is
  * left there. (Two thirds as high, forces differ by 0.6 % of the friction.) RUGO_TABLE=1 drags
- * three profiles and prints the figures of METHODS.md. */
+ * three profiles, as RUGO_EFFORT does, and prints the figures of METHODS.md. */
 #include "core/full/file/mesh_inp.h"
 #include "core/full/friction/friction.h"
 #include "tests/support/check.h"
+#include "tests/support/effort.h"
 #include "tests/support/process.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -209,7 +210,7 @@ static void calculix_drags_the_same(void **state) {
         print_message("ccx (Debian's calculix-ccx) is not installed\n");
         skip();
     }
-    for (size_t p = 0; p < (prints ? PROFILE_COUNT : 1); p++)
+    for (size_t p = 0; p < (prints || every_case() ? PROFILE_COUNT : 1); p++)
         press_profile(&PROFILES[p], prints);
 }
 
