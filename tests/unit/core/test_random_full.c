@@ -10,7 +10,6 @@
 #include "tests/support/hard_scene.h"
 #include "tests/support/seed.h"
 #include <float.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -379,17 +378,6 @@ static void run(struct random_full *of, struct count *count, bool prints) {
     }
 }
 
-/* The seed of the scene that is pressed, for when it never ends. */
-static volatile sig_atomic_t hung;
-static uint64_t pressed_seed;
-
-static void say_late(int number) {
-    (void)number;
-    hung = 1;
-    fprintf(stderr, "scene of seed %" PRIu64 " did not end in %d s\n", pressed_seed, CLOCK_MOST);
-    abort();
-}
-
 static void scenes_end_with_a_state_or_a_reason(void **state) {
     (void)state;
     const char *asked = getenv("RUGO_SCENES");
@@ -397,12 +385,10 @@ static void scenes_end_with_a_state_or_a_reason(void **state) {
              scenes = asked != NULL ? strtoull(asked, NULL, 10) : SCENES * effort();
     struct count count = {0};
     bool prints = getenv("RUGO_TABLE") != NULL;
-    signal(SIGALRM, say_late);
     for (uint64_t scene = 0; scene < scenes; scene++) {
         struct random_full of;
-        pressed_seed = scenes == 1 ? seeds : next_word(&seeds);
-        draw(pressed_seed, &of);
-        alarm(CLOCK_MOST);
+        draw(scenes == 1 ? seeds : next_word(&seeds), &of);
+        alarm(CLOCK_MOST); /* ends the program */
         run(&of, &count, prints);
         free(of.z);
     }

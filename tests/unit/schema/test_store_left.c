@@ -114,7 +114,7 @@ static int work_off(struct store *store, const char *id, unsigned workers, const
                 finish(store, &at[w], passed);
             else if (at[w].busy)
                 assert_int_equal(store_heartbeat(store, at[w].job.id, at[w].job.token,
-                                                 (uint64_t)(passed / at[w].rate), NULL),
+                                                 floor(passed / at[w].rate), NULL),
                                  0);
             if (!at[w].busy)
                 claim(store, w, &at[w], now, rates);
