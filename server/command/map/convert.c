@@ -63,7 +63,7 @@ static int run(const void *values, const char *const *arguments) {
                            arguments[1]);
     struct map_options asked = options->map;
     if (asked.words.extend != NULL && asked.words.detrend == ASK_DETREND_NONE)
-        asked.words.detrend = ASK_DETREND_PLANE; /* a law that repeats has no plane */
+        asked.words.detrend = ASK_DETREND_AUTO; /* a law that repeats has no plane */
     int status = map_options_read_any(&map, &record, arguments[0], &asked, &err);
     if (status == 0)
         status = write_map(arguments[1], &map, &record, &err);

@@ -37,7 +37,8 @@ static struct height_map patch_of(bool hole) {
     assert_int_equal(one.grid.nx, 2 * SIDE);
     assert_int_equal(height_map_shape(&map, SIDE, SIDE, grid_dx(&one.grid), NULL), 0);
     map.z = calloc((size_t)SIDE * SIDE, sizeof *map.z);
-    assert_true(map.z != NULL && z != NULL);
+    assert_non_null(map.z);
+    assert_non_null(z);
     for (size_t p = 0; p < (size_t)SIDE * SIDE; p++)
         map.z[p] = hole && p == 500 ? (double)NAN : z[p / SIDE * one.grid.nx + p % SIDE];
     assert_int_equal(detrend(&map.grid, map.z, DETREND_PLANE, &trend, NULL), 0);

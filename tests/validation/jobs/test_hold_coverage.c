@@ -121,7 +121,8 @@ static cJSON *held_patch(const struct law *law, const cJSON *truth, uint64_t rea
     uint64_t seed = realisation + 1;
     assert_int_equal(height_map_shape(&map, SIDE, SIDE, grid_dx(&grid), &err), 0);
     map.z = calloc((size_t)SIDE * SIDE, sizeof *map.z);
-    assert_true(map.z != NULL && white != NULL);
+    assert_non_null(map.z);
+    assert_non_null(white);
     noise_fill(&seed, (size_t)SIDE * SIDE, white);
     for (size_t p = 0; p < grid_points(&grid); p++)
         square += z[p] * z[p] / (double)grid_points(&grid);
