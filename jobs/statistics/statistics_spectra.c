@@ -192,10 +192,10 @@ static int columns_create(struct case_result *result, struct spectrum_columns *o
     return 0;
 }
 
-/* theory: NULL where none is known. */
+/* known: whether the theory is. */
 static int add_curve(struct case_result *result, struct curve *curve, const double *theory,
-                     struct error *err) {
-    if (theory != NULL)
+                     bool known, struct error *err) {
+    if (known)
         curve->theories[curve->theory_count++] = (struct theory){"prescribed", theory};
     return result_add_curve(result, curve, err);
 }
@@ -369,7 +369,7 @@ static int density_curve(const struct statistics_case *one_case, const struct mo
     if (status != 0)
         return status;
     const bool known = one_case->surface.plateau == NULL; /* of a stratified face: slopes alone */
-    return add_curve(result, &curve, known ? columns.theory + 1 : NULL, err);
+    return add_curve(result, &curve, columns.theory + 1, known, err);
 }
 
 static size_t correlation_side(size_t side, size_t band) {
@@ -453,8 +453,7 @@ static int correlation_curve(const struct statistics_case *one_case, const struc
     status = correlation_error(&columns, n, result, &curve, err);
     if (status != 0)
         return status;
-    return add_curve(result, &curve, one_case->surface.plateau == NULL ? columns.theory : NULL,
-                     err);
+    return add_curve(result, &curve, columns.theory, one_case->surface.plateau == NULL, err);
 }
 
 int spectra_curves(const struct statistics_case *one_case, const struct modes *modes,
