@@ -38,13 +38,15 @@ static const char SURFACE[] =
 static const char FULL[] = "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": "
                            "2, \"length_ratio\": 1},"
                            " \"contact\": {\"pressures\": {\"values\": [1e-7, 0.2, 50]}}}";
-/* Three models, and a slope at which the one on the true geometry finds no answer to some loads.
+/* Three models, and a slope at which the one on the true geometry finds no answer to some loads in
+ * its time.
  * Errors of cells are for studies that are cheaper. */
 static const char STEEP[] =
     "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 2, \"length_ratio\":"
     " 2, \"points_per_wavelength\": 4, \"rms_slope\": 1.6}, \"contact\": {\"model\":"
     " [\"full\", \"halfspace\", \"layered\"], \"levels\": [2, 4], \"block_height\": {\"lengths\":"
-    " 1}, \"cell_error\": \"none\", \"pressures\": {\"to\": 0.5, \"steps\": 3}}}";
+    " 1}, \"cell_error\": \"none\", \"time_limit\": 0.05, \"pressures\": {\"to\": 0.5, \"steps\": "
+    "3}}}";
 /* The flat is dragged at finite strain. */
 static const char SLIDING[] =
     "{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 2,"
