@@ -33,11 +33,12 @@ static void family_add(const struct grooves *grooves, size_t family, const struc
 
 void grooves_add(const struct grooves *grooves, const struct grid *grid, struct random_key key,
                  double height, double *z) {
-    double phase[GROOVE_FAMILIES_MOST] = {grooves->phase, grooves->phase};
-    if (isnan(grooves->phase))
-        random_uniform(key, STREAM_GROOVES, 0, GROOVE_FAMILIES_MOST, phase);
-    for (size_t f = 0; f < grooves->families; f++)
-        family_add(grooves, f, grid, phase[f], height, z);
+    for (size_t f = 0; f < grooves->families && f < GROOVE_FAMILIES_MOST; f++) {
+        double phase = grooves->phase;
+        if (isnan(phase))
+            random_uniform(key, STREAM_GROOVES, f, 1, &phase);
+        family_add(grooves, f, grid, phase, height, z);
+    }
 }
 
 struct groove_moments grooves_cumulants(const struct grooves *grooves) {
