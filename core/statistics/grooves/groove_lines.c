@@ -235,6 +235,7 @@ static struct shape_trial shape_at(const struct groove_lines *lines, enum groove
 
 static struct shape_trial shape_fit(const struct groove_lines *lines, enum groove_shape shape,
                                     bool reversed) {
+    enum { HALVINGS = 18 };
     const size_t points = 16 * lines->count + 32;
     struct shape_trial best = {.deviance = INFINITY};
     double at = 0, reach = 1. / (double)points;
@@ -246,7 +247,7 @@ static struct shape_trial shape_fit(const struct groove_lines *lines, enum groov
             at = (double)i / (double)points;
         }
     }
-    for (; reach > 1e-7; reach /= 2)
+    for (int step = 0; step < HALVINGS; step++, reach /= 2)
         for (int sign = -1; sign <= 1; sign += 2) {
             const struct shape_trial trial =
                 shape_at(lines, shape, reversed, at + sign * reach / 2);

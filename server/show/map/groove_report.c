@@ -31,9 +31,9 @@ static void add_family(struct named_values *out, const char *group, const struct
 
 void groove_report_values(struct named_values *out, const struct map_characterisation *found) {
     const struct map_grooves *grooves = &found->grooves;
-    for (size_t f = 0; f < grooves->families; f++)
+    for (size_t f = 0; f < grooves->families && f < MAP_GROOVES_MOST; f++)
         add_family(out, GROUPS[f], &grooves->family[f], found->parameters.roughness.rms_height);
-    if (grooves->families > 0)
+    if (grooves->families > 0 && grooves->families <= MAP_GROOVES_MOST)
         named_values_add_length(out, GROUPS[grooves->families - 1], "rms_height_without",
                                 found->rest_height, 1);
 }
@@ -41,7 +41,7 @@ void groove_report_values(struct named_values *out, const struct map_characteris
 int groove_report_tables(struct named_values *out, const struct map_characterisation *found,
                          struct error *err) {
     const struct map_grooves *grooves = &found->grooves;
-    for (size_t f = 0; f < grooves->families; f++) {
+    for (size_t f = 0; f < grooves->families && f < MAP_GROOVES_MOST; f++) {
         const struct groove_lines *lines = &grooves->family[f].lines;
         double *amplitude =
             named_values_column_length(out, TABLES[f], "amplitude", lines->count, 1);
