@@ -469,6 +469,7 @@ int spectra_prescribed(const struct statistics_case *one_case, const struct mode
     struct modes *asked;
     int status = asked_create(one_case, modes, &exact.surface.spectrum, &asked, err);
     exact.surface.spectrum.translation = NULL;
+    exact.surface.plateau = NULL; /* of stratified faces nothing is asked here */
     exact.surface.options.keep = KEEP_SPECTRUM;
     exact.surface.options.amplitudes = AMPLITUDES_FIXED;
     if (status == 0)

@@ -39,8 +39,8 @@ static const struct choice DRAWS[] = {{"random", DRAW_RANDOM}, {"quantiles", DRA
 #define ABOUT ""
 #define PLATEAU_ROW(name, of_type, least, most, example, words)                                    \
     {                                                                                              \
-        .path = "/surface/plateau/" name, .later = true, .type = of_type, .minimum = (least),      \
-        .maximum = (most), .sweep = true, .example_json = example, .help = words                   \
+        .path = "/surface/plateau/" name, .later = true, .type = (of_type), .minimum = (least),    \
+        .maximum = (most), .sweep = true, .example_json = (example), .help = (words)               \
     }
 static const struct parameter ROWS[] = {
 #include "jobs/surface/surface_rows.h"
