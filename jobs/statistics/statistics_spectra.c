@@ -233,7 +233,7 @@ static int density_error(const struct statistics_case *one_case,
                          const struct statistics_tally *tally, const double *reference,
                          struct case_result *result, struct curve *curve, struct error *err) {
     bool limited = surface_case_band_limited(&one_case->surface);
-    size_t n = curve->n, known = limited ? 0 : tally->density_change.size;
+    size_t n = curve->n, known = limited || tally == NULL ? 0 : tally->density_change.size;
     double *bound;
     if (limited ? one_case->surface.spectrum.type == SPECTRUM_EXPONENTIAL_ACF : known == 0)
         return 0;
@@ -353,7 +353,7 @@ static int density_curve(const struct statistics_case *one_case, const struct mo
         return status;
     for (size_t a = 0; a < n; a++) {
         struct estimate estimate = {reference.theory[a], 0};
-        if (!exact) {
+        if (!exact && tally != NULL) {
             estimate = tally_sums_mean(&tally->density, a, tally->points.realisations);
             estimate.value *= reference.y[a];
             estimate.standard_error *= reference.y[a];
@@ -443,7 +443,7 @@ static int correlation_curve(const struct statistics_case *one_case, const struc
         return status;
     for (size_t a = 0; a < n; a++) {
         struct estimate estimate = {columns.y[a], 0};
-        if (!exact)
+        if (!exact && tally != NULL)
             estimate = tally_sums_mean(&tally->correlation, a, tally->points.realisations);
         columns.y[a] = estimate.value;
         columns.standard_error[a] = estimate.standard_error;
