@@ -290,7 +290,7 @@ static int correlation_error(const struct spectrum_columns *columns, size_t n,
 static void correlation_changes(const struct statistics_case *one_case,
                                 const struct statistics_tally *tally,
                                 const struct spectrum_columns *columns, size_t n) {
-    if (surface_case_band_limited(&one_case->surface))
+    if (surface_case_band_limited(&one_case->surface) || tally == NULL)
         return;
     for (size_t a = 0; 2 * a < n; a++) {
         struct estimate mean = {NAN, NAN};
