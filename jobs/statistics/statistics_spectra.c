@@ -233,7 +233,7 @@ static int density_error(const struct statistics_case *one_case,
                          const struct statistics_tally *tally, const double *reference,
                          struct case_result *result, struct curve *curve, struct error *err) {
     bool limited = surface_case_band_limited(&one_case->surface);
-    size_t n = curve->n, known = limited ? 0 : tally->density_change.size;
+    size_t n = curve->n, known = limited || tally == NULL ? 0 : tally->density_change.size;
     double *bound;
     if (limited ? one_case->surface.spectrum.type == SPECTRUM_EXPONENTIAL_ACF : known == 0)
         return 0;
@@ -290,7 +290,7 @@ static int correlation_error(const struct spectrum_columns *columns, size_t n,
 static void correlation_changes(const struct statistics_case *one_case,
                                 const struct statistics_tally *tally,
                                 const struct spectrum_columns *columns, size_t n) {
-    if (surface_case_band_limited(&one_case->surface))
+    if (surface_case_band_limited(&one_case->surface) || tally == NULL)
         return;
     for (size_t a = 0; 2 * a < n; a++) {
         struct estimate mean = {NAN, NAN};
@@ -353,7 +353,7 @@ static int density_curve(const struct statistics_case *one_case, const struct mo
         return status;
     for (size_t a = 0; a < n; a++) {
         struct estimate estimate = {reference.theory[a], 0};
-        if (!exact) {
+        if (!exact && tally != NULL) {
             estimate = tally_sums_mean(&tally->density, a, tally->points.realisations);
             estimate.value *= reference.y[a];
             estimate.standard_error *= reference.y[a];
@@ -443,7 +443,7 @@ static int correlation_curve(const struct statistics_case *one_case, const struc
         return status;
     for (size_t a = 0; a < n; a++) {
         struct estimate estimate = {columns.y[a], 0};
-        if (!exact)
+        if (!exact && tally != NULL)
             estimate = tally_sums_mean(&tally->correlation, a, tally->points.realisations);
         columns.y[a] = estimate.value;
         columns.standard_error[a] = estimate.standard_error;
@@ -469,6 +469,7 @@ int spectra_prescribed(const struct statistics_case *one_case, const struct mode
     struct modes *asked;
     int status = asked_create(one_case, modes, &exact.surface.spectrum, &asked, err);
     exact.surface.spectrum.translation = NULL;
+    exact.surface.plateau = NULL; /* of stratified faces nothing is asked here */
     exact.surface.options.keep = KEEP_SPECTRUM;
     exact.surface.options.amplitudes = AMPLITUDES_FIXED;
     if (status == 0)

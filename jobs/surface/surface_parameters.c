@@ -44,8 +44,8 @@ static const struct choice GROOVES[] = {{"sine", GROOVE_SINE},           {"arcs"
 #define ABOUT ""
 #define PLATEAU_ROW(name, of_type, least, most, example, words)                                    \
     {                                                                                              \
-        .path = "/surface/plateau/" name, .later = true, .type = of_type, .minimum = (least),      \
-        .maximum = (most), .sweep = true, .example_json = example, .help = words                   \
+        .path = "/surface/plateau/" name, .later = true, .type = (of_type), .minimum = (least),    \
+        .maximum = (most), .sweep = true, .example_json = (example), .help = (words)               \
     }
 static const struct parameter ROWS[] = {
 #include "jobs/surface/surface_groove_rows.h"
