@@ -115,7 +115,7 @@ static void write_tables(FILE *file, const struct reference *reference, const ch
     for (size_t k = 0; reference->kinds[k] != NULL; k++)
         for (const struct parameter_table *const *table = reference->kinds[k]->tables;
              *table != NULL; table++)
-            if (!was_shown(reference, k, *table))
+            if ((*table)->count > 0 && !was_shown(reference, k, *table))
                 write(file, reference, *table, path);
 }
 

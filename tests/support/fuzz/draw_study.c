@@ -361,6 +361,8 @@ static void part_pairs(cJSON *document) {
         {"/surface/rms_height", "/surface/rms_slope"},
         {"/surface/plateau/offset", "/surface/plateau/material_ratio"},
         {"/counter_surface", "/surface/plateau"},
+        {"/counter_surface", "/surface/grooves"},
+        {"/surface/plateau", "/surface/grooves"},
         {"/counter_surface/nayak_alpha", "/counter_surface/wavelength_ratio"},
         {"/counter_surface/rms_height", "/counter_surface/rms_slope"},
         {"/surface/heights/kurtosis", "/surface/heights/shape"},

@@ -18,8 +18,8 @@ static const char STEEP_STUDY[] =
     "{\"name\":\"steep\",\"kind\":\"contact\",\"seed\":3,\"realisations\":6,\"surface\":{"
     "\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":2,\"length_ratio\":2,"
     "\"points_per_wavelength\":6,\"rms_slope\":[0.1,1.2]},\"contact\":{\"model\":[\"full\","
-    "\"halfspace\"],\"block_height\":{\"lengths\":1},\"cell_error\":\"none\",\"pressures\":{\"to\":"
-    "0.5,\"steps\":3}}}";
+    "\"halfspace\"],\"block_height\":{\"lengths\":1},\"cell_error\":\"none\",\"time_limit\":0.3,"
+    "\"pressures\":{\"to\":0.5,\"steps\":3}}}";
 
 /* The study's curves without its id, as text. */
 static char *curves_text(struct fixture *fixture) {
