@@ -318,6 +318,7 @@ static void give_partners(cJSON *document) {
         {"/contact/slip/pressing", "/contact/slip/coupling", "true"},
         {"/contact/slip/coupling", "/contact/model", "\"halfspace\""},
         {"/contact/slip/to", "/contact/slip/to", "[0.5]"},
+        {"/contact/slip/to", "/contact/slip/steps", "4"},
         {"/contact/slip/to", "/surface/dimension", "1"},
         {"/contact/slip/to", "/surface/rms_slope", "0.1"},
         {"/contact/slip/to", "/contact/model", "\"full\""},
@@ -373,6 +374,10 @@ static void part_pairs(cJSON *document) {
         {"/surface/heights/shape", "/surface/heights/skewness"},
         {"/contact/pressures/values", "/contact/pressures/steps"},
         {"/contact/pressures/values", "/contact/pressures/to"},
+        {"/contact/slip/to", "/contact/slip/coupling"},
+        {"/contact/slip/to", "/contact/hardness"},
+        {"/contact/slip/to", "/surface/grooves/angle"},
+        {"/contact/slip/to", "/surface/grooves/cross_angle"},
         {"/contact/friction", "/contact/areas"},
         {"/contact/friction", "/contact/gap_direction"},
     };

@@ -18,16 +18,15 @@ static struct process server;
 static unsigned port;
 static char *csv; /* a map, as text */
 
-/* Waves along the axes, shorter and shorter, as those of one length would be grooves, of which no
- * studies are made; with a hole. The caller frees. */
+/* Heights without order, as waves would be grooves, of which no studies are made; with a hole. The
+ * caller frees. */
 static char *make_csv(size_t ny, size_t nx) {
     char *text = calloc(ny * nx + 1, 12);
     size_t used = 0;
     assert_non_null(text);
     for (size_t j = 0; j < ny; j++)
         for (size_t i = 0; i < nx; i++) {
-            double z = sin(0.4 * (double)i + 0.01 * (double)(i * i)) +
-                       cos(0.3 * (double)j + 0.01 * (double)(j * j));
+            double z = cos(43758.5 * sin(12.9898 * (double)i + 78.233 * (double)j));
             const char *after = i + 1 < nx ? "," : "\n";
             if (i == 5 && j == 7)
                 used += (size_t)sprintf(text + used, "nan%s", after);

@@ -239,7 +239,7 @@ static void expect_shortest(struct page *page, const double values[3], const cha
 static void intervals_leave_room_for_their_labels(void **state) {
     (void)state;
     struct page page;
-    make(&page, 48, 32, 1, "");
+    make(&page, 16, 8, 1, "");
     draw(&page);
     expect_shortest(&page, (double[]){8.0123456, 8.0123451, 8.0123461}, ">8.012 [8.012, 8.012]<");
     expect_shortest(&page, (double[]){7.9827e-6, 7.83e-6, 8.1e-6}, ">7.98e-06 [7.8e-06, 8.1e-06]<");
