@@ -466,7 +466,8 @@ static const double CAREFUL_STEP = 0.125;
 /* Iterations of Newton's method after which a load is given up. */
 enum { NEWTON_MOST = 2500 };
 
-/* As raise_load, with overhangs and jumps, and from the last active set. */
+/* As raise_load, with overhangs and jumps, and from the last active set. A state at which a jump
+ * came to rest may need its drag again. */
 static int raise_carefully(struct full *f, double goal, struct newton_end *end,
                            struct full_report *report, struct error *err) {
     double whole = goal - f->load, step = CAREFUL_STEP * whole, change = 0;
@@ -481,7 +482,7 @@ static int raise_carefully(struct full *f, double goal, struct newton_end *end,
         }
         step = fabs(step) < fabs(goal - f->load) ? step : goal - f->load;
         double next = step == goal - f->load ? goal : f->load + step;
-        bool jumps = cuts >= CUTS_SMOOTH ||
+        bool jumps = cuts >= (whole == 0 ? 1 : CUTS_SMOOTH) ||
                      fabs(step) < 2 * CAREFUL_STEP * f->options.least_step * fabs(whole);
         status =
             jumps ? jump(f, next, end, report, err) : step_to(f, next, &change, end, report, err);
@@ -495,7 +496,7 @@ static int raise_carefully(struct full *f, double goal, struct newton_end *end,
         cuts++;
         step /= 2;
         report->cuts++;
-        if (cuts == CUTS_MOST || whole == 0 ||
+        if (cuts == CUTS_MOST || (whole == 0 && cuts > 1) ||
             fabs(step) < CAREFUL_STEP * f->options.least_step * fabs(whole))
             return end_load(f, goal, 2 * step, err);
     } while (f->load != goal || status != 0);

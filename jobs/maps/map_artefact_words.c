@@ -34,7 +34,9 @@ static const char *height_text(const struct sentences *sentences, double height,
 static const char *effect_text(double slope, double share, char text[TEXT_SIZE]) {
     static const double SEEN = 0.005;
     const double times = 1 / slope;
-    if (times > 2)
+    if (!isfinite(times))
+        snprintf(text, TEXT_SIZE, "make all of the RMS slope");
+    else if (times > 2)
         snprintf(text, TEXT_SIZE, "make the RMS slope about %.2g times as large", times);
     else if (times - 1 > SEEN)
         snprintf(text, TEXT_SIZE, "make the RMS slope about %.2g %% larger", 100 * (times - 1));
