@@ -7,6 +7,8 @@
 #include "core/surface/grooves/grooves.h"
 #include "core/surface/surface.h"
 #include "tests/support/check.h"
+#include "tests/support/effort.h"
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -138,20 +140,22 @@ static void shapes_are_found(void **state) {
     maker_destroy(&maker);
 }
 
-/* Of 200 random faces, half of them with a lay of 4, at most 2 have grooves. */
+/* Of 200 random faces (a third of them unless all are tried), half of them with a lay of 4, at most
+ * 2 have grooves. */
 static void random_faces_have_none(void **state) {
     (void)state;
-    enum { MAPS = 100, MOST = 2 };
+    enum { MOST = 2 };
+    const uint64_t maps = cases_of(100);
     size_t found = 0;
     for (int lay = 0; lay < 2; lay++) {
         struct maker maker = maker_create(lay == 0 ? 1 : 4);
-        for (uint64_t r = 0; r < MAPS; r++) {
+        for (uint64_t r = 0; r < maps; r++) {
             make(&maker, r, 1);
             found += find(maker.z, BOUNDARY_OPEN).families;
         }
         maker_destroy(&maker);
     }
-    print_message("[   NOTE   ] grooves in %zu of %d random faces\n", found, 2 * MAPS);
+    print_message("[   NOTE   ] grooves in %zu of %" PRIu64 " random faces\n", found, 2 * maps);
     assert_true(found <= MOST);
 }
 
