@@ -231,7 +231,8 @@ static void faults_are_named(void **state) {
 static void what_no_study_takes_is_refused(void **state) {
     (void)state;
     spit("data/far.awk", "BEGIN { for (j = 0; j < 24; j++) for (i = 0; i < 24; i++)\n"
-                         "printf \"%.17g%s\", 5e15 + int(3 * sin(0.2 * i * i + j * j) + i * i / 20), i < 23 ? \",\" : "
+                         "printf \"%.17g%s\", 5e15 + int(3 * sin(0.2 * i * i + j * j) + i * i / "
+                         "20), i < 23 ? \",\" : "
                          "\"\\n\" }\n");
     assert_int_equal(run_shell("awk -f data/far.awk > data/far.csv"), 0);
     assert_int_equal(run_shell("$RUGO characterise data/far.csv --format study"), 0);

@@ -326,7 +326,8 @@ static void what_instruments_leave_is_removed(void **state) {
     (void)state;
     assert_int_equal(
         run_shell("awk 'BEGIN { for (j = 0; j < 40; j++) for (i = 0; i < 50; i++) printf "
-                  "\"%.17g%c\", cos(i * 0.3) * cos(j * 0.2) + 9 * int(1.5 + 1.4 * sin(j * j * j)) + (i * 50 + j == 1020 "
+                  "\"%.17g%c\", cos(i * 0.3) * cos(j * 0.2) + 9 * int(1.5 + 1.4 * sin(j * j * j)) "
+                  "+ (i * 50 + j == 1020 "
                   "|| i * 50 + j == 530 ? 40 : 0), i < 49 ? 44 : 10 }' > scanned.csv"),
         0);
     assert_int_equal(run_shell("$RUGO convert --lines median --despike scanned.csv turned.npy "

@@ -149,7 +149,8 @@ static void lost_leases_are_told_apart(void **state) {
     assert_string_equal(reports[1].err.text, "the lease of job 8 is lost");
     assert_int_equal(stub.requests, 1);
     assert_non_null(strstr(stub.request, "POST /v1/jobs/report "));
-    assert_non_null(strstr(stub.request, "\"done\":3,\"part\":0.25,\"verb\":\"heartbeat\",\"job\":7"));
+    assert_non_null(
+        strstr(stub.request, "\"done\":3,\"part\":0.25,\"verb\":\"heartbeat\",\"job\":7"));
     assert_non_null(strstr(stub.request, "\"reason\":\"no convergence\",\"permanent\":true"));
     assert_non_null(strstr(stub.request, "\"verb\":\"release\",\"job\":11"));
 }
