@@ -466,6 +466,17 @@ static const double CAREFUL_STEP = 0.125;
 /* Iterations of Newton's method after which a load is given up. */
 enum { NEWTON_MOST = 2500 };
 
+static bool is_jump(const struct full *f, double whole, double step, int cuts) {
+    return cuts >= (whole == 0 ? 1 : CUTS_SMOOTH) ||
+           fabs(step) < 2 * CAREFUL_STEP * f->options.least_step * fabs(whole);
+}
+
+/* Returns whether no smaller step is tried. */
+static bool is_last(const struct full *f, double whole, double step, int cuts) {
+    return cuts == CUTS_MOST || (whole == 0 && cuts > 1) ||
+           fabs(step) < CAREFUL_STEP * f->options.least_step * fabs(whole);
+}
+
 /* As raise_load, with overhangs and jumps, and from the last active set. A state at which a jump
  * came to rest may need its drag again. */
 static int raise_carefully(struct full *f, double goal, struct newton_end *end,
@@ -482,10 +493,8 @@ static int raise_carefully(struct full *f, double goal, struct newton_end *end,
         }
         step = fabs(step) < fabs(goal - f->load) ? step : goal - f->load;
         double next = step == goal - f->load ? goal : f->load + step;
-        bool jumps = cuts >= (whole == 0 ? 1 : CUTS_SMOOTH) ||
-                     fabs(step) < 2 * CAREFUL_STEP * f->options.least_step * fabs(whole);
-        status =
-            jumps ? jump(f, next, end, report, err) : step_to(f, next, &change, end, report, err);
+        status = is_jump(f, whole, step, cuts) ? jump(f, next, end, report, err)
+                                               : step_to(f, next, &change, end, report, err);
         if (status == 0) {
             step *= cuts > 0 || 2 * change > FACE_CHANGE_MOST ? 1 : 2;
             cuts = 0;
@@ -496,8 +505,7 @@ static int raise_carefully(struct full *f, double goal, struct newton_end *end,
         cuts++;
         step /= 2;
         report->cuts++;
-        if (cuts == CUTS_MOST || (whole == 0 && cuts > 1) ||
-            fabs(step) < CAREFUL_STEP * f->options.least_step * fabs(whole))
+        if (is_last(f, whole, step, cuts))
             return end_load(f, goal, 2 * step, err);
     } while (f->load != goal || status != 0);
     return 0;
