@@ -167,10 +167,10 @@ test("a study that asks for an error says what it has reached, and who computed 
   await picture(page, "jobs");
 });
 
-/** Heights as text, a hole among them: what a person drops on the page. */
+/** Heights as text without order (waves would be grooves), a hole among them: what a person drops on the page. */
 function patch() {
   const rows = [];
-  for (let j = 0; j < 60; j++) rows.push(Array.from({ length: 80 }, (_, i) => (i === 40 && j === 30 ? "nan" : (Math.sin(0.4 * i) + Math.cos(0.3 * j + 0.01 * j * j) + 0.05 * i).toFixed(4))).join(","));
+  for (let j = 0; j < 60; j++) rows.push(Array.from({ length: 80 }, (_, i) => (i === 40 && j === 30 ? "nan" : (Math.cos(43758.5 * Math.sin(12.9898 * i + 78.233 * j)) + 0.05 * i).toFixed(4))).join(","));
   return rows.join("\n");
 }
 

@@ -100,8 +100,25 @@ static void map_of_a_face(void **state) {
     assert_true(number_of("face.out", "Sk_error") > 0);
 }
 
+/* Heights of one law have far tails that two would fit better, and are no stratified face. */
+static void tails_are_no_plateau(void **state) {
+    (void)state;
+    spit("one.json",
+         "{\"name\":\"one\",\"kind\":\"statistics\",\"seed\":3,\"realisations\":1,\"surface\":{"
+         "\"hurst\":0.8,\"wavelength_ratio\":4,\"length_ratio\":16,\"points_per_wavelength\":4,"
+         "\"rms_height\":1,\"heights\":{\"distribution\":[\"gaussian\",\"weibull_max\"],"
+         "\"shape\":2}}}");
+    for (int number = 0; number < 2; number++) {
+        check_shell(number == 0 ? "\"$RUGO\" generate one.json --case 0 -o one.npy"
+                                : "\"$RUGO\" generate one.json --case 1 -o one.npy");
+        check_shell("\"$RUGO\" characterise one.npy --dx 1 --boundary periodic >one.txt");
+        assert_true(contains("one.txt", "Heights: ") && !contains("one.txt", "two laws"));
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(same_answer),
-                                       cmocka_unit_test(map_of_a_face)};
+                                       cmocka_unit_test(map_of_a_face),
+                                       cmocka_unit_test(tails_are_no_plateau)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
