@@ -281,13 +281,6 @@ static void restore(struct full *f) {
     memcpy(f->newton.active, f->kept_active, f->mesh->face * sizeof *f->kept_active);
 }
 
-/* What is left of the limit is that of the next solution. */
-static void limit_next(struct full *f) {
-    const double seconds = f->options.limit.seconds;
-    f->newton.limit = f->options.limit;
-    f->newton.limit.seconds = seconds > 0 ? fmax(seconds - f->used, DBL_MIN) : 0;
-}
-
 static void count_work(struct full *f, const struct newton_end *end, struct full_report *report) {
     report->newton += end->iterations;
     report->linear += end->linear;
@@ -304,7 +297,7 @@ static int step_to(struct full *f, double load, double *change, struct newton_en
                    struct full_report *report, struct error *err) {
     if (!f->careful)
         predict(f, load);
-    limit_next(f);
+    f->newton.limit = full_limit_left(&f->options.limit, f->used);
     int status = newton_solve(&f->newton, load, end, err);
     count_work(f, end, report);
     *change = status == 0 ? face_stretch_change(f->mesh, f->newton.u, f->kept) : 0;
@@ -397,7 +390,7 @@ static int drag_on(struct full *f, double load, double drag, double tolerance, d
     n->drag = drag;
     n->tolerance = tolerance;
     n->evaluated = false;
-    limit_next(f);
+    n->limit = full_limit_left(&f->options.limit, f->used);
     int status = newton_solve(n, load, end, err);
     n->tolerance = usual;
     count_work(f, end, report);

@@ -12,6 +12,7 @@
 #include "core/full/linear/factorisation.h"
 #include "core/full/linear/gmres.h"
 #include "core/full/self_contact.h"
+#include <float.h>
 #include <math.h>
 
 enum { NEWTON_HISTORY = 64 };
@@ -37,6 +38,12 @@ static inline double full_limit_count(const struct full_limit *limit, size_t new
                                       size_t factored) {
     return limit->newton * (double)newton + limit->linear * (double)linear +
            limit->factored * (double)factored;
+}
+/* Returns the limit of what follows after these seconds. */
+static inline struct full_limit full_limit_left(const struct full_limit *limit, double used) {
+    struct full_limit left = *limit;
+    left.seconds = limit->seconds > 0 ? fmax(limit->seconds - used, DBL_MIN) : 0;
+    return left;
 }
 /* Returns how many iterations of the linear equations are left of a limit after these seconds, at
  * least 1. */

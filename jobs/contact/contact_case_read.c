@@ -9,7 +9,6 @@
 #include "jobs/surface/other_law.h"
 #include "jobs/surface/surface_counter.h"
 #include "jobs/surface/surface_parameters.h"
-#include "jobs/surface/surface_plateau.h"
 #include "jobs/target.h"
 #include <math.h>
 #include <stdlib.h>
@@ -783,7 +782,6 @@ int contact_case_read(struct contact_case *out, const cJSON *parameters, double 
         double poisson = values_number(values, "/contact/poisson");
         asked.counter = surface_counter_body(parameters, values, poisson);
         check_faces(&out->surface, values);
-        surface_plateau_check_like(values);
         status = like_case_fill(&out->like, values, surface, err);
     }
     if (status == 0 && surface != NULL)

@@ -3,7 +3,6 @@
 #include "jobs/like/like_hold.h"
 #include "jobs/like/like_parameters.h"
 #include "jobs/surface/surface_parameters.h"
-#include "jobs/surface/surface_plateau.h"
 #include "jobs/target.h"
 #include <math.h>
 #include <stdlib.h>
@@ -131,8 +130,6 @@ int statistics_case_read(struct statistics_case *out, const cJSON *parameters,
         status = like_case_fill(&out->like, values, surface, err);
     if (status == 0 && surface != NULL)
         status = like_hold_read(&out->surface, &out->like, values, err);
-    if (status == 0)
-        surface_plateau_check_like(values);
     if (status == 0)
         status = read_levels(out, values, surface, err);
     if (status == 0) {

@@ -148,10 +148,3 @@ int surface_plateau_fill(struct plateau_face **out, const struct valley_face *va
     **out = face;
     return 0;
 }
-
-void surface_plateau_check_like(struct values *values) {
-    if (values_is_given(values, "/surface/like/file") && values_is_given(values, RMS_RATIO))
-        values_fault(values, RMS_RATIO,
-                     "a surface like a measured one has the spectrum and the heights of the map; "
-                     "allowed: one of like and plateau");
-}

@@ -21,8 +21,5 @@ struct valley_face {
  * a fault. ERROR_MEMORY alone. */
 int surface_plateau_fill(struct plateau_face **out, const struct valley_face *valleys,
                          struct values *values, struct error *err);
-/* Adds a fault where a stratified face is to be like a measured one; of kinds with LIKE_PARAMETERS.
- */
-void surface_plateau_check_like(struct values *values);
 
 #endif

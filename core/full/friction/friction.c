@@ -224,8 +224,7 @@ static int step_to(struct friction *f, const struct friction_goal *goal, double 
     *change = 0;
     settle(f);
     int status = goal->pressure != f->kept.pressure ? guess(f, goal->pressure, out, err) : 0;
-    f->newton.limit = f->limit;
-    f->newton.limit.seconds = f->limit.seconds > 0 ? fmax(f->limit.seconds - f->used, DBL_MIN) : 0;
+    f->newton.limit = full_limit_left(&f->limit, f->used);
     if (status == 0)
         status = friction_newton_solve(&f->newton, goal, &end, err);
     f->used += full_limit_count(&f->limit, end.iterations, end.work.iterations, end.work.factored);
