@@ -593,22 +593,19 @@ static bool level_make(struct contact_level *out, const struct contact_case *one
     bool part = own->nx % grid.nx == 0 && own->ny % grid.ny == 0;
     *out = (struct contact_level){
         .points = points, .grid = grid, .stride = part ? own->nx / grid.nx : 0};
-    const bool stratified = one_case->surface.plateau != NULL;
-    if (part || (!stratified && surface_band_fits(one_case->band, &grid)))
+    if (part || (one_case->surface.plateau == NULL && surface_band_fits(one_case->band, &grid)))
         return true;
-    if (stratified) {
+    if (one_case->surface.plateau != NULL)
         values_fault(values, path,
                      "%g points a shortest wave, %zu in all: a stratified face has kinks, and its "
                      "meshes are every n-th of its own %zu points; allowed: levels that divide "
                      "points_per_wavelength, the finest being equal to it",
                      points, grid.nx, own->nx);
-        return false;
-    }
-    values_fault(
-        values, path,
-        "%g points a shortest wave, %zu in all, neither hold the %zu waves of the surface nor "
-        "divide its own %zu points (points_per_wavelength)",
-        points, grid.nx, one_case->band.x, own->nx);
+    else
+        values_fault(values, path,
+                     "%g points a shortest wave, %zu in all, neither hold the %zu waves of the "
+                     "surface nor divide its own %zu points (points_per_wavelength)",
+                     points, grid.nx, one_case->band.x, own->nx);
     return false;
 }
 
