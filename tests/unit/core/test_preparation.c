@@ -254,9 +254,10 @@ static void converted_maps_are_open(void **state) {
         struct preparation_record record = {0};
         const struct preparation none = {0};
         make(&map);
-        for (size_t i = 0; i < (size_t)NX * NY; i++)
-            map.z[i] =
-                sin(2 * M_PI * (double)(i % NX) / NX) + cos(2 * M_PI * (double)(i / NX) / NY);
+        for (size_t row = 0; row < NY; row++)
+            for (size_t column = 0; column < NX; column++)
+                map.z[row * NX + column] =
+                    sin(2 * M_PI * (double)column / NX) + cos(2 * M_PI * (double)row / NY);
         if (converted)
             preparation_note(&record, "converted", "by a program");
         assert_int_equal(preparation_run(&record, &map, &none, NULL), 0);
