@@ -137,11 +137,15 @@ void handle_plot(struct exchange *exchange, const char *id) {
 /* Reads ?format=, or else what the request likes best: JSON, unless it says so. -1 after a 422. */
 static int read_table_format(struct exchange *exchange) {
     static const char *const NAMES[] = {
-        [TABLE_TEXT] = "text", [TABLE_CSV] = "csv", [TABLE_JSON] = "json"};
+        [TABLE_TEXT] = "text",
+        [TABLE_CSV] = "csv",
+        [TABLE_JSON] = "json",
+        [TABLE_MARKDOWN] = "markdown",
+    };
     const char *asked = exchange_query(exchange, "format");
     const char *accept = exchange_header(exchange, "Accept");
     struct fault_list faults = {0};
-    for (int f = 0; asked != NULL && f <= TABLE_JSON; f++)
+    for (int f = 0; asked != NULL && f < TABLE_FORMAT_COUNT; f++)
         if (strcmp(NAMES[f], asked) == 0)
             return f;
     if (asked == NULL)
@@ -176,7 +180,8 @@ static int print_table(const struct origin *origin, const struct table_request *
 void handle_table(struct exchange *exchange, const char *id) {
     static const char *const TYPES[] = {[TABLE_TEXT] = "text/plain; charset=utf-8",
                                         [TABLE_CSV] = "text/csv; charset=utf-8",
-                                        [TABLE_JSON] = "application/json"};
+                                        [TABLE_JSON] = "application/json",
+                                        [TABLE_MARKDOWN] = "text/markdown; charset=utf-8"};
     struct error err = {0};
     const struct origin origin = {exchange, id};
     const char *const where[] = {exchange_query(exchange, "where"), NULL};

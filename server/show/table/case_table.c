@@ -23,7 +23,19 @@ struct table_wish {
     const char *quantity;       /* or the name of a scalar */
     size_t word_count;
     const char *words[TABLE_WORDS_MOST];
-    double x; /* NaN: a scalar is asked for */
+    double x;                      /* NaN: a scalar is asked for */
+    const struct table_part *part; /* NULL: the value itself */
+};
+
+/* What stands beside a value, as "NAME.theory" asks for it. */
+static const struct table_part {
+    const char *suffix;
+    size_t value, standard_error; /* offsets in a table_value; 0: exact */
+} TABLE_PARTS[] = {
+    {".theory", offsetof(struct table_value, theory), 0},
+    {".grid", offsetof(struct table_value, grid), 0},
+    {".law", offsetof(struct table_value, law_difference),
+     offsetof(struct table_value, law_standard_error)},
 };
 
 struct table_maker {
@@ -39,6 +51,16 @@ void case_table_clear(struct case_table *table) {
     *table = (struct case_table){0};
 }
 
+static const struct table_value NO_VALUE = {.value = NAN,
+                                            .standard_error = NAN,
+                                            .error = NAN,
+                                            .theory = NAN,
+                                            .grid = NAN,
+                                            .law_difference = NAN,
+                                            .law_standard_error = NAN,
+                                            .physical = NAN,
+                                            .total = {.low = NAN, .high = NAN}};
+
 /* Appends a column of as many values as there are rows, NaN at first, for the caller to fill. */
 static int table_add(struct case_table *table, struct table_column column,
                      struct table_value **values, struct error *err) {
@@ -51,15 +73,7 @@ static int table_add(struct case_table *table, struct table_column column,
     if (larger == NULL || room == NULL || column.name == NULL)
         return error_memory(err, table->row_count * sizeof *room, "a column");
     for (size_t r = 0; r < table->row_count; r++)
-        room[r] = (struct table_value){.value = NAN,
-                                       .standard_error = NAN,
-                                       .error = NAN,
-                                       .theory = NAN,
-                                       .grid = NAN,
-                                       .law_difference = NAN,
-                                       .law_standard_error = NAN,
-                                       .physical = NAN,
-                                       .total = {.low = NAN, .high = NAN}};
+        room[r] = NO_VALUE;
     column.values = room;
     table->columns[table->column_count++] = column;
     *values = room;
@@ -458,10 +472,22 @@ static int table_add_quantity(struct table_maker *maker, const char *quantity, s
 
 /* --- the columns asked for --- */
 
-/* Reads "QUANTITY:WORD:WORD@X" out of size characters. */
+/* Returns the part that a name of so many characters ends with, and takes it off; or NULL. */
+static const struct table_part *read_part(const char *text, size_t *size) {
+    for (size_t p = 0; p < sizeof TABLE_PARTS / sizeof *TABLE_PARTS; p++) {
+        size_t length = strlen(TABLE_PARTS[p].suffix);
+        if (*size > length && strncmp(text + *size - length, TABLE_PARTS[p].suffix, length) == 0) {
+            *size -= length;
+            return &TABLE_PARTS[p];
+        }
+    }
+    return NULL;
+}
+
+/* Reads "QUANTITY:WORD:WORD@X.PART" out of size characters. */
 static int read_wish(struct table_wish *wish, const char *text, size_t size, struct error *err) {
     char *end;
-    *wish = (struct table_wish){.x = NAN};
+    *wish = (struct table_wish){.x = NAN, .part = read_part(text, &size)};
     if (size == 0 || size >= sizeof wish->text)
         return error_set(err, ERROR_INPUT,
                          "columns: \"%.*s\" is no name; names stand with commas between",
@@ -485,6 +511,42 @@ static int read_wish(struct table_wish *wish, const char *text, size_t size, str
     return 0;
 }
 
+/* Leaves of a column what stands beside its values. ERROR_INPUT where nothing does. */
+static int take_part(struct case_table *table, struct table_column *column,
+                     const struct table_part *part, struct error *err) {
+    bool any = false;
+    char name[TABLE_NAME_SIZE];
+    for (size_t r = 0; r < table->row_count; r++) {
+        struct table_value *value = &column->values[r];
+        const char *bytes = (const char *)value;
+        double beside = *(const double *)(bytes + part->value), error = NAN;
+        if (part->standard_error > 0)
+            error = *(const double *)(bytes + part->standard_error);
+        *value = NO_VALUE;
+        value->value = beside;
+        value->standard_error = error;
+        any = any || !isnan(beside);
+    }
+    if (!any)
+        return error_set(err, ERROR_INPUT, "columns: no case has %s%s", column->name, part->suffix);
+    snprintf(name, sizeof name, "%.170s%s", column->name, part->suffix);
+    column->name = result_text(&table->room, name);
+    column->physical = NULL;
+    column->has_total = false;
+    memset(column->unknown, 0, sizeof column->unknown);
+    return column->name != NULL ? 0 : error_memory(err, sizeof name, "a column");
+}
+
+static int add_one(struct table_maker *maker, const struct table_wish *wish, struct error *err) {
+    struct case_table *table = maker->table;
+    size_t before = table->column_count;
+    int status = isnan(wish->x) ? add_scalar(table, wish->quantity, false, err)
+                                : table_add_curves(maker, wish, err);
+    for (size_t n = before; n < table->column_count && status == 0 && wish->part != NULL; n++)
+        status = take_part(table, &table->columns[n], wish->part, err);
+    return status;
+}
+
 static int add_wished(struct table_maker *maker, const char *columns, struct error *err) {
     int status = 0;
     for (const char *next = columns; status == 0 && next != NULL;) {
@@ -492,8 +554,7 @@ static int add_wished(struct table_maker *maker, const char *columns, struct err
         size_t size = strcspn(next, ",");
         status = read_wish(&wish, next, size, err);
         if (status == 0)
-            status = isnan(wish.x) ? add_scalar(maker->table, wish.quantity, false, err)
-                                   : table_add_curves(maker, &wish, err);
+            status = add_one(maker, &wish, err);
         next = next[size] == ',' ? next + size + 1 : NULL;
     }
     return status;

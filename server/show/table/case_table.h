@@ -4,7 +4,12 @@
  * A scalar is named as it is, "summit_density"; a value of a curve as QUANTITY@X, "mean_gap@0.1",
  * where X is one of the x of the curve. Words after colons choose among the curves of the quantity:
  * a model, a series, kinematics, a level or a pressure, "contact_area:layered:nodes:8@0.1". Without
- * them it is the first series on the finest level, a column a model. */
+ * them it is the first series on the finest level, a column a model.
+ *
+ * What stands beside a value is a column of its own by a word behind a dot:
+ * "summit_density.theory",
+ * ".grid" (theory of the grid, of scalars) and ".law" (what the other law of heights gives less).
+ */
 #ifndef RUGO_SERVER_SHOW_TABLE_CASE_TABLE_H
 #define RUGO_SERVER_SHOW_TABLE_CASE_TABLE_H
 
@@ -42,10 +47,10 @@ struct table_column {
     const char *model;             /* NULL: without models */
     double x;
     const char *x_label;
-    const char *theory;               /* of a curve: whose values stand beside it; NULL: none */
-    bool has_total;                   /* some value has a total interval, more than rounding */
-    bool unknown[ERROR_SOURCES];      /* sources that bear on some row and are not known there */
-    const struct table_value *values; /* one a row */
+    const char *theory;          /* of a curve: whose values stand beside it; NULL: none */
+    bool has_total;              /* some value has a total interval, more than rounding */
+    bool unknown[ERROR_SOURCES]; /* sources that bear on some row and are not known there */
+    struct table_value *values;  /* one a row */
 };
 /* Owns its texts and values. Initialise with {0}. */
 struct case_table {
@@ -67,12 +72,14 @@ int case_table_add(struct case_table *table, const struct picture_source *source
                    const char *columns, struct error *err);
 void case_table_clear(struct case_table *table);
 
-/* Print the table; JSON and CSV are false when out of memory. Write errors are left to the file. */
+/* Print the table; JSON and CSV are false when out of memory. Write errors are left to the file.
+ * Markdown is the text's table alone, as documents have it. */
 void case_table_text(const struct case_table *table, FILE *file);
+void case_table_markdown(const struct case_table *table, FILE *file);
 bool case_table_csv(const struct case_table *table, FILE *file);
 bool case_table_json(const struct case_table *table, FILE *file);
-enum { TABLE_TEXT, TABLE_CSV, TABLE_JSON };
-#define TABLE_FORMATS "text|csv|json"
+enum { TABLE_TEXT, TABLE_CSV, TABLE_JSON, TABLE_MARKDOWN, TABLE_FORMAT_COUNT };
+#define TABLE_FORMATS "text|csv|json|markdown"
 /* Prints it in one of these; ERROR_MEMORY. */
 int case_table_print(const struct case_table *table, int format, FILE *file, struct error *err);
 

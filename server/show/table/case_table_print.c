@@ -145,19 +145,30 @@ static void text_unknown(const struct case_table *table, FILE *file) {
     free(list);
 }
 
-void case_table_text(const struct case_table *table, FILE *file) {
-    struct text_table text = {.columns = 2 + table->column_count, .room = TABLE_ROOM};
+/* Prints the rows with a heading; returns whether a column has total errors. */
+static bool print_rows(const struct case_table *table, bool markdown, FILE *file) {
+    struct text_table text = {
+        .columns = 2 + table->column_count, .room = TABLE_ROOM, .markdown = markdown};
     bool total = false;
     for (size_t n = 0; n < table->column_count; n++) {
         const struct table_column *column = &table->columns[n];
         text.columns += (size_t)(column->physical != NULL) + column->has_total;
         total = total || column->has_total;
     }
-    text_print_plain(file, table->study.name);
-    fprintf(file, " (%s), study %s\n\n", table->study.state, table->study.id);
     text_rows(table, &text);
     table_print(&text, file);
     table_clear(&text);
+    return total;
+}
+
+void case_table_markdown(const struct case_table *table, FILE *file) {
+    (void)print_rows(table, true, file);
+}
+
+void case_table_text(const struct case_table *table, FILE *file) {
+    text_print_plain(file, table->study.name);
+    fprintf(file, " (%s), study %s\n\n", table->study.state, table->study.id);
+    bool total = print_rows(table, false, file);
     fputs("\nn: realisations; +-: one standard error\n", file);
     if (total)
         print_total_legend(file);
@@ -366,6 +377,8 @@ int case_table_print(const struct case_table *table, int format, FILE *file, str
         done = case_table_json(table, file) && fputc('\n', file) != EOF;
     else if (format == TABLE_CSV)
         done = case_table_csv(table, file);
+    else if (format == TABLE_MARKDOWN)
+        case_table_markdown(table, file);
     else
         case_table_text(table, file);
     return done || ferror(file) != 0 ? 0 : error_memory(err, 0, "a table");

@@ -114,6 +114,28 @@ void table_fold(struct text_table *table) {
         table->folds[table->fold_count++] = table->cells;
 }
 
+/* Prints a row between bars; a bar within a cell is escaped. */
+static void print_between_bars(const struct text_table *table, size_t row, FILE *file) {
+    for (size_t c = 0; c < table->columns; c++) {
+        fputs(c > 0 ? " " : "| ", file);
+        for (const char *text = table->text[row * table->columns + c]; *text != '\0'; text++)
+            fprintf(file, *text == '|' ? "\\%c" : "%c", *text);
+        fputs(" |", file);
+    }
+    fputc('\n', file);
+}
+
+static void print_markdown(const struct text_table *table, const struct column_shape *shapes,
+                           FILE *file) {
+    for (size_t row = 0; row < table->cells / table->columns; row++) {
+        print_between_bars(table, row, file);
+        for (size_t c = 0; c < table->columns && row == 0; c++)
+            fprintf(file, "%s%s", c > 0 ? " " : "| ", shapes[c].numeric ? "---: |" : "--- |");
+        if (row == 0)
+            fputc('\n', file);
+    }
+}
+
 void table_print(const struct text_table *table, FILE *file) {
     struct column_shape *shapes =
         table->failed ? NULL : array_create(table->columns, sizeof *shapes);
@@ -124,6 +146,11 @@ void table_print(const struct text_table *table, FILE *file) {
     }
     for (size_t c = 0; c < table->columns; c++)
         shapes[c] = shape_of(table, c);
+    if (table->markdown) {
+        print_markdown(table, shapes, file);
+        free(shapes);
+        return;
+    }
     size_t keys = table->fold_count > 0 ? table->folds[0] : 0, room = room_of(table, file);
     size_t begin = 0, end = 0, key_width = width_between(shapes, 0, keys);
     for (size_t fold = 0; fold <= table->fold_count; fold++) {

@@ -10,9 +10,10 @@ enum { TABLE_FOLDS_MOST = 64 };
 
 struct text_table {
     size_t columns, cells, capacity;
-    char **text; /* owned, row after row; initialise with {.columns = n} */
-    size_t room; /* columns where there is no terminal; 0: as many as it takes */
-    bool failed; /* out of memory: the table prints nothing */
+    char **text;   /* owned, row after row; initialise with {.columns = n} */
+    size_t room;   /* columns where there is no terminal; 0: as many as it takes */
+    bool markdown; /* printed between bars, as documents have tables, and never folded */
+    bool failed;   /* out of memory: the table prints nothing */
     size_t folds[TABLE_FOLDS_MOST], fold_count; /* columns where a folded table may begin anew */
 };
 /* So many columns a report has, also in a file. */

@@ -182,6 +182,7 @@ static void what_there_is_not_is_told(void **state) {
         {NULL, "H=1", "\"H\" is no parameter of the study's cases (did you mean hurst?)"},
         {NULL, "hurst=", "/surface/hurst has no value behind the =; there is 0.2, 0.8"},
         {NULL, "hurst=0.5", "no case has /surface/hurst = 0.5; there is 0.2, 0.8"},
+        {"kappa.law", NULL, "no case has kappa.law"},
         {NULL, "hurst=0.5x", "no case has /surface/hurst = 0.5x"},
     };
     for (size_t n = 0; n < sizeof FAULTS / sizeof *FAULTS; n++) {
@@ -218,9 +219,22 @@ static void each_format_has_every_number(void **state) {
     check_format(&table, TABLE_TEXT,
                  "case  n  hurst  shape         kappa  total %  area:layered@0.1  total %\n"
                  "   0  4    0.2  a      2.00 +- 0.12       12      1.66 +- 0.25  >75\n");
+    check_format(&table, TABLE_MARKDOWN,
+                 "| case | n | hurst | shape | kappa | total % | area:layered@0.1 | total % |\n"
+                 "| ---: | ---: | ---: | --- | ---: | ---: | ---: | --- |\n"
+                 "| 0 | 4 | 0.2 | a | 2.00 +- 0.12 | 12 | 1.66 +- 0.25 | >75 |\n");
     check_format(&table, TABLE_TEXT,
                  "area:layered@0.1: y, edges at x; errors other than statistical up to ");
     check_format(&table, TABLE_TEXT, "Errors not known: cell of area:layered@0.1.\n");
+    case_table_clear(&table);
+}
+
+static void what_stands_beside_a_value_is_a_column(void **state) {
+    (void)state;
+    struct case_table table = made("kappa,kappa.theory,area:layered@0.1.theory", "shape=a");
+    check_format(&table, TABLE_MARKDOWN,
+                 "| kappa | total % | kappa.theory | area:layered@0.1.theory |\n");
+    check_format(&table, TABLE_MARKDOWN, "| 0 | 4 | 0.2 | a | 2.00 +- 0.12 | 12 | 1.5 | 0.25 |\n");
     case_table_clear(&table);
 }
 
@@ -258,6 +272,7 @@ int main(void) {
         cmocka_unit_test(conditions_choose_rows),
         cmocka_unit_test(what_there_is_not_is_told),
         cmocka_unit_test(each_format_has_every_number),
+        cmocka_unit_test(what_stands_beside_a_value_is_a_column),
         cmocka_unit_test(units_stand_beside_values),
         cmocka_unit_test(without_names_the_view_chooses),
     };
