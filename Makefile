@@ -337,6 +337,7 @@ nightly: all
 	RUGO_EFFORT=4 $(MAKE) unit validation
 	RUGO_EFFORT=4 $(MAKE) faults
 	$(MAKE) check-documents check-install check-python check-units check-openapi check-contract check-figures check-results tour
+	$(MAKE) check-book
 	-@tests/install-deps "" "slurmctld slurmd slurm-client munge sqlite3" munged slurmctld slurmd sbatch sqlite3
 	$(MAKE) slurm-test
 	$(MAKE) roll-test
@@ -434,6 +435,17 @@ figures: all
 	@python3 tests/bench/error_picture.py $(PEERS_PAGE) >jobs/studies/equal-error.svg
 page-figures: all
 	@tests/browser/run $(abspath $(BUILD))/rugo $(FIGURES)
+# The pages of results, filled from studies that run whole: hours. PAGES="steel ..." for some of them; the store is kept.
+BOOK = jobs/studies/results
+PAGES = $(basename $(notdir $(filter-out $(BOOK)/README.md,$(wildcard $(BOOK)/*.md))))
+PART = 10
+book: all
+	@$(BOOK)/book $(BUILD)/rugo $(BUILD)/book $(PAGES:%=$(BOOK)/%.md)
+# The same from studies a PART-th as large, in a store of their own, compared with what stands there.
+check-book: all
+	@$(BOOK)/book --self-test
+	@$(BOOK)/book --part $(PART) $(BUILD)/rugo $(BUILD)/book-$(PART) $(PAGES:%=$(BOOK)/%.md)
+.PHONY: book check-book
 # Needs sqlite3, as the documents do.
 check-results: all
 	@tests/install-deps "" sqlite3 sqlite3

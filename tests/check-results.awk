@@ -1,5 +1,5 @@
 # Compares one number of a table with "value standard-error" in found. heading, table: the table of that number under the
-# heading; place: "row / column / number", the row by its first cells joined with ", ", the number counted in its cell.
+# heading, or of the page where heading is empty; place: "row / column / number", the row by its first cells joined with ", ", the number counted in its cell.
 function trim(text) {
     gsub(/^[ ]+|[ ]+$/, "", text)
     return text
@@ -23,10 +23,10 @@ function number_of(cell, n,    count) {
 BEGIN {
     split(place, part, " / ")
     row = trim(part[1]); column = part[2] + 0; number = part[3] + 0
-    heading = trim(heading); table = table + 0
+    heading = trim(heading); table = table + 0; inside = heading == ""
     split(found, result, " ")
 }
-/^#+ / { title = $0; sub(/^#+ /, "", title); inside = title == heading; tables = 0; next }
+heading != "" && /^#+ / { title = $0; sub(/^#+ /, "", title); inside = title == heading; tables = 0; next }
 inside && /^\| *---/ { tables++; next }
 inside && tables == table && /^\|/ {
     count = split($0, cells, "|")
@@ -38,7 +38,7 @@ inside && tables == table && /^\|/ {
         off = result[1] - value
         allowed = 4 * sqrt(result[2] ^ 2 + error ^ 2) + 0.5 / 10 ^ digits
         if (result[1] == "" || !(off <= allowed && -off <= allowed)) {
-            printf "%s, table %d, %s, column %d: %s stands there, %s +- %s comes out\n", heading, table, row, column, text, \
+            printf "%s, %s table %d, %s, column %d: %s stands there, %s +- %s comes out\n", FILENAME, heading, table, row, column, text, \
                 result[1], result[2]
             wrong = 1
         }
@@ -47,6 +47,6 @@ inside && tables == table && /^\|/ {
 }
 END {
     if (!seen)
-        printf "%s, table %d has no number %d in column %d of \"%s\"\n", heading, table, number, column, row
+        printf "%s, %s table %d has no number %d in column %d of \"%s\"\n", FILENAME, heading, table, number, column, row
     exit wrong || !seen
 }
