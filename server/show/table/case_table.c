@@ -23,20 +23,18 @@ struct table_wish {
     const char *quantity;       /* or the name of a scalar */
     size_t word_count;
     const char *words[TABLE_WORDS_MOST];
-    double x;                      /* NaN: a scalar is asked for */
-    const struct table_part *part; /* NULL: the value itself */
+    double x; /* NaN: a scalar is asked for */
+    int part; /* a table_part, or PART_SOURCES and a source of errors */
 };
 
-/* What stands beside a value, as "NAME.theory" asks for it. */
-static const struct table_part {
-    const char *suffix;
-    size_t value, standard_error; /* offsets in a table_value; 0: exact */
-} TABLE_PARTS[] = {
-    {".theory", offsetof(struct table_value, theory), 0},
-    {".grid", offsetof(struct table_value, grid), 0},
-    {".law", offsetof(struct table_value, law_difference),
-     offsetof(struct table_value, law_standard_error)},
-};
+/* What stands beside a value, as "NAME.theory" asks for it: one of these, or a source of errors. */
+enum table_part { PART_VALUE, PART_THEORY, PART_GRID, PART_LAW, PART_SOURCES };
+static const char *const PART_NAMES[PART_SOURCES] = {
+    [PART_THEORY] = "theory", [PART_GRID] = "grid", [PART_LAW] = "law"};
+
+static const char *part_name(int part) {
+    return part < PART_SOURCES ? PART_NAMES[part] : ERROR_SOURCE_ROWS[part - PART_SOURCES].name;
+}
 
 struct table_maker {
     struct case_table *table;
@@ -472,16 +470,18 @@ static int table_add_quantity(struct table_maker *maker, const char *quantity, s
 
 /* --- the columns asked for --- */
 
-/* Returns the part that a name of so many characters ends with, and takes it off; or NULL. */
-static const struct table_part *read_part(const char *text, size_t *size) {
-    for (size_t p = 0; p < sizeof TABLE_PARTS / sizeof *TABLE_PARTS; p++) {
-        size_t length = strlen(TABLE_PARTS[p].suffix);
-        if (*size > length && strncmp(text + *size - length, TABLE_PARTS[p].suffix, length) == 0) {
-            *size -= length;
-            return &TABLE_PARTS[p];
+/* Returns the part that a name of so many characters ends with, and takes it off. */
+static int read_part(const char *text, size_t *size) {
+    for (int part = PART_THEORY; part < PART_SOURCES + ERROR_SOURCES; part++) {
+        const char *name = part_name(part);
+        size_t length = strlen(name);
+        if (*size > length + 1 && text[*size - length - 1] == '.' &&
+            strncmp(text + *size - length, name, length) == 0) {
+            *size -= length + 1;
+            return part;
         }
     }
-    return NULL;
+    return PART_VALUE;
 }
 
 /* Reads "QUANTITY:WORD:WORD@X.PART" out of size characters. */
@@ -511,25 +511,35 @@ static int read_wish(struct table_wish *wish, const char *text, size_t size, str
     return 0;
 }
 
+/* Returns what stands beside a value as a value, NaN where nothing does. */
+static struct table_value beside(const struct table_value *value, int part) {
+    struct table_value out = NO_VALUE;
+    if (part >= PART_SOURCES) {
+        const struct scalar_error *error = &value->errors[part - PART_SOURCES];
+        out.value = error->applies && error->known ? error->value : (double)NAN;
+        out.standard_error = error->standard_error;
+    } else {
+        out.value = part == PART_THEORY ? value->theory
+                    : part == PART_GRID ? value->grid
+                                        : value->law_difference;
+        out.standard_error = part == PART_LAW ? value->law_standard_error : (double)NAN;
+    }
+    return out;
+}
+
 /* Leaves of a column what stands beside its values. ERROR_INPUT where nothing does. */
-static int take_part(struct case_table *table, struct table_column *column,
-                     const struct table_part *part, struct error *err) {
+static int take_part(struct case_table *table, struct table_column *column, int part,
+                     struct error *err) {
     bool any = false;
     char name[TABLE_NAME_SIZE];
     for (size_t r = 0; r < table->row_count; r++) {
-        struct table_value *value = &column->values[r];
-        const char *bytes = (const char *)value;
-        double beside = *(const double *)(bytes + part->value), error = NAN;
-        if (part->standard_error > 0)
-            error = *(const double *)(bytes + part->standard_error);
-        *value = NO_VALUE;
-        value->value = beside;
-        value->standard_error = error;
-        any = any || !isnan(beside);
+        column->values[r] = beside(&column->values[r], part);
+        any = any || !isnan(column->values[r].value);
     }
     if (!any)
-        return error_set(err, ERROR_INPUT, "columns: no case has %s%s", column->name, part->suffix);
-    snprintf(name, sizeof name, "%.170s%s", column->name, part->suffix);
+        return error_set(err, ERROR_INPUT, "columns: no case has %s.%s", column->name,
+                         part_name(part));
+    snprintf(name, sizeof name, "%.160s.%s", column->name, part_name(part));
     column->name = result_text(&table->room, name);
     column->physical = NULL;
     column->has_total = false;
@@ -542,7 +552,7 @@ static int add_one(struct table_maker *maker, const struct table_wish *wish, str
     size_t before = table->column_count;
     int status = isnan(wish->x) ? add_scalar(table, wish->quantity, false, err)
                                 : table_add_curves(maker, wish, err);
-    for (size_t n = before; n < table->column_count && status == 0 && wish->part != NULL; n++)
+    for (size_t n = before; n < table->column_count && status == 0 && wish->part != PART_VALUE; n++)
         status = take_part(table, &table->columns[n], wish->part, err);
     return status;
 }

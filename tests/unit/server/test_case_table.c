@@ -231,10 +231,13 @@ static void each_format_has_every_number(void **state) {
 
 static void what_stands_beside_a_value_is_a_column(void **state) {
     (void)state;
-    struct case_table table = made("kappa,kappa.theory,area:layered@0.1.theory", "shape=a");
+    struct case_table table = made(
+        "kappa,kappa.theory,area:layered@0.1.theory,area:layered@0.1.discretisation", "shape=a");
     check_format(&table, TABLE_MARKDOWN,
-                 "| kappa | total % | kappa.theory | area:layered@0.1.theory |\n");
-    check_format(&table, TABLE_MARKDOWN, "| 0 | 4 | 0.2 | a | 2.00 +- 0.12 | 12 | 1.5 | 0.25 |\n");
+                 "| kappa | total % | kappa.theory | area:layered@0.1.theory | "
+                 "area:layered@0.1.discretisation |\n");
+    check_format(&table, TABLE_MARKDOWN,
+                 "| 0 | 4 | 0.2 | a | 2.00 +- 0.12 | 12 | 1.5 | 0.25 | -0.50 +- 0.25 |\n");
     case_table_clear(&table);
 }
 
