@@ -147,6 +147,7 @@ static void measure_chance(struct map_characterisation *out, const struct common
     if (chance->told) {
         scalar_errors_heights(chance->heights, &chance->modes, &out->errors);
         scalar_errors_differences(&common->nearest, chance->heights, &chance->modes, &out->errors);
+        scalar_errors_inside(&out->errors, out->parameters.moments_share, &out->moment_errors);
     }
     height_fit_measure(chance->heights, map_chance_modes(chance), &out->height_fits);
     if (!grid_is_profile(map->grid))

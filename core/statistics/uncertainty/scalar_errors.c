@@ -57,24 +57,39 @@ void scalar_errors_differences(const struct cell_differences *d, const struct ce
                                const struct low_modes *modes, struct scalar_errors *out) {
     size_t cells = modes->cells_x * modes->cells_y;
     double m0[LOW_CELLS_MOST], m2[LOW_CELLS_MOST], m4[LOW_CELLS_MOST], alpha[LOW_CELLS_MOST];
-    double curvature[LOW_CELLS_MOST], area[LOW_CELLS_MOST];
+    double curvature[LOW_CELLS_MOST], area[LOW_CELLS_MOST], bends[LOW_CELLS_MOST];
     deviations_fill(h->power[0], h->power[2], cells, m0);
     deviations_fill(d->count, d->slope, cells, m2);
     deviations_fill(d->count, d->bend, cells, m4);
     deviations_fill(d->count, d->curvature, cells, curvature);
     double developed = deviations_fill(d->count, d->area, cells, area);
     for (size_t cell = 0; cell < cells; cell++) {
-        alpha[cell] = m0[cell] + m4[cell] - 2 * m2[cell];
+        bends[cell] = m4[cell] - 2 * m2[cell];
+        alpha[cell] = m0[cell] + bends[cell];
         area[cell] *= developed / (developed - 1);
     }
     double lost = share_lost(h, modes);
     out->m0 = hypot(sqrt(modes->excess[2] * low_modes_variance(modes, m0, 1)), lost);
-    out->m2 = sqrt(low_modes_variance(modes, m2, 1));
-    out->m4 = sqrt(low_modes_variance(modes, m4, 1));
-    out->alpha = hypot(sqrt(modes->excess[2] * low_modes_variance(modes, alpha, 1)), lost);
-    out->area = sqrt(low_modes_variance(modes, area, 1));
+    out->m2 = sqrt(low_modes_variance_within(modes, m2, d->count, 1));
+    out->m4 = sqrt(low_modes_variance_within(modes, m4, d->count, 1));
+    out->bends = sqrt(low_modes_variance_within(modes, bends, d->count, 1));
+    out->alpha =
+        hypot(sqrt(modes->excess[2] * low_modes_variance_within(modes, alpha, d->count, 1)), lost);
+    out->area = sqrt(low_modes_variance_within(modes, area, d->count, 1));
     out->slope = out->m2 / 2;
-    out->curvature = sqrt(low_modes_variance(modes, curvature, 1)) / 2;
+    out->curvature = sqrt(low_modes_variance_within(modes, curvature, d->count, 1)) / 2;
+}
+
+void scalar_errors_inside(const struct scalar_errors *all, double share,
+                          struct scalar_errors *out) {
+    const double wider = 1 / sqrt(share);
+    *out = *all;
+    out->slope *= wider;
+    out->curvature *= wider;
+    out->m2 *= wider;
+    out->m4 *= wider;
+    out->bends *= wider;
+    out->alpha = hypot(all->alpha, sqrt(1 / share - 1) * all->bends);
 }
 
 void summit_errors_measure(const struct summit_list *list, double density, const struct grid *grid,
@@ -111,11 +126,12 @@ void summit_errors_measure(const struct summit_list *list, double density, const
         count[cell] -= n * searched[cell] / all;
         height[cell] -= heights->power[1][cell] * n / heights->count;
     }
-    out->density = density * sqrt(low_modes_variance(modes, count, n));
-    out->height_mean = sqrt(low_modes_variance(modes, height, n));
+    out->density = density * sqrt(low_modes_variance_within(modes, count, searched, n));
+    out->height_mean = sqrt(low_modes_variance_within(modes, height, searched, n));
     out->height_deviation =
-        sqrt(modes->excess[2] * low_modes_variance(modes, spread, n) / variance) / 2;
-    out->curvature_mean = sqrt(low_modes_variance(modes, curvature, n));
+        sqrt(modes->excess[2] * low_modes_variance_within(modes, spread, searched, n) / variance) /
+        2;
+    out->curvature_mean = sqrt(low_modes_variance_within(modes, curvature, searched, n));
 }
 
 int summit_cells_count(const struct measured_map *map, const struct low_modes *modes, size_t before,
