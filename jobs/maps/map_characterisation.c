@@ -161,6 +161,9 @@ static void measure_chance(struct map_characterisation *out, const struct common
 
 /* --- all --- */
 
+/* Heights that a Gaussian law fits at this level scatter as such. */
+static const double GAUSSIAN_LEVEL = 0.01;
+
 static int measure_correlation(struct map_curve *out, const struct correlation *correlation,
                                enum map_extent extent, struct error *err) {
     int status = curve_create(out, correlation_rings(correlation), "an autocorrelation", err);
@@ -173,11 +176,17 @@ static int measure_correlation(struct map_curve *out, const struct correlation *
 
 static int measure_spectra(struct map_characterisation *out, const struct measured_map *map,
                            const struct map_spectrum *spectrum,
-                           const struct map_directions *directions, bool under_window,
-                           const struct spectrum_fit_request *trusted, enum map_extent extent,
-                           struct error *err) {
+                           const struct map_directions *directions, const struct low_modes *modes,
+                           bool under_window, const struct spectrum_fit_request *trusted,
+                           enum map_extent extent, struct error *err) {
+    const struct height_fits *fits = &out->height_fits;
+    const bool gaussian =
+        fits->best == HEIGHTS_GAUSSIAN && !(fits->list[HEIGHTS_GAUSSIAN].p_value < GAUSSIAN_LEVEL);
+    struct spectrum_fit_request of_map = *trusted;
+    of_map.map = modes != NULL && !gaussian ? map : NULL;
+    of_map.modes = modes;
     int status = map_spectra_measure(&out->spectra, map, spectrum, directions, under_window,
-                                     trusted, extent, err);
+                                     &of_map, extent, err);
     bool taken = out->spectra.has_fit && out->spectra.fit.to_end == SPECTRUM_END_LOW_PASS;
     if (status == 0 && taken && out->height_fits.best != HEIGHTS_GAUSSIAN)
         status = map_spectra_measure_scores(&out->spectra, map, directions, trusted, err);
@@ -187,8 +196,8 @@ static int measure_spectra(struct map_characterisation *out, const struct measur
 /* Measures the spectra of what is left of a map without its grooves, which would be peaks in them.
  */
 static int measure_rest(struct map_characterisation *out, const struct measured_map *map,
-                        const struct spectrum_fit_request *trusted, enum map_extent extent,
-                        struct error *err) {
+                        const struct low_modes *modes, const struct spectrum_fit_request *trusted,
+                        enum map_extent extent, struct error *err) {
     const size_t points = grid_points(map->grid);
     struct map_directions directions = {.p_value = 1};
     struct map_spectrum *spectrum = NULL;
@@ -205,7 +214,8 @@ static int measure_rest(struct map_characterisation *out, const struct measured_
     if (status == 0 && !grid_is_profile(map->grid))
         status = map_directions_find(&directions, &rest, spectrum, err);
     if (status == 0)
-        status = measure_spectra(out, &rest, spectrum, &directions, false, trusted, extent, err);
+        status =
+            measure_spectra(out, &rest, spectrum, &directions, modes, false, trusted, extent, err);
     map_spectrum_destroy(&spectrum);
     free(z);
     return status;
@@ -227,11 +237,12 @@ static int measure_common(struct map_characterisation *out, struct common *commo
         map_scales_measure(&out->scales, map, common->chance, &common->nearest);
     }
     out->rest_height = (double)NAN;
+    const struct low_modes *modes = map_chance_modes(common->chance);
     int status = under_window ? 0 : map_grooves_find(&out->grooves, map, err);
     if (status == 0 && out->grooves.families > 0)
-        return measure_rest(out, map, trusted, common->extent, err);
-    return status == 0 ? measure_spectra(out, map, common->spectrum, &out->directions, under_window,
-                                         trusted, common->extent, err)
+        return measure_rest(out, map, modes, trusted, common->extent, err);
+    return status == 0 ? measure_spectra(out, map, common->spectrum, &out->directions, modes,
+                                         under_window, trusted, common->extent, err)
                        : status;
 }
 
