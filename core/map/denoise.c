@@ -57,6 +57,13 @@ static int filter(const struct map_law *law, const struct grid *grid, double *z,
     return status;
 }
 
+/* Returns the relative standard error behind a 95 % interval; 0 where that is open. */
+static double error_of(const struct interval *interval) {
+    static const double BOTH_SIDES = 2 * 1.960;
+    const double error = (interval->high - interval->low) / (BOTH_SIDES * interval->value);
+    return isfinite(error) ? error : 0;
+}
+
 int map_denoise(const struct grid *grid, double *z, enum boundary boundary,
                 struct denoise_result *out, struct error *err) {
     const struct measured_map map = {grid, z, boundary};
@@ -78,6 +85,8 @@ int map_denoise(const struct grid *grid, double *z, enum boundary boundary,
     out->found = true;
     out->noise = sqrt(fit->noise * (grid_is_profile(grid) ? whole : whole * whole));
     out->shortest = fit->shortest;
+    out->slope_error = error_of(&fit->rms_slope);
+    out->curvature_error = error_of(&fit->rms_curvature);
     status = filter(&law, grid, z, boundary == BOUNDARY_OPEN, err);
     if (status == 0)
         map_roughness_measure(&map, &roughness);

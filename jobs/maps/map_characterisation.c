@@ -1,5 +1,6 @@
 #include "jobs/maps/map_characterisation.h"
 #include "core/statistics/heights/height_quantiles.h"
+#include "jobs/maps/map_remedies.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -140,6 +141,16 @@ struct common {
     enum map_extent extent;
 };
 
+/* Heights that a law fits at this level are taken to have its tails. */
+static const double LAW_LEVEL = 0.001;
+
+static void heights_by_law(struct map_characterisation *out, const struct measured_map *map) {
+    const struct height_fit *best = &out->height_fits.list[out->height_fits.best];
+    struct map_height_law law;
+    if (best->p_value >= LAW_LEVEL && map_height_law_find(&law, out))
+        scalar_errors_by_law(&out->errors, map, &law.heights, &law.moments);
+}
+
 static void measure_chance(struct map_characterisation *out, const struct common *common) {
     const struct measured_map *map = common->map;
     const struct map_chance *chance = common->chance;
@@ -147,9 +158,12 @@ static void measure_chance(struct map_characterisation *out, const struct common
     if (chance->told) {
         scalar_errors_heights(chance->heights, &chance->modes, &out->errors);
         scalar_errors_differences(&common->nearest, chance->heights, &chance->modes, &out->errors);
-        scalar_errors_inside(&out->errors, out->parameters.moments_share, &out->moment_errors);
     }
     height_fit_measure(chance->heights, map_chance_modes(chance), &out->height_fits);
+    if (chance->told) {
+        heights_by_law(out, map);
+        scalar_errors_inside(&out->errors, out->parameters.moments_share, &out->moment_errors);
+    }
     if (!grid_is_profile(map->grid))
         map_directions_measure(&out->directions, map, chance, common->spectrum, &common->nearest);
     out->stationarity = (struct stationarity){.p_value = {(double)NAN, (double)NAN}};
@@ -283,6 +297,8 @@ int map_characterise(struct map_characterisation *out, const struct height_map *
     if (under_window)
         map_chance_forgo(chance, "none: the map is under a window");
     status = measure(out, &measured, chance, under_window, trusted, extent, err);
+    if (status == 0)
+        status = map_remedies_add(out, &measured, record, err);
     map_chance_destroy(&chance);
     size_t heights = grid_points(&map->grid) - height_map_holes(map);
     return status == 0 ? measure_quantiles(&out->quantiles, &measured, heights, extent, err)

@@ -44,6 +44,70 @@ void scalar_errors_heights(const struct cell_heights *h, const struct low_modes 
     out->sku = LONG_TAIL * sqrt(modes->excess[2] * low_modes_variance(modes, sku, n));
 }
 
+/* What a standardised height changes in RMS height, skewness and kurtosis. */
+enum { INFLUENCES = 3 };
+static void influences_at(double t, double skewness, double kurtosis, double out[INFLUENCES]) {
+    const double square = t * t - 1;
+    out[0] = square / 2;
+    out[1] = t * t * t - skewness - 3 * t - 1.5 * skewness * square;
+    out[2] = t * t * t * t - kurtosis - 4 * skewness * t - 2 * kurtosis * square;
+}
+
+/* Their mean squares over a distribution. */
+static void influences_of_law(const struct heights *law, const struct height_moments *moments,
+                              double out[INFLUENCES]) {
+    enum { SCORES = 1600 };
+    static const double REACH = 8;
+    double weights = 0;
+    for (size_t q = 0; q < INFLUENCES; q++)
+        out[q] = 0;
+    for (size_t n = 0; n < SCORES; n++) {
+        const double score = REACH * (2 * ((double)n + 0.5) / SCORES - 1);
+        const double weight = exp(-score * score / 2);
+        double influences[INFLUENCES];
+        influences_at(heights_at_score(law, moments, score), moments->skewness, moments->kurtosis,
+                      influences);
+        for (size_t q = 0; q < INFLUENCES; q++)
+            out[q] += weight * influences[q] * influences[q];
+        weights += weight;
+    }
+    for (size_t q = 0; q < INFLUENCES; q++)
+        out[q] /= weights;
+}
+
+static void influences_of_map(const struct measured_map *map, double out[INFLUENCES]) {
+    const size_t points = grid_points(map->grid);
+    struct average mean = {0}, powers[3] = {0}, squares[INFLUENCES] = {0};
+    for (size_t point = 0; point < points; point++)
+        average_add(&mean, map->z[point]);
+    const double middle = average_value(&mean);
+    for (size_t point = 0; point < points; point++)
+        for (int power = 2; power <= 4; power++)
+            average_add(&powers[power - 2], pow(map->z[point] - middle, power));
+    const double rms = sqrt(average_value(&powers[0]));
+    const double skewness = average_value(&powers[1]) / pow(rms, 3);
+    const double kurtosis = average_value(&powers[2]) / pow(rms, 4);
+    for (size_t point = 0; point < points; point++) {
+        double influences[INFLUENCES];
+        influences_at((map->z[point] - middle) / rms, skewness, kurtosis, influences);
+        for (size_t q = 0; q < INFLUENCES; q++)
+            average_add(&squares[q], influences[q] * influences[q]);
+    }
+    for (size_t q = 0; q < INFLUENCES; q++)
+        out[q] = average_value(&squares[q]);
+}
+
+void scalar_errors_by_law(struct scalar_errors *errors, const struct measured_map *map,
+                          const struct heights *law, const struct height_moments *moments) {
+    double wanted[INFLUENCES], found[INFLUENCES];
+    influences_of_law(law, moments, wanted);
+    influences_of_map(map, found);
+    errors->sq *= sqrt(wanted[0] / found[0]);
+    errors->m0 *= sqrt(wanted[0] / found[0]);
+    errors->ssk *= sqrt(wanted[1] / found[1]);
+    errors->sku *= sqrt(wanted[2] / found[2]) / LONG_TAIL; /* which is in the law */
+}
+
 /* Fills the deviations from the mean by cell, over the mean and the number of all; returns the
  * mean. */
 static double deviations_fill(const double *counts, const double *sums, size_t cells, double *out) {
