@@ -14,7 +14,7 @@ enum { WHOLE = 256, SIDE = 96, TRIALS = 4 };
 static const struct grid CELL = {WHOLE, WHOLE, WHOLE, WHOLE}, PIECE = {SIDE, SIDE, SIDE, SIDE};
 
 /* Returns how much wider, in logarithms, the interval of the amplitude is by the map's own scatter;
- * that of H changes the same way. */
+ * so does that of H. */
 static double widening_of(const double *z) {
     static double piece[SIDE * SIDE];
     const struct measured_map map = {&PIECE, piece, BOUNDARY_OPEN};

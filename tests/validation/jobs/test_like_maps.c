@@ -1,9 +1,9 @@
 /* Protects: surfaces like a patch are like it. Of patches of known surfaces - isotropic, with a
  * lay, noisy, stratified - the sub-maps of the surfaces have the patch's RMS height, slope and
- * Nayak's alpha in the mean. Where the patch is one of such surfaces its percentiles are uniform in
- * what was not fitted. Patches of another class are refused, or found by the verdict. Without
- * RUGO_EFFORT two maps of a kind are tried, with few surfaces each; RUGO_EFFORT=1 tries 24, and
- * RUGO_TABLE=1 prints each. RUGO_SIDE=256 takes maps of so many points a side. */
+ * Nayak's alpha in the mean. Percentiles of patches with Gaussian heights are uniform in what was
+ * not fitted. Patches of another class are refused, or found by the verdict. Without RUGO_EFFORT
+ * two maps of a kind are tried, with few surfaces each; RUGO_EFFORT=1 tries 24, and RUGO_TABLE=1
+ * prints each. RUGO_SIDE=256 takes maps of so many points a side. */
 #include "core/map/detrend.h"
 #include "core/statistics/patch.h"
 #include "schema/json/json.h"
@@ -20,10 +20,10 @@ static size_t side(void) {
     return text != NULL ? strtoul(text, NULL, 10) : 128;
 }
 
-/* How many surfaces are made of each patch. Their RMS heights differ by some 3 %, so that 100 know
- * the mean to 0.3 %. */
+/* How many surfaces are made of each patch. Their RMS heights differ by some 5 %, so that the mean
+ * over 24 patches is known to 0.2 % by 40, and that of one to 0.9 %. */
 static uint64_t surfaces(void) {
-    return every_case() ? 100 : 12;
+    return every_case() ? 40 : 12;
 }
 
 /* What patches are not, though their surfaces are. */
@@ -65,7 +65,7 @@ static struct height_map patch_of(const struct kind *kind, uint64_t realisation)
         double *z = &map.z[point];
         *z += kind->noise * rms * noise[point];
         if (kind->spoiled == SPOILED_BOW)
-            *z += 6 * rms * (x - 0.5) * (x - 0.5);
+            *z += 13 * rms * (x - 0.5) * (x - 0.5); /* its RMS is about that of the heights */
         if (kind->spoiled == SPOILED_HALF)
             *z *= y > 0.5 ? 1.6 : 1;
         if (kind->spoiled == SPOILED_GROOVES)
@@ -128,7 +128,7 @@ static const enum patch_quantity NOT_FITTED[] = {PATCH_CORRELATION_LENGTH, PATCH
 enum { FREE = sizeof NOT_FITTED / sizeof *NOT_FITTED };
 
 /* The largest difference of a distribution from the uniform one, over that which one sample in a
- * hundred exceeds (Kolmogorov; Stephens 1970). */
+ * hundred exceeds (Kolmogorov's test, with Stephens's correction for few). */
 static double kolmogorov(double *share, size_t n) {
     double most = 0, root = sqrt((double)n);
     for (size_t a = 1; a < n; a++)
@@ -196,8 +196,14 @@ static void ensembles(void **state) {
     }
     printf("\n");
     fflush(stdout);
-    assert_true(beyond <= (kind->noise > 0 ? maps / 2 : maps / 12));
-    assert_true(most < 1 || !every_case());
+    /* single ones lie beyond 1 % and three standard errors once in a few hundred times */
+    assert_true(beyond <= (kind->noise > 0 ? maps / 4 : 1 + maps / 12));
+    for (size_t q = 0; q < 2; q++)
+        assert_true(fabs(bias[q]) < 0.01 + 3 * off_error[q] / sqrt((double)maps));
+    /* a noisy patch is compared with its noise, and a stratified one has another class of surfaces
+     */
+    const bool of_class = kind->noise == 0 && strstr(kind->surface, "plateau") == NULL;
+    assert_true(most < 1 || !every_case() || !of_class);
 }
 
 static void other_classes(void **state) {
