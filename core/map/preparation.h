@@ -108,8 +108,8 @@ struct preparation_record {
     double window_power;   /* mean square of the window over the points; 1: none */
     enum scan_lines lines; /* how scan lines were levelled, and along which axis */
     enum scan_axis lines_along;
-    bool denoised; /* noise was taken out; slopes and curvatures then have at least the relative
-                      standard errors of the law that hides below it */
+    bool denoised; /* noise was taken out, which adds relative standard errors to RMS slope and
+                      curvature */
     double denoised_slope, denoised_curvature;
     struct map_artefacts artefacts; /* of the map as it was scanned; where they are sought */
     size_t count;

@@ -76,15 +76,14 @@ static void lines_add(struct map_characterisation *found, const struct line_loss
         widen(&found->spectra.fit.rms_height, lost->height / 2);
 }
 
-/* Short waves have the power of the law that was fitted below the noise, and its errors. */
 static void noise_add(const struct preparation_record *record, struct scalar_errors *out) {
     const double slope = record->denoised_slope, curvature = record->denoised_curvature;
-    out->slope = fmax(out->slope, slope);
-    out->m2 = fmax(out->m2, 2 * slope);
-    out->area = fmax(out->area, 2 * slope);
-    out->curvature = fmax(out->curvature, curvature);
-    out->m4 = fmax(out->m4, 2 * curvature);
-    out->alpha = fmax(out->alpha, 2 * fabs(curvature - 2 * slope));
+    out->slope = hypot(out->slope, slope);
+    out->m2 = hypot(out->m2, 2 * slope);
+    out->area = hypot(out->area, 2 * slope);
+    out->curvature = hypot(out->curvature, curvature);
+    out->m4 = hypot(out->m4, 2 * curvature);
+    out->alpha = hypot(out->alpha, 2 * fabs(curvature - 2 * slope));
 }
 
 int map_remedies_add(struct map_characterisation *found, const struct measured_map *map,
