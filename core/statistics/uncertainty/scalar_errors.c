@@ -97,15 +97,20 @@ static void influences_of_map(const struct measured_map *map, double out[INFLUEN
         out[q] = average_value(&squares[q]);
 }
 
+/* A law that only just fits may have far longer tails than the surface: more is not believed. */
+static const double FAR_MOST = 3;
+
 void scalar_errors_by_law(struct scalar_errors *errors, const struct measured_map *map,
                           const struct heights *law, const struct height_moments *moments) {
     double wanted[INFLUENCES], found[INFLUENCES];
     influences_of_law(law, moments, wanted);
     influences_of_map(map, found);
-    errors->sq *= sqrt(wanted[0] / found[0]);
-    errors->m0 *= sqrt(wanted[0] / found[0]);
-    errors->ssk *= sqrt(wanted[1] / found[1]);
-    errors->sku *= sqrt(wanted[2] / found[2]) / LONG_TAIL; /* which is in the law */
+    for (size_t q = 0; q < INFLUENCES; q++)
+        wanted[q] = fmin(sqrt(wanted[q] / found[q]), FAR_MOST);
+    errors->sq *= wanted[0];
+    errors->m0 *= wanted[0];
+    errors->ssk *= wanted[1];
+    errors->sku *= fmax(wanted[2] / LONG_TAIL, 1); /* which is in the law */
 }
 
 /* Fills the deviations from the mean by cell, over the mean and the number of all; returns the

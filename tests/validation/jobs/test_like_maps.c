@@ -2,7 +2,7 @@
  * lay, noisy, stratified - the sub-maps of the surfaces have the patch's RMS height, slope and
  * Nayak's alpha in the mean. Percentiles of patches with Gaussian heights are uniform in what was
  * not fitted. Patches of another class are refused, or found by the verdict. Without RUGO_EFFORT
- * two maps of a kind are tried, with few surfaces each; RUGO_EFFORT=1 tries 24, and RUGO_TABLE=1
+ * one map of some kinds is tried, with few surfaces each; RUGO_EFFORT=1 tries 24, and RUGO_TABLE=1
  * prints each. RUGO_SIDE=256 takes maps of so many points a side. */
 #include "core/map/detrend.h"
 #include "core/statistics/patch.h"
@@ -239,7 +239,8 @@ static void other_classes(void **state) {
 int main(int count, char **arguments) {
     struct CMUnitTest tests[KIND_COUNT + 1] = {{0}};
     size_t kinds = 0;
-    for (size_t k = 0; k<KIND_COUNT; k += count> 1 ? 1 : case_step())
+    const size_t step = count > 1 ? 1 : case_step();
+    for (size_t k = 0; k < KIND_COUNT; k += step)
         tests[kinds++] = (struct CMUnitTest){
             .name = KINDS[k].name, .test_func = ensembles, .initial_state = (void *)&KINDS[k]};
     tests[kinds++] = (struct CMUnitTest){.name = "other classes", .test_func = other_classes};

@@ -499,7 +499,8 @@ int main(int count, char **arguments) {
     coarse_whole = malloc(sizeof(double[3 * LAGS_MOST]));
     if (count > 1)
         cmocka_set_test_filter(arguments[1]);
-    for (size_t k = 0; k<sizeof KINDS / sizeof *KINDS; k += count> 1 ? 1 : case_step())
+    const size_t step = count > 1 || every_case() ? 1 : 8;
+    for (size_t k = 0; k < sizeof KINDS / sizeof *KINDS; k += step)
         tests[kinds++] = (struct CMUnitTest){
             .name = KINDS[k].name, .test_func = coverage, .initial_state = (void *)&KINDS[k]};
     int failed = _cmocka_run_group_tests("coverage", tests, kinds, NULL, NULL);
