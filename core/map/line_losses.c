@@ -17,7 +17,8 @@ static double terms_of(enum scan_lines kind) {
 /* Fills the amplitudes of a line's waves, of mean square 1. Holes count as the mean. */
 static void line_fill(const double *z, size_t n, size_t step, double mean, double out[WAVES]) {
     for (size_t w = 0; w < WAVES; w++) {
-        const double turn = 2 * M_PI * (double)(w / 2 + 1) / (double)n;
+        const size_t wave = w / 2 + 1;
+        const double turn = 2 * M_PI * (double)wave / (double)n;
         double sum = 0;
         for (size_t i = 0; i < n; i++) {
             const double y = isnan(z[i * step]) ? 0 : z[i * step] - mean;

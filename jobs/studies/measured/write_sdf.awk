@@ -1,6 +1,6 @@
 # awk -v noise=NANOMETRES -f write_sdf.awk PATCH.csv: heights of `rugo convert`, a shortest wavelength of 4 points being 2 um,
 # with white noise of this RMS, as text of ISO 25178-71 with steps of 0.1 nm.
-function uniform() { seed = seed * 16807 % 2147483647; return seed / 2147483647 } # Park & Miller (1988)
+function uniform() { seed = seed * 16807 % 2147483647; return seed / 2147483647 } # the minimal standard generator
 function normal() { return sqrt(-2 * log(uniform())) * cos(6.283185307179586 * uniform()) }
 BEGIN {
     FS = ","

@@ -29,13 +29,13 @@ struct kind {
     double hurst, rolloff, shortest;
     double lay_ratio, lay_degrees; /* 0: none */
     double noise;                  /* white, of this RMS */
-    enum left left;
-    double size; /* of what was left: of offsets and steps, in RMS heights */
+    double size;                   /* of what was left: of offsets and steps, in RMS heights */
     struct heights heights;
     double rms_ratio, material_ratio; /* of a plateau; 0: none */
     /* Heights end at a bound, which a plane that was taken out blurs: parameters of the lower end
      * of the material ratio curve do not count. */
     bool bounded;
+    enum left left;
     double lowest; /* share of intervals; 0: as usual */
 };
 #define LAW(h, longer, shorter) .hurst = (h), .rolloff = (longer), .shortest = (shorter)
