@@ -57,6 +57,32 @@ static int filter(const struct map_law *law, const struct grid *grid, double *z,
     return status;
 }
 
+/* Returns the relative standard error behind a 95 % interval; 0 where that is open. */
+static double error_of(const struct interval *interval) {
+    static const double BOTH_SIDES = 2 * 1.960;
+    const double error = (interval->high - interval->low) / (BOTH_SIDES * interval->value);
+    return isfinite(error) ? error : 0;
+}
+
+/* Fills what the noise leaves open of slopes and curvatures: of the law its error where there is as
+ * much noise, and of the waves at the law's end, behind which all are removed, the error of that.
+ */
+static void errors_fill(const struct spectrum_fit *fit, struct denoise_result *out) {
+    const double k = 2 * M_PI / fit->shortest, end = error_of(&fit->short_wavelength);
+    const double dimension = fit->profile ? 1 : 2;
+    const double whole = fit->profile ? 2 : 2 * M_PI; /* of all directions, of unit wave number */
+    const double density = spectrum_fit_density(fit, k);
+    const struct interval *moments[] = {&fit->rms_slope, &fit->rms_curvature};
+    double *const errors[] = {&out->slope_error, &out->curvature_error};
+    for (int m = 0; m < 2; m++) {
+        const double power = dimension + 2 * (m + 1), all = whole * pow(k, power);
+        /* the mean square of |k|^2 z is four times that of the mean curvature of a surface */
+        const double square = pow(moments[m]->value, 2) * (m == 1 && !fit->profile ? 4 : 1);
+        const double noise = fmin(fit->noise * all / power / square, 1);
+        *errors[m] = hypot(noise * error_of(moments[m]), density * all / square * end / 2);
+    }
+}
+
 int map_denoise(const struct grid *grid, double *z, enum boundary boundary,
                 struct denoise_result *out, struct error *err) {
     const struct measured_map map = {grid, z, boundary};
@@ -78,6 +104,7 @@ int map_denoise(const struct grid *grid, double *z, enum boundary boundary,
     out->found = true;
     out->noise = sqrt(fit->noise * (grid_is_profile(grid) ? whole : whole * whole));
     out->shortest = fit->shortest;
+    errors_fill(fit, out);
     status = filter(&law, grid, z, boundary == BOUNDARY_OPEN, err);
     if (status == 0)
         map_roughness_measure(&map, &roughness);

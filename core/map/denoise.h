@@ -9,7 +9,8 @@ struct denoise_result {
     bool found;      /* noise that governs slopes (spectrum_fit.h); false: z is as it was */
     double noise;    /* its RMS height up to the shortest waves of the points */
     double shortest; /* wave that is left */
-    double slope_before, slope_after; /* RMS slopes, by differences */
+    double slope_before, slope_after;    /* RMS slopes, by differences */
+    double slope_error, curvature_error; /* relative standard errors that this adds (F18.78) */
 };
 /* Multiplies each wave of the law, along a lay where directions differ, by the root of the share
  * that the law has in its power, and shorter ones by 0. z has no holes. An open map goes on as its

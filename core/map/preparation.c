@@ -410,6 +410,8 @@ static int level_lines(struct preparation_record *record, struct height_map *map
     int status = scan_lines_level(&map->grid, map->z, asked->lines, asked->lines_along, &done, err);
     if (status != 0)
         return error_context(err, "--lines");
+    record->lines = asked->lines;
+    record->lines_along = asked->lines_along;
     preparation_note(record, "lines",
                      "%s of each of %zu lines along %s, RMS %s, %.3g %% of the mean square",
                      NAMES[asked->lines], done.lines, along_x ? "x" : "y",
@@ -619,6 +621,9 @@ static int denoise(struct preparation_record *record, struct height_map *map, st
     status = map_denoise(&map->grid, map->z, record->boundary, &done, err);
     if (status != 0)
         return error_context(err, "--denoise");
+    record->denoised = done.found;
+    record->denoised_slope = done.slope_error;
+    record->denoised_curvature = done.curvature_error;
     if (!done.found)
         preparation_note(record, "denoise", "no noise governs the slopes; heights stay");
     else

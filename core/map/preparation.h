@@ -104,8 +104,13 @@ struct preparation_record {
     struct seam seam;        /* when the boundary was decided */
     double holes;            /* as a share of the points, before any were filled */
     enum detrend detrend;
-    struct trend trend;             /* what was subtracted */
-    double window_power;            /* mean square of the window over the points; 1: none */
+    struct trend trend;    /* what was subtracted */
+    double window_power;   /* mean square of the window over the points; 1: none */
+    enum scan_lines lines; /* how scan lines were levelled, and along which axis */
+    enum scan_axis lines_along;
+    bool denoised; /* noise was taken out, which adds relative standard errors to RMS slope and
+                      curvature */
+    double denoised_slope, denoised_curvature;
     struct map_artefacts artefacts; /* of the map as it was scanned; where they are sought */
     size_t count;
     struct preparation_step {

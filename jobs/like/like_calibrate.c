@@ -197,13 +197,19 @@ static int measure_scale(const struct calibration *c, const struct spectrum *spe
     return status;
 }
 
-/* Takes the noise out of the mean squares: of the height as white, for slope and curvature by what
- * surfaces of these rings have. */
+static const double NOISE_MOST = 0.5; /* of a mean square */
+
+/* Takes the noise out of the mean squares. It adds to them what independent heights have. Where
+ * that is most of them, what is left is known less than what surfaces of the rings have, over the
+ * part of the map that their window shows. */
 static int squares_without(struct calibration *c, const struct like_noise *noise,
                            struct error *err) {
     const struct grid *grid = &c->rings->modes.grid;
     const double whole = 2 * M_PI / grid_dx(grid); /* of wave numbers, along an axis */
     const double power = noise->density * (grid_is_profile(grid) ? whole : whole * whole);
+    const double square = grid_dx(grid) * grid_dx(grid);
+    const double own[LIKE_MOMENTS] = {power, (grid_is_profile(grid) ? 2 : 4) * power / square,
+                                      (grid_is_profile(grid) ? 6 : 5) * power / (square * square)};
     struct spectrum spectrum;
     double scale;
     int status = spectrum_of(c, &spectrum, err);
@@ -215,8 +221,11 @@ static int squares_without(struct calibration *c, const struct like_noise *noise
         return error_set(err, ERROR_INPUT,
                          "the map has no more than noise: RMS height %g, noise %g",
                          sqrt(c->squares[0]), sqrt(power));
-    c->squares[0] -= power;
-    for (int m = 1; status == 0 && m < LIKE_MOMENTS; m++) {
+    for (int m = 0; status == 0 && m < LIKE_MOMENTS; m++) {
+        if (m == 0 || own[m] < NOISE_MOST * c->squares[m]) {
+            c->squares[m] -= own[m];
+            continue;
+        }
         c->squares[m] = 0;
         for (size_t n = 0; n < LIKE_WAVES; n++)
             c->squares[m] += scale * c->waves[n].squares[m];

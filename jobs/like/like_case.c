@@ -56,7 +56,8 @@ static int read_maps(struct like_case *out, struct values *values, struct error 
     else
         for (size_t m = 0; m < out->map_count; m++) {
             const double *of = numbers + m * LIKE_MAP_NUMBERS;
-            out->maps[m] = (struct like_map){(size_t)of[0], (size_t)of[1], of[2], {of[3], of[4]}};
+            out->maps[m] = (struct like_map){
+                (size_t)of[0], (size_t)of[1], of[2], {.longest = of[3], .shortest = of[4]}};
             if (!(of[0] >= 2 && of[1] >= 1 && of[0] * of[1] <= SURFACE_POINTS_MOST && of[2] > 0) ||
                 (out->maps[m].ny == 1) != (out->ny == 1))
                 values_fault(values, path, "map %zu has %g by %g points, %g apart", m + 1, of[0],

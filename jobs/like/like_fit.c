@@ -1,6 +1,9 @@
 #include "jobs/like/like_fit.h"
 #include "core/statistics/grooves/map_grooves.h"
 #include "core/statistics/measured_map.h"
+#include "core/statistics/uncertainty/isotropy.h"
+#include "core/statistics/uncertainty/map_chance.h"
+#include "core/statistics/uncertainty/stationarity.h"
 #include "core/surface/heights.h"
 #include "jobs/like/like_estimate.h"
 #include "jobs/like/like_hold.h"
@@ -32,6 +35,7 @@ struct fit {
     const struct height_map *maps;
     struct like_joint joint; /* of several */
     double longest;          /* the wave that the study names, over lambda_s; 0: none */
+    double parts_p_value;    /* of parts of the map that are alike; NaN: not known */
 };
 
 /* --- the map --- */
@@ -50,6 +54,26 @@ static int check_map(const struct height_map *map, struct error *err) {
                          "same distances; give \"resample\"",
                          dx, dy);
     return 0;
+}
+
+/* Tests whether parts of the map are alike, as those of random surfaces are. */
+static int measure_parts(struct fit *fit, struct error *err) {
+    struct map_chance *chance = NULL;
+    struct stationarity stationarity;
+    struct cell_differences *differences = array_create(1, sizeof *differences);
+    int status = differences != NULL
+                     ? map_chance_create(&chance, &fit->map, err)
+                     : error_memory(err, sizeof *differences, "differences of a map");
+    fit->parts_p_value = (double)NAN;
+    if (status == 0 && chance->told) {
+        cell_differences_measure(&fit->map, &chance->modes, 1, differences);
+        stationarity_measure(&fit->map, chance->heights, differences, &chance->modes,
+                             chance->correlation, &stationarity);
+        fit->parts_p_value = least_p_value(stationarity.p_value, STATIONARY_DIVISIONS);
+    }
+    map_chance_destroy(&chance);
+    free(differences);
+    return status;
 }
 
 /* Random surfaces have no grooves. */
@@ -191,6 +215,7 @@ static bool put_measured(cJSON *like, const struct fit *fit) {
     return put;
 }
 
+static const double PARTS_LEVEL = 0.01;
 static const char *const SQUARES[LIKE_MOMENTS] = {"height", "slope", "curvature"};
 
 /* What was done to the map, and to its spectrum, and what is left between it and its surfaces. */
@@ -206,8 +231,13 @@ static bool put_prepared(cJSON *like, const struct fit *fit) {
                          "%snoise: taken out of the spectrum, with the waves in it",
                          used > 0 ? "; " : "");
     if (fabs(left) > NAMED && used >= 0 && used < SIZE)
-        snprintf(text + used, (size_t)(SIZE - used), "%sRMS %s of the surfaces: %+.3g %% off",
-                 used > 0 ? "; " : "", SQUARES[fit->estimate.left.moment], left);
+        used +=
+            snprintf(text + used, (size_t)(SIZE - used), "%sRMS %s of the surfaces: %+.3g %% off",
+                     used > 0 ? "; " : "", SQUARES[fit->estimate.left.moment], left);
+    if (fit->parts_p_value < PARTS_LEVEL && used >= 0 && used < SIZE)
+        snprintf(text + used, (size_t)(SIZE - used),
+                 "%sparts of the map differ (p-value %.2g), and those of its surfaces do not",
+                 used > 0 ? "; " : "", fit->parts_p_value);
     bool put = field_put_text(like, "prepared", text);
     free(text);
     return put;
@@ -391,6 +421,8 @@ int like_fit_together(cJSON *surface, size_t count, const struct height_map *map
     int status = check_map(map, err);
     if (status == 0)
         status = check_grooves(&fit.map, fit.unit, err);
+    if (status == 0)
+        status = measure_parts(&fit, err);
     if (status != 0)
         return status;
     choose(&fit, surface);

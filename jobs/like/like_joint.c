@@ -206,8 +206,8 @@ int like_joint_measure(struct like_estimate *out, struct like_joint *joint, size
     joint->between = fit.law.between;
     for (size_t m = 0; m < count && status == 0; m++)
         joint->trusted[m] = (struct spectrum_fit_request){
-            fit.fits[m].trusted_from,
-            fit.fits[m].to_end == SPECTRUM_END_CUTOFF ? 0 : fit.fits[m].trusted_to};
+            .longest = fit.fits[m].trusted_from,
+            .shortest = fit.fits[m].to_end == SPECTRUM_END_CUTOFF ? 0 : fit.fits[m].trusted_to};
     fit_clear(&fit);
     return status;
 }

@@ -39,8 +39,8 @@ void like_table_spectrum(const struct like_table *table, struct spectrum *out);
  * squares of height, slope and curvature (forward and central differences). *left: the largest
  * relative difference that remains in one of their roots.
  *
- * Of a map with noise they have its mean square height less that of the noise, and the slope and
- * curvature that follow from its density without noise: squares become these. */
+ * Of a map with noise they have its mean squares less those of white noise. A slope or curvature
+ * that is mostly noise follows from the density without noise instead. Squares become these. */
 struct like_left {
     double relative; /* (surfaces - map)/map */
     int moment;      /* 0: height, 1: slope, 2: curvature */

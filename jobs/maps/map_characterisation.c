@@ -1,5 +1,6 @@
 #include "jobs/maps/map_characterisation.h"
 #include "core/statistics/heights/height_quantiles.h"
+#include "jobs/maps/map_remedies.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -140,6 +141,16 @@ struct common {
     enum map_extent extent;
 };
 
+/* Heights that a law fits at this level are taken to have its tails. */
+static const double LAW_LEVEL = 0.001;
+
+static void heights_by_law(struct map_characterisation *out, const struct measured_map *map) {
+    const struct height_fit *best = &out->height_fits.list[out->height_fits.best];
+    struct map_height_law law;
+    if (best->p_value >= LAW_LEVEL && map_height_law_find(&law, out))
+        scalar_errors_by_law(&out->errors, map, &law.heights, &law.moments);
+}
+
 static void measure_chance(struct map_characterisation *out, const struct common *common) {
     const struct measured_map *map = common->map;
     const struct map_chance *chance = common->chance;
@@ -149,6 +160,10 @@ static void measure_chance(struct map_characterisation *out, const struct common
         scalar_errors_differences(&common->nearest, chance->heights, &chance->modes, &out->errors);
     }
     height_fit_measure(chance->heights, map_chance_modes(chance), &out->height_fits);
+    if (chance->told) {
+        heights_by_law(out, map);
+        scalar_errors_inside(&out->errors, out->parameters.moments_share, &out->moment_errors);
+    }
     if (!grid_is_profile(map->grid))
         map_directions_measure(&out->directions, map, chance, common->spectrum, &common->nearest);
     out->stationarity = (struct stationarity){.p_value = {(double)NAN, (double)NAN}};
@@ -159,6 +174,9 @@ static void measure_chance(struct map_characterisation *out, const struct common
 }
 
 /* --- all --- */
+
+/* Heights that a Gaussian law fits at this level scatter as such. */
+static const double GAUSSIAN_LEVEL = 0.01;
 
 static int measure_correlation(struct map_curve *out, const struct correlation *correlation,
                                enum map_extent extent, struct error *err) {
@@ -172,11 +190,17 @@ static int measure_correlation(struct map_curve *out, const struct correlation *
 
 static int measure_spectra(struct map_characterisation *out, const struct measured_map *map,
                            const struct map_spectrum *spectrum,
-                           const struct map_directions *directions, bool under_window,
-                           const struct spectrum_fit_request *trusted, enum map_extent extent,
-                           struct error *err) {
+                           const struct map_directions *directions, const struct low_modes *modes,
+                           bool under_window, const struct spectrum_fit_request *trusted,
+                           enum map_extent extent, struct error *err) {
+    const struct height_fits *fits = &out->height_fits;
+    const bool gaussian =
+        fits->best == HEIGHTS_GAUSSIAN && !(fits->list[HEIGHTS_GAUSSIAN].p_value < GAUSSIAN_LEVEL);
+    struct spectrum_fit_request of_map = *trusted;
+    of_map.map = modes != NULL && !gaussian ? map : NULL;
+    of_map.modes = modes;
     int status = map_spectra_measure(&out->spectra, map, spectrum, directions, under_window,
-                                     trusted, extent, err);
+                                     &of_map, extent, err);
     bool taken = out->spectra.has_fit && out->spectra.fit.to_end == SPECTRUM_END_LOW_PASS;
     if (status == 0 && taken && out->height_fits.best != HEIGHTS_GAUSSIAN)
         status = map_spectra_measure_scores(&out->spectra, map, directions, trusted, err);
@@ -186,8 +210,8 @@ static int measure_spectra(struct map_characterisation *out, const struct measur
 /* Measures the spectra of what is left of a map without its grooves, which would be peaks in them.
  */
 static int measure_rest(struct map_characterisation *out, const struct measured_map *map,
-                        const struct spectrum_fit_request *trusted, enum map_extent extent,
-                        struct error *err) {
+                        const struct low_modes *modes, const struct spectrum_fit_request *trusted,
+                        enum map_extent extent, struct error *err) {
     const size_t points = grid_points(map->grid);
     struct map_directions directions = {.p_value = 1};
     struct map_spectrum *spectrum = NULL;
@@ -204,7 +228,8 @@ static int measure_rest(struct map_characterisation *out, const struct measured_
     if (status == 0 && !grid_is_profile(map->grid))
         status = map_directions_find(&directions, &rest, spectrum, err);
     if (status == 0)
-        status = measure_spectra(out, &rest, spectrum, &directions, false, trusted, extent, err);
+        status =
+            measure_spectra(out, &rest, spectrum, &directions, modes, false, trusted, extent, err);
     map_spectrum_destroy(&spectrum);
     free(z);
     return status;
@@ -226,11 +251,12 @@ static int measure_common(struct map_characterisation *out, struct common *commo
         map_scales_measure(&out->scales, map, common->chance, &common->nearest);
     }
     out->rest_height = (double)NAN;
+    const struct low_modes *modes = map_chance_modes(common->chance);
     int status = under_window ? 0 : map_grooves_find(&out->grooves, map, err);
     if (status == 0 && out->grooves.families > 0)
-        return measure_rest(out, map, trusted, common->extent, err);
-    return status == 0 ? measure_spectra(out, map, common->spectrum, &out->directions, under_window,
-                                         trusted, common->extent, err)
+        return measure_rest(out, map, modes, trusted, common->extent, err);
+    return status == 0 ? measure_spectra(out, map, common->spectrum, &out->directions, modes,
+                                         under_window, trusted, common->extent, err)
                        : status;
 }
 
@@ -271,6 +297,8 @@ int map_characterise(struct map_characterisation *out, const struct height_map *
     if (under_window)
         map_chance_forgo(chance, "none: the map is under a window");
     status = measure(out, &measured, chance, under_window, trusted, extent, err);
+    if (status == 0)
+        status = map_remedies_add(out, &measured, record, err);
     map_chance_destroy(&chance);
     size_t heights = grid_points(&map->grid) - height_map_holes(map);
     return status == 0 ? measure_quantiles(&out->quantiles, &measured, heights, extent, err)

@@ -45,7 +45,8 @@ struct map_characterisation {
     bool hills_have_errors;
     struct summit_errors hill_errors; /* of areal.spd and areal.spc */
     struct map_certainty certainty;
-    struct scalar_errors errors; /* where there are errors */
+    struct scalar_errors errors;        /* where there are errors */
+    struct scalar_errors moment_errors; /* of parameters.moments, likewise */
     struct height_fits height_fits;
     struct map_histogram histogram;
     struct map_directions directions;

@@ -3,6 +3,7 @@
 #include "core/statistics/summits/open_refined.h"
 #include "core/statistics/summits/open_summits.h"
 #include <math.h>
+#include <stdlib.h>
 
 #define NONE ((double)NAN)
 
@@ -98,6 +99,19 @@ static const struct moments NO_MOMENTS = {.m0 = NONE,
                                           .rms_slope = NONE,
                                           .rms_curvature = NONE};
 
+static int measure_share(struct map_parameters *out, const struct measured_map *map,
+                         struct error *err) {
+    const size_t points = grid_points(map->grid);
+    unsigned char *whole = array_create(points, 1);
+    if (whole == NULL)
+        return error_memory(err, points, "marks of a map");
+    const double all = (double)map_mark_whole(map, 1, 1, whole);
+    const double inside = (double)map_mark_whole(map, LOCAL_HALF, LOCAL_HALF, whole);
+    out->moments_share = inside / all;
+    free(whole);
+    return 0;
+}
+
 int map_parameters_measure(struct map_parameters *out, const struct measured_map *map,
                            size_t mode_x, size_t mode_y, const struct map_chance *chance,
                            enum map_extent extent, struct error *err) {
@@ -109,6 +123,9 @@ int map_parameters_measure(struct map_parameters *out, const struct measured_map
     if (extent == MAP_WHOLE)
         status = open ? local_moments_measure(map, &out->moments, err)
                       : roughness_spectral(map->grid, map->z, &out->moments, err);
+    out->moments_share = 1;
+    if (status == 0 && extent == MAP_WHOLE && open)
+        status = measure_share(out, map, err);
     if (status != 0)
         return status;
     map_roughness_measure(map, &out->roughness);

@@ -24,6 +24,8 @@ struct map_parameters {
     enum boundary boundary;
     struct roughness roughness; /* by finite differences */
     struct moments moments;     /* periodic: by the transform; open: by polynomials inside */
+    double moments_share; /* of the points with both neighbours along each axis, those that an open
+                             map's moments are over; 1 of a periodic one */
     struct map_summits summits[MAP_STENCILS];
 };
 /* Measures a map; one that is open may have holes. mode_x, mode_y bound the band of a periodic one

@@ -2,13 +2,42 @@
 #include "core/statistics/uncertainty/scalar_errors.h"
 #include <math.h>
 
-static void fill_errors(struct map_scale *scale, const struct map_chance *chance,
-                        const struct cell_differences *differences, double excess) {
+/* Differences are correlated over their lag, too, so that of longer ones too few are independent.
+ */
+static const double LAGS_INSIDE_LEAST = 6;
+
+/* Returns how many points of a side have as many others to both sides, or to one, as the lag. */
+static double points_of(size_t n, double lags) {
+    return fmax((double)n - lags, 1);
+}
+
+/* Errors are of the points that have both neighbours along both axes. Differences of first order
+ * are taken over more of an open map, and have less error by the root of the areas. */
+static double share_of(const struct measured_map *map, size_t lag) {
+    const struct grid *grid = map->grid;
+    const double x = (double)lag;
+    if (map->boundary != BOUNDARY_OPEN)
+        return 1;
+    if (grid_is_profile(grid))
+        return points_of(grid->nx, 2 * x) / points_of(grid->nx, x);
+    const double y = fmax(rint(x * grid_dx(grid) / grid_dy(grid)), 1);
+    const double both = points_of(grid->nx, 2 * x) * points_of(grid->ny, 2 * y);
+    return 2 * both /
+           (points_of(grid->nx, x) * (double)grid->ny + points_of(grid->ny, y) * (double)grid->nx);
+}
+
+static void fill_errors(struct map_scale *scale, const struct measured_map *map, size_t lag,
+                        const struct map_chance *chance, const struct cell_differences *differences,
+                        double excess) {
     struct scalar_errors errors;
     scalar_errors_differences(differences, chance->heights, &chance->modes, &errors);
-    double more = sqrt(excess), none = chance->told ? 1 : (double)NAN;
-    scale->height_error = scale->found.height * errors.slope * more * none;
-    scale->slope_error = scale->found.slope * errors.slope * more * none;
+    const struct grid *grid = map->grid;
+    const double side = grid_is_profile(grid) ? grid->lx : fmin(grid->lx, grid->ly);
+    const bool known = chance->told && side >= LAGS_INSIDE_LEAST * scale->found.length;
+    const double more = sqrt(excess), none = known ? 1 : (double)NAN;
+    const double slope = errors.slope * more * none * sqrt(share_of(map, lag));
+    scale->height_error = scale->found.height * slope;
+    scale->slope_error = scale->found.slope * slope;
     scale->curvature_error = scale->found.curvature * errors.curvature * more * none;
 }
 
@@ -35,7 +64,7 @@ void map_scales_measure(struct map_scales *out, const struct measured_map *map,
                                      : 1;
         if (n > 0)
             cell_differences_measure(map, &chance->modes, (size_t)1 << n, &farther);
-        fill_errors(scale, chance, differences, excess);
+        fill_errors(scale, map, (size_t)1 << n, chance, differences, excess);
         if (!grid_is_profile(map->grid))
             measure_directions(scale, chance, differences, excess);
     }

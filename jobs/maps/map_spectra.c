@@ -155,6 +155,7 @@ static int scores_fit(struct map_spectra *out, const struct measured_map *scored
         return status;
     struct spectrum_fit_request before = *request;
     before.shortest = spectrum->side / ((double)range.edge - SPECTRUM_BLURRED);
+    before.map = NULL; /* scores are Gaussian */
     status = law_fit(scored, spectrum, directions, &before, &out->scores, err);
     out->has_scores =
         status == 0 && out->scores.fitted && out->scores.deviance <= out->scores.deviance_limit;

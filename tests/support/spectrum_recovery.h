@@ -50,14 +50,19 @@ struct recovery {
     double seconds;  /* of CPU a patch */
 };
 
-/* The mean square of the true law between two wavelengths. */
+/* The mean of |k|^order times the power of the true law between two wavelengths; order 0, 2 or 4.
+ */
 static inline double true_moment(const struct recovery_case *c, double density, int order,
                                  double longest, double shortest) {
     enum { STEPS = 4000 };
     int dimension = c->ny == 1 ? 1 : 2;
     double low = 2 * M_PI / fmin(longest, c->longest), high = 2 * M_PI / shortest, total = 0;
     double ratio = c->lay_ratio > 0 ? c->lay_ratio : 1;
-    double by_lay = (order == 0 ? 1 : (1 + 1 / (ratio * ratio)) / 2) / ratio;
+    const double square = 1 / (ratio * ratio);
+    const double along = order == 0   ? 1
+                         : order == 2 ? (1 + square) / 2
+                                      : 3 * (1 + square * square) / 8 + square / 4;
+    double by_lay = along / ratio;
     double step = log(high / low) / STEPS;
     for (int a = 0; a < STEPS; a++) {
         double k = low * exp((a + 0.5) * step);

@@ -1,6 +1,7 @@
 #include "core/statistics/spectra/spectrum_fit.h"
 #include "core/statistics/spectra/spectrum_law.h"
 #include "core/statistics/spectra/spectrum_range.h"
+#include "core/statistics/uncertainty/spectrum_scores.h"
 
 /* The rise of the deviance at the ends of a 95 % interval, also where only one end is known. An end
  * at 5 %, reported where noise hides the other, would be wrong more often than 1 time in 20. */
@@ -20,11 +21,12 @@ struct fitted {
     struct law plain;      /* the same, or without a roll-off where none is seen */
     law_matrix likelihood; /* covariances, widened where the law is wrong */
     law_matrix covariance;
-    double ratio;    /* of the deviance to the degrees of freedom */
-    double limit;    /* beyond which that is significantly too large */
-    bool wrong;      /* whether it is */
-    double widening; /* of variances */
-    bool known;      /* false: too few rings, or none that determines the law */
+    struct spectrum_scatter scatter; /* beyond that of a Gaussian surface */
+    double ratio;                    /* of the deviance to the degrees of freedom */
+    double limit;                    /* beyond which that is significantly too large */
+    bool wrong;                      /* whether it is */
+    double widening;                 /* of variances */
+    bool known;                      /* false: too few rings, or none that determines the law */
 };
 
 static const double NONE = (double)NAN;
@@ -170,6 +172,28 @@ static int fitted_create(struct fitted *fitted, const struct map_spectrum *spect
     return status;
 }
 
+/* It is known by few slow waves: Student's factor over that of the normal distribution is in it. */
+static int fitted_scatter(struct fitted *fitted, const struct spectrum_fit_request *request,
+                          struct error *err) {
+    if (!fitted->known || request->map == NULL)
+        return 0;
+    int status = spectrum_scatter_measure(fitted->problem, &fitted->law, request->map,
+                                          request->modes, &fitted->scatter, err);
+    const double factor = pow(low_modes_factor(request->modes->count) / SCORE, 2);
+    fitted->scatter.density *= factor;
+    fitted->scatter.slope *= factor;
+    fitted->scatter.both *= factor;
+    return status;
+}
+
+/* Returns the variance that the scatter adds to what changes so with the logarithm of the amplitude
+ * and with H, of which the density falls by twice as much. */
+static double scatter_variance(const struct fitted *fitted, double by_amplitude, double by_hurst) {
+    const struct spectrum_scatter *s = &fitted->scatter;
+    return by_amplitude * by_amplitude * s->density + by_hurst * by_hurst * s->slope / 4 -
+           by_amplitude * by_hurst * s->both;
+}
+
 /* Takes a sharp end that no law with one fits for a low pass, where a law with that does. */
 static int fitted_reconsider(struct fitted *fitted, struct spectrum_range *range,
                              struct error *err) {
@@ -195,8 +219,9 @@ static int fitted_reconsider(struct fitted *fitted, struct spectrum_range *range
 /* Returns an end of an interval in terms of a parameter; NaN: open. */
 static double bound(const struct fitted *fitted, enum law_parameter a, int direction) {
     double ratio = fitted->covariance[a][a] / fitted->likelihood[a][a];
-    double error = sqrt(fitted->covariance[a][a] * fitted->widening);
-    double wider = fmax(ratio, 0.5) * fitted->widening;
+    double more = scatter_variance(fitted, a == LAW_AMPLITUDE ? 1 : 0, a == LAW_HURST ? 1 : 0);
+    double error = sqrt(fitted->covariance[a][a] * fitted->widening + more);
+    double wider = fmax(ratio, 0.5) * fitted->widening + more / fitted->likelihood[a][a];
     if (a == LAW_SHORT || a == LAW_LONG)
         wider *= fitted->problem->spectrum->windowed ? EDGE_SCATTER_WINDOWED : EDGE_SCATTER;
     return law_bound(fitted->problem, &fitted->law, a, direction, RISE * wider, sqrt(RISE) * error);
@@ -340,6 +365,7 @@ static struct interval product(const struct fitted *fitted, const struct spectru
         for (size_t b = 0; b < LAW_PARAMETERS; b++)
             variance += slope[a] * fitted->covariance[a][b] * slope[b];
     variance *= fitted->widening;
+    variance += scatter_variance(fitted, slope[LAW_AMPLITUDE], slope[LAW_HURST]);
     for (int order = 1; order < MOMENTS && !lay_is_plain(lay); order++)
         by_lay += powers[order] * lay_slope(lay, order) * lay->ratio_error;
     struct interval interval = about(log(factor) + value, sqrt(variance + by_lay * by_lay));
@@ -438,6 +464,8 @@ int spectrum_fit_measure(const struct map_spectrum *spectrum,
     status = fitted_create(&fitted, spectrum, &range, err);
     if (status == 0)
         status = fitted_reconsider(&fitted, &range, err);
+    if (status == 0)
+        status = fitted_scatter(&fitted, request, err);
     *out = (struct spectrum_fit){.trusted_from = spectrum->side / (double)range.first,
                                  .trusted_to = spectrum->side / (double)range.last,
                                  .from_end = range.from_end,

@@ -18,8 +18,13 @@ enum spectrum_end {
 /* "option", "map side", "point spacing", "cut-off", "low pass", "noise". */
 extern const char *const SPECTRUM_END_NAMES[SPECTRUM_ENDS];
 
+struct low_modes;
 struct spectrum_fit_request {
     double longest, shortest; /* wavelengths that are trusted; 0: by the map itself */
+    /* The map of the spectrum, and its slow waves: where heights are not Gaussian their own scatter
+     * counts in the errors of a fit. NULL: that of Gaussian ones. Borrowed. */
+    const struct measured_map *map;
+    const struct low_modes *modes;
 };
 
 struct spectrum_range {

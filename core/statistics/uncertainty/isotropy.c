@@ -85,13 +85,28 @@ static struct covariance covariance_measure(const struct cell_differences *d,
         a[cell] = (d->along[cell] - along * d->gradient[cell]) / gradient;
         b[cell] = (d->across[cell] - across * d->gradient[cell]) / gradient;
     }
+    double waves = 0;
     for (size_t m = 0; m < modes->count; m++) {
+        const double weight = low_mode_weight(modes, m, d->count);
+        if (!(weight > LOW_MODE_WEIGHT_LEAST))
+            continue;
         double of_a = low_mode_amplitude(modes, m, a), of_b = low_mode_amplitude(modes, m, b);
-        out.aa += of_a * of_a / (double)modes->count;
-        out.ab += of_a * of_b / (double)modes->count;
-        out.bb += of_b * of_b / (double)modes->count;
+        out.aa += of_a * of_a / weight;
+        out.ab += of_a * of_b / weight;
+        out.bb += of_b * of_b / weight;
+        waves++;
     }
-    return out;
+    return (struct covariance){out.aa / waves, out.ab / waves, out.bb / waves};
+}
+
+static const double LEVEL = 0.05;
+
+/* A length has no sign, so that it is above 0 without any anisotropy. Where that is not excluded,
+ * the intervals of 95 %, so many errors to either side, hold it, and all directions. */
+static void errors_widen(struct isotropy *out, double factor) {
+    out->anisotropy_error = fmax(out->anisotropy_error, out->anisotropy / factor);
+    out->ratio_error = fmax(out->ratio_error, (out->ratio - 1) / factor);
+    out->direction_error = fmax(out->direction_error, M_PI / 2 / factor);
 }
 
 void isotropy_measure(const struct cell_differences *d, double length,
@@ -124,6 +139,8 @@ void isotropy_measure(const struct cell_differences *d, double length,
     double hotelling = (along * along * c.bb - 2 * along * across * c.ab + across * across * c.aa) /
                        determinant; /* of two numbers, by a covariance of n degrees of freedom */
     out->p_value = gsl_cdf_fdist_Q(hotelling * (n - 1) / (2 * n), 2, n - 1);
+    if (out->p_value >= LEVEL)
+        errors_widen(out, low_modes_factor(modes->count));
 }
 
 double least_p_value(const double *p_values, size_t n) {

@@ -181,6 +181,31 @@ double low_modes_variance(const struct low_modes *modes, const double *sums, dou
     return power / (double)modes->count;
 }
 
+double low_mode_weight(const struct low_modes *modes, size_t m, const double *counts) {
+    double n = 0, mean = 0, square = 0;
+    for (size_t cell = 0; cell < modes->cells_x * modes->cells_y; cell++) {
+        const double value = modes->value[m][cell];
+        n += counts[cell];
+        mean += counts[cell] * value;
+        square += counts[cell] * value * value;
+    }
+    return square / n - (mean / n) * (mean / n);
+}
+
+double low_modes_variance_within(const struct low_modes *modes, const double *sums,
+                                 const double *counts, double n) {
+    double power = 0;
+    size_t waves = 0;
+    for (size_t m = 0; m < modes->count; m++) {
+        const double weight = low_mode_weight(modes, m, counts);
+        if (!(weight > LOW_MODE_WEIGHT_LEAST))
+            continue;
+        power += pow(low_mode_amplitude(modes, m, sums) / n, 2) / weight;
+        waves++;
+    }
+    return waves > 0 ? power / (double)waves : (double)NAN;
+}
+
 double low_modes_factor(size_t count) {
     return gsl_cdf_tdist_Pinv(0.975, (double)count);
 }

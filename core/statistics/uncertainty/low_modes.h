@@ -70,6 +70,15 @@ double low_mode_amplitude(const struct low_modes *modes, size_t m, const double 
 /* Returns the variance of a mean over n values whose deviations add up to these sums in the cells.
  */
 double low_modes_variance(const struct low_modes *modes, const double *sums, double n);
+#define LOW_MODE_WEIGHT_LEAST 0.1
+/* Returns the mean square of a wave about its mean, over as many values as each cell counts: 1
+ * where all cells have as many. It is what a wave weighs of a field that is known in a part of the
+ * map. */
+double low_mode_weight(const struct low_modes *modes, size_t m, const double *counts);
+/* The same variance for values of which the cells have these counts. Waves that weigh less than a
+ * tenth are left out. NaN where all are. */
+double low_modes_variance_within(const struct low_modes *modes, const double *sums,
+                                 const double *counts, double n);
 /* Returns by how many standard errors a 95 % interval reaches to either side (Student). */
 double low_modes_factor(size_t count);
 

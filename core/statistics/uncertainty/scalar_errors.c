@@ -44,6 +44,75 @@ void scalar_errors_heights(const struct cell_heights *h, const struct low_modes 
     out->sku = LONG_TAIL * sqrt(modes->excess[2] * low_modes_variance(modes, sku, n));
 }
 
+/* What a standardised height changes in RMS height, skewness and kurtosis. */
+enum { INFLUENCES = 3 };
+static void influences_at(double t, double skewness, double kurtosis, double out[INFLUENCES]) {
+    const double square = t * t - 1;
+    out[0] = square / 2;
+    out[1] = t * t * t - skewness - 3 * t - 1.5 * skewness * square;
+    out[2] = t * t * t * t - kurtosis - 4 * skewness * t - 2 * kurtosis * square;
+}
+
+/* Their mean squares over a distribution. */
+static void influences_of_law(const struct heights *law, const struct height_moments *moments,
+                              double out[INFLUENCES]) {
+    enum { SCORES = 1600 };
+    static const double REACH = 8;
+    double weights = 0;
+    for (size_t q = 0; q < INFLUENCES; q++)
+        out[q] = 0;
+    for (size_t n = 0; n < SCORES; n++) {
+        const double score = REACH * (2 * ((double)n + 0.5) / SCORES - 1);
+        const double weight = exp(-score * score / 2);
+        double influences[INFLUENCES];
+        influences_at(heights_at_score(law, moments, score), moments->skewness, moments->kurtosis,
+                      influences);
+        for (size_t q = 0; q < INFLUENCES; q++)
+            out[q] += weight * influences[q] * influences[q];
+        weights += weight;
+    }
+    for (size_t q = 0; q < INFLUENCES; q++)
+        out[q] /= weights;
+}
+
+static void influences_of_map(const struct measured_map *map, double out[INFLUENCES]) {
+    const size_t points = grid_points(map->grid);
+    struct average mean = {0}, powers[3] = {0}, squares[INFLUENCES] = {0};
+    for (size_t point = 0; point < points; point++)
+        average_add(&mean, map->z[point]);
+    const double middle = average_value(&mean);
+    for (size_t point = 0; point < points; point++)
+        for (int power = 2; power <= 4; power++)
+            average_add(&powers[power - 2], pow(map->z[point] - middle, power));
+    const double rms = sqrt(average_value(&powers[0]));
+    const double skewness = average_value(&powers[1]) / pow(rms, 3);
+    const double kurtosis = average_value(&powers[2]) / pow(rms, 4);
+    for (size_t point = 0; point < points; point++) {
+        double influences[INFLUENCES];
+        influences_at((map->z[point] - middle) / rms, skewness, kurtosis, influences);
+        for (size_t q = 0; q < INFLUENCES; q++)
+            average_add(&squares[q], influences[q] * influences[q]);
+    }
+    for (size_t q = 0; q < INFLUENCES; q++)
+        out[q] = average_value(&squares[q]);
+}
+
+/* A law that only just fits may have far longer tails than the surface: more is not believed. */
+static const double FAR_MOST = 3;
+
+void scalar_errors_by_law(struct scalar_errors *errors, const struct measured_map *map,
+                          const struct heights *law, const struct height_moments *moments) {
+    double wanted[INFLUENCES], found[INFLUENCES];
+    influences_of_law(law, moments, wanted);
+    influences_of_map(map, found);
+    for (size_t q = 0; q < INFLUENCES; q++)
+        wanted[q] = fmin(sqrt(wanted[q] / found[q]), FAR_MOST);
+    errors->sq *= wanted[0];
+    errors->m0 *= wanted[0];
+    errors->ssk *= wanted[1];
+    errors->sku *= fmax(wanted[2] / LONG_TAIL, 1); /* which is in the law */
+}
+
 /* Fills the deviations from the mean by cell, over the mean and the number of all; returns the
  * mean. */
 static double deviations_fill(const double *counts, const double *sums, size_t cells, double *out) {
@@ -57,24 +126,39 @@ void scalar_errors_differences(const struct cell_differences *d, const struct ce
                                const struct low_modes *modes, struct scalar_errors *out) {
     size_t cells = modes->cells_x * modes->cells_y;
     double m0[LOW_CELLS_MOST], m2[LOW_CELLS_MOST], m4[LOW_CELLS_MOST], alpha[LOW_CELLS_MOST];
-    double curvature[LOW_CELLS_MOST], area[LOW_CELLS_MOST];
+    double curvature[LOW_CELLS_MOST], area[LOW_CELLS_MOST], bends[LOW_CELLS_MOST];
     deviations_fill(h->power[0], h->power[2], cells, m0);
     deviations_fill(d->count, d->slope, cells, m2);
     deviations_fill(d->count, d->bend, cells, m4);
     deviations_fill(d->count, d->curvature, cells, curvature);
     double developed = deviations_fill(d->count, d->area, cells, area);
     for (size_t cell = 0; cell < cells; cell++) {
-        alpha[cell] = m0[cell] + m4[cell] - 2 * m2[cell];
+        bends[cell] = m4[cell] - 2 * m2[cell];
+        alpha[cell] = m0[cell] + bends[cell];
         area[cell] *= developed / (developed - 1);
     }
     double lost = share_lost(h, modes);
     out->m0 = hypot(sqrt(modes->excess[2] * low_modes_variance(modes, m0, 1)), lost);
-    out->m2 = sqrt(low_modes_variance(modes, m2, 1));
-    out->m4 = sqrt(low_modes_variance(modes, m4, 1));
-    out->alpha = hypot(sqrt(modes->excess[2] * low_modes_variance(modes, alpha, 1)), lost);
-    out->area = sqrt(low_modes_variance(modes, area, 1));
+    out->m2 = sqrt(low_modes_variance_within(modes, m2, d->count, 1));
+    out->m4 = sqrt(low_modes_variance_within(modes, m4, d->count, 1));
+    out->bends = sqrt(low_modes_variance_within(modes, bends, d->count, 1));
+    out->alpha =
+        hypot(sqrt(modes->excess[2] * low_modes_variance_within(modes, alpha, d->count, 1)), lost);
+    out->area = sqrt(low_modes_variance_within(modes, area, d->count, 1));
     out->slope = out->m2 / 2;
-    out->curvature = sqrt(low_modes_variance(modes, curvature, 1)) / 2;
+    out->curvature = sqrt(low_modes_variance_within(modes, curvature, d->count, 1)) / 2;
+}
+
+void scalar_errors_inside(const struct scalar_errors *all, double share,
+                          struct scalar_errors *out) {
+    const double wider = 1 / sqrt(share);
+    *out = *all;
+    out->slope *= wider;
+    out->curvature *= wider;
+    out->m2 *= wider;
+    out->m4 *= wider;
+    out->bends *= wider;
+    out->alpha = hypot(all->alpha, sqrt(1 / share - 1) * all->bends);
 }
 
 void summit_errors_measure(const struct summit_list *list, double density, const struct grid *grid,
@@ -111,11 +195,12 @@ void summit_errors_measure(const struct summit_list *list, double density, const
         count[cell] -= n * searched[cell] / all;
         height[cell] -= heights->power[1][cell] * n / heights->count;
     }
-    out->density = density * sqrt(low_modes_variance(modes, count, n));
-    out->height_mean = sqrt(low_modes_variance(modes, height, n));
+    out->density = density * sqrt(low_modes_variance_within(modes, count, searched, n));
+    out->height_mean = sqrt(low_modes_variance_within(modes, height, searched, n));
     out->height_deviation =
-        sqrt(modes->excess[2] * low_modes_variance(modes, spread, n) / variance) / 2;
-    out->curvature_mean = sqrt(low_modes_variance(modes, curvature, n));
+        sqrt(modes->excess[2] * low_modes_variance_within(modes, spread, searched, n) / variance) /
+        2;
+    out->curvature_mean = sqrt(low_modes_variance_within(modes, curvature, searched, n));
 }
 
 int summit_cells_count(const struct measured_map *map, const struct low_modes *modes, size_t before,

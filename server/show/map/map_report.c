@@ -83,7 +83,8 @@ static void add_summits(struct named_values *out, const char *group, int dimensi
 }
 
 static void add_parameters(struct named_values *out, const struct map_parameters *parameters,
-                           const struct scalar_errors *errors) {
+                           const struct scalar_errors *errors,
+                           const struct scalar_errors *moment_errors) {
     static const char *const SUMMITS[] = {"summits_nine_point", "summits_five_point",
                                           "summits_refined"};
     static const char *const PEAKS[] = {"peaks", NULL, "peaks_refined"};
@@ -98,7 +99,7 @@ static void add_parameters(struct named_values *out, const struct map_parameters
     add_grid(out, &parameters->grid);
     add_heights(out, roughness, errors);
     add_moments(out, "finite_difference", &differences, errors);
-    add_moments(out, open ? "interpolated" : "spectral", &parameters->moments, errors);
+    add_moments(out, open ? "interpolated" : "spectral", &parameters->moments, moment_errors);
     for (int s = 0; s < MAP_STENCILS; s++)
         if (parameters->summits[s].sought)
             add_summits(out, profile ? PEAKS[s] : SUMMITS[s], profile ? 1 : 2,
@@ -106,7 +107,7 @@ static void add_parameters(struct named_values *out, const struct map_parameters
 }
 
 void map_report_parameters(struct named_values *out, const struct map_parameters *parameters) {
-    add_parameters(out, parameters, NULL);
+    add_parameters(out, parameters, NULL, NULL);
 }
 
 static void add_areal(struct named_values *out, const struct map_characterisation *found,
@@ -487,10 +488,11 @@ int map_report_fill(struct named_values *out, const struct map_characterisation 
                     const struct height_map *map, const struct preparation_record *record,
                     struct error *err) {
     const bool profile = grid_is_profile(&map->grid);
-    const struct scalar_errors *errors = found->certainty.has_errors ? &found->errors : NULL;
+    const bool has = found->certainty.has_errors;
+    const struct scalar_errors *errors = has ? &found->errors : NULL;
     out->in_metres = strcmp(map->xy_unit, "m") == 0 && strcmp(map->z_unit, "m") == 0;
     add_decision(out, record, map);
-    add_parameters(out, &found->parameters, errors);
+    add_parameters(out, &found->parameters, errors, has ? &found->moment_errors : NULL);
     if (!profile)
         add_areal(out, found, errors);
     functional_report_values(out, &found->functional, profile);

@@ -56,6 +56,40 @@ static void variance_of_a_mean(void **state) {
     check_close(low_modes_factor(10), 2.2281, 1e-4);
 }
 
+/* Of independent numbers in a part of the map alone, waves weighed by their variance over this part
+ * estimate the variance of the mean over it. */
+static void variance_within_a_part(void **state) {
+    (void)state;
+    uint64_t seed = seed_or(4);
+    static struct low_modes modes;
+    const struct measured_map map = {&SQUARE, NULL, BOUNDARY_OPEN};
+    double counts[LOW_CELLS_MOST], all[LOW_CELLS_MOST], mean = 0, n = 0;
+    enum { TRIALS = 400, EACH = 16 };
+    assert_true(low_modes_fill(&map, NULL, &modes));
+    for (size_t cell = 0; cell < LOW_CELLS_MOST; cell++) {
+        const size_t x = cell % modes.cells_x, y = cell / modes.cells_x;
+        counts[cell] = x >= 2 && x < 14 && y >= 2 && y < 14 ? EACH : 0;
+        all[cell] = EACH;
+        n += counts[cell];
+    }
+    for (size_t m = 0; m < modes.count; m++)
+        check_close(low_mode_weight(&modes, m, all), 1, 1e-9);
+    for (int trial = 0; trial < TRIALS; trial++) {
+        double sums[LOW_CELLS_MOST] = {0}, total = 0;
+        for (size_t cell = 0; cell < LOW_CELLS_MOST; cell++)
+            for (int k = 0; k < counts[cell]; k++) {
+                const double value = (double)(next_word(&seed) >> 11) * 0x1p-53 - 0.5;
+                sums[cell] += value;
+                total += value;
+            }
+        for (size_t cell = 0; cell < LOW_CELLS_MOST; cell++)
+            sums[cell] -= total * counts[cell] / n;
+        mean += low_modes_variance_within(&modes, sums, counts, n) / TRIALS;
+    }
+    /* 19 waves, which are nearly independent over three quarters of the sides */
+    check_relative(mean * 12 * n, 1, 5 * sqrt(2. / 19 / TRIALS));
+}
+
 static void heights_by_cell(void **state) {
     (void)state;
     uint64_t seed = seed_or(4);
@@ -97,8 +131,8 @@ static void heights_by_cell(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(waves_are_orthonormal),
-                                       cmocka_unit_test(variance_of_a_mean),
-                                       cmocka_unit_test(heights_by_cell)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(waves_are_orthonormal), cmocka_unit_test(variance_of_a_mean),
+        cmocka_unit_test(variance_within_a_part), cmocka_unit_test(heights_by_cell)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

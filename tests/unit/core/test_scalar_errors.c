@@ -51,6 +51,43 @@ static void independent_heights(void **state) {
     check_relative(slope, m2 / 4, 1e-9);
 }
 
+/* Over a quarter of the area errors are twice as large; alpha's has its heights from all of it. */
+static void errors_inside(void **state) {
+    (void)state;
+    const struct scalar_errors all = {
+        .sq = 1, .slope = 0.1, .curvature = 0.2, .m2 = 0.2, .m4 = 0.4, .alpha = 0.5, .bends = 0.1};
+    struct scalar_errors inside;
+    scalar_errors_inside(&all, 0.25, &inside);
+    check_close(inside.sq, 1, 0);
+    check_relative(inside.slope, 0.2, 1e-12);
+    check_relative(inside.curvature, 0.4, 1e-12);
+    check_relative(inside.m4, 0.8, 1e-12);
+    check_relative(inside.alpha, sqrt(0.25 + 3 * 0.01), 1e-12);
+}
+
+/* Heights that are the quantiles of a distribution have its influences; without the farthest ones
+ * errors are raised, most where the fourth power counts. */
+static void far_heights(void **state) {
+    (void)state;
+    static double z[POINTS];
+    const struct measured_map map = {&GRID, z, BOUNDARY_OPEN};
+    const struct heights law = {.type = HEIGHTS_WEIBULL_MIN, .shape = 2};
+    struct height_moments moments;
+    struct scalar_errors whole = {.sq = 1, .m0 = 1, .ssk = 1, .sku = 1.15}, cut = whole;
+    assert_int_equal(heights_moments(&law, &moments, NULL), 0);
+    for (size_t point = 0; point < POINTS; point++)
+        z[point] = 3 * heights_quantile(&law, &moments, ((double)point + 0.5) / POINTS);
+    scalar_errors_by_law(&whole, &map, &law, &moments);
+    check_relative(whole.sq, 1, 0.01);
+    check_relative(whole.ssk, 1, 0.05);
+    check_relative(whole.sku, 1, 0.2); /* eighth powers lack what is beyond the last of 2304 */
+    for (size_t point = POINTS - POINTS / 100; point < POINTS; point++)
+        z[point] = z[POINTS - POINTS / 100 - 1];
+    scalar_errors_by_law(&cut, &map, &law, &moments);
+    assert_true(cut.sq > 1.02 * whole.sq && cut.ssk > 1.1 * whole.ssk);
+    assert_true(cut.sku > 1.2 * whole.sku);
+}
+
 /* Differences over a lag as by their definition, of a wave. */
 static void differences_of_a_wave(void **state) {
     (void)state;
@@ -136,7 +173,8 @@ static void searched_points(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(independent_heights), cmocka_unit_test(differences_of_a_wave),
-        cmocka_unit_test(scattered_summits), cmocka_unit_test(searched_points)};
+        cmocka_unit_test(independent_heights), cmocka_unit_test(errors_inside),
+        cmocka_unit_test(far_heights),         cmocka_unit_test(differences_of_a_wave),
+        cmocka_unit_test(scattered_summits),   cmocka_unit_test(searched_points)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

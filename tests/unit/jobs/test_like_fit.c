@@ -304,6 +304,22 @@ static void noise_stays_out(void **state) {
     height_map_clear(&map);
 }
 
+/* Surfaces are alike all over: of a map whose parts are not it is said. */
+static void parts_that_differ_are_named(void **state) {
+    (void)state;
+    struct height_map map = patch(false, 2);
+    const char *const words = "parts of the map differ";
+    for (int rougher = 0; rougher < 2; rougher++) {
+        for (size_t n = grid_points(&map.grid) / 2; n < grid_points(&map.grid) && rougher; n++)
+            map.z[n] *= 2;
+        cJSON *surface = fitted("{}", &map);
+        const char *prepared = cJSON_GetStringValue(json_at(surface, "/like/prepared"));
+        assert_int_equal(strstr(prepared, words) != NULL, rougher);
+        cJSON_Delete(surface);
+    }
+    height_map_clear(&map);
+}
+
 static void refused(const struct height_map *map, const char *words) {
     cJSON *surface = cJSON_CreateObject();
     struct error err = {0};
@@ -436,6 +452,7 @@ int main(void) {
         cmocka_unit_test(laws),
         cmocka_unit_test(grooves),
         cmocka_unit_test(noise_stays_out),
+        cmocka_unit_test(parts_that_differ_are_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

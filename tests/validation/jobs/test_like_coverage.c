@@ -6,19 +6,12 @@
  * spectrum 91 to 98 and 3 to 14 %, of a lay 92 to 97 and 9 to 22 %, of Weibull heights 92 to 100
  * and 0 to 20 %; of areas, on 40 patches of the first law, 98 and 30 %. Without RUGO_EFFORT four
  * patches of some laws are tried, and no areas, which take minutes. */
-#include "jobs/like/like_fit.h"
-#include "jobs/merger.h"
-#include "jobs/runner.h"
-#include "jobs/surface/realisation_map.h"
-#include "jobs/surface/surface_case.h"
 #include "schema/json/json.h"
 #include "schema/result/total.h"
 #include "tests/support/check.h"
 #include "tests/support/effort.h"
+#include "tests/support/like_patch.h"
 #include "tests/support/scalar_of.h"
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { SIDE = 96, SEED = 34, TRUTH_SEED = 35, MEASURES = 6, OF_GAUSSIAN = 5 };
 static const char *const SCALARS[MEASURES] = {"rms_height",     "rms_slope",   "rms_curvature",
@@ -55,68 +48,27 @@ static size_t measures_of(const struct law *law) {
     return law->heights == LIKE_HEIGHTS_GAUSSIAN ? OF_GAUSSIAN : MEASURES;
 }
 
-static cJSON *parameters_of(const char *surface, const char *rest) {
-    char text[2000];
-    snprintf(text, sizeof text, "{\"surface\": {%s}%s}", surface, rest);
-    cJSON *parameters = cJSON_Parse(text);
-    assert_non_null(parameters);
-    return parameters;
-}
-
-static void run(const char *kind, const cJSON *parameters, uint64_t seed, uint64_t n,
-                struct case_result *out) {
-    struct job_runner *runner = NULL;
-    struct job_merger *merger = NULL;
-    struct block_result block = {0};
-    struct error err = {0};
-    *out = (struct case_result){0};
-    if (runner_create(&runner, kind_find(kind), parameters, NULL, seed, 0, &err) != 0 ||
-        runner_run(runner, 0, n, NULL, &block, &err) != 0 ||
-        merger_create(&merger, kind_find(kind), parameters, &err) != 0 ||
-        merger_add(merger, &block, &err) != 0 || merger_result(merger, out, &err) != 0)
-        fail_msg("%s", err.text);
-    block_result_clear(&block);
-    merger_destroy(&merger);
-    runner_destroy(&runner);
-}
-
 /* Fits a patch of one surface of the law into "surface", lengths in its shortest waves. */
 static cJSON *like_patch(const struct law *law, uint64_t realisation) {
-    const struct like_source source = {
-        .file = "patch",
-        .format = "npy",
-        .prepared = "",
-        .sha256 = "00112233445566778899aabbccddeeff00112233445566778899aabbccddeeff",
-        .detrend = DETREND_PLANE,
-        .spectrum = law->spectrum,
-        .heights = law->heights,
-        .uncertainty = LIKE_UNCERTAINTY_POSTERIOR,
-        .off_stated = true};
-    cJSON *truth = parameters_of(law->surface, ""), *surface = NULL;
-    struct surface_case one = {0};
-    struct height_map map = {.xy_unit = "m", .z_unit = "m"};
-    struct surface_report report;
+    const struct like_source source = {.file = "patch",
+                                       .format = "npy",
+                                       .prepared = "",
+                                       .sha256 = LIKE_PATCH_DIGEST,
+                                       .detrend = DETREND_PLANE,
+                                       .spectrum = law->spectrum,
+                                       .heights = law->heights,
+                                       .uncertainty = LIKE_UNCERTAINTY_POSTERIOR,
+                                       .off_stated = true};
+    const struct random_key key = {SEED, 0, realisation};
+    struct height_map map = like_patch_of(law->surface, SIDE, key);
     struct trend trend;
     struct error err = {0};
-    double *z = NULL;
-    if (surface_case_read(&one, truth, NULL, &err) != 0 ||
-        realisation_surface(&one, (struct random_key){SEED, 0, realisation}, &z, &report, &err) !=
-            0)
-        fail_msg("%s", err.text);
-    assert_int_equal(height_map_shape(&map, SIDE, SIDE, grid_dx(&one.grid), &err), 0);
-    map.z = calloc((size_t)SIDE * SIDE, sizeof *map.z);
-    assert_true(map.z != NULL && one.grid.nx == 2 * SIDE);
-    for (size_t j = 0; j < SIDE && z != NULL; j++)
-        memcpy(map.z + j * SIDE, z + j * one.grid.nx, SIDE * sizeof *z);
     assert_int_equal(detrend(&map.grid, map.z, DETREND_PLANE, &trend, &err), 0);
     cJSON *parameters = cJSON_CreateObject();
-    surface = cJSON_AddObjectToObject(parameters, "surface");
+    cJSON *surface = cJSON_AddObjectToObject(parameters, "surface");
     if (like_fit(surface, &map, &source, &err) != 0)
         fail_msg("%s", err.text);
-    free(z);
     height_map_clear(&map);
-    surface_case_clear(&one);
-    cJSON_Delete(truth);
     return parameters;
 }
 
@@ -156,13 +108,13 @@ static void statistics(void **state) {
     for (size_t l = 0; l < sizeof LAWS / sizeof *LAWS; l += case_step()) {
         struct coverage of[MEASURES] = {0};
         struct case_result truth, result;
-        cJSON *parameters = parameters_of(LAWS[l].surface, "");
-        run("statistics", parameters, TRUTH_SEED, TRUTHS, &truth);
+        cJSON *parameters = like_parameters_of(LAWS[l].surface, "");
+        like_run("statistics", parameters, TRUTH_SEED, TRUTHS, &truth);
         cJSON_Delete(parameters);
         for (uint64_t r = 0; r < (every_case() ? 64 : 4); r++) {
             parameters = like_patch(&LAWS[l], r);
             const double length = json_number_at(parameters, "/surface/like/wavelength", NAN);
-            run("statistics", parameters, r, REALISATIONS, &result);
+            like_run("statistics", parameters, r, REALISATIONS, &result);
             for (size_t m = 0; m < measures_of(&LAWS[l]); m++) {
                 const struct scalar *scalar = scalar_of(&result, SCALARS[m]);
                 count(&of[m], scalar_of(&truth, SCALARS[m])->value, pow(length, POWERS[m]),
@@ -200,8 +152,8 @@ static void areas(void **state) {
         struct coverage of = {0};
         struct case_result truth, result;
         snprintf(rest, sizeof rest, CONTACT, "0.06, 0.075, 0.09, 0.1, 0.11, 0.125, 0.14, 0.17");
-        cJSON *parameters = parameters_of(LAWS[l].surface, rest);
-        run("contact", parameters, TRUTH_SEED, TRUTHS, &truth);
+        cJSON *parameters = like_parameters_of(LAWS[l].surface, rest);
+        like_run("contact", parameters, TRUTH_SEED, TRUTHS, &truth);
         cJSON_Delete(parameters);
         for (uint64_t r = 0; r < 40; r++) {
             parameters = like_patch(&LAWS[l], r);
@@ -213,7 +165,7 @@ static void areas(void **state) {
                                  points);
             cJSON_AddItemToObject(parameters, "contact", contact);
             const double slope = json_number_at(parameters, "/surface/rms_slope", NAN);
-            run("contact", parameters, r, REALISATIONS, &result);
+            like_run("contact", parameters, r, REALISATIONS, &result);
             const struct curve *curve = result_curve(&result, "contact_area");
             const struct scalar_error patch = curve_error_at(curve, ERROR_PATCH, 0);
             count(&of, between(result_curve(&truth, "contact_area"), pressure * slope / 0.1), 1,

@@ -1,0 +1,105 @@
+#include "jobs/maps/map_remedies.h"
+#include "core/map/line_losses.h"
+#include <math.h>
+
+/* Widens an interval of a positive value by what an error of its logarithm adds to it. */
+static void widen(struct interval *interval, double error) {
+    static const double SCORE = 1.960;
+    interval->low =
+        interval->value * exp(-hypot(log(interval->value / interval->low), SCORE * error));
+    interval->high =
+        interval->value * exp(hypot(log(interval->high / interval->value), SCORE * error));
+}
+
+/* Adds errors of mean squares, as shares of them. */
+static void losses_add(const struct line_losses *lost, const struct areal *areal,
+                       struct scalar_errors *out) {
+    out->sa = hypot(out->sa, lost->height / 2 * areal->sa);
+    out->sq = hypot(out->sq, lost->height / 2 * areal->sq);
+    out->m0 = hypot(out->m0, lost->height);
+    out->slope = hypot(out->slope, lost->slope / 2);
+    out->m2 = hypot(out->m2, lost->slope);
+    out->area = hypot(out->area, lost->slope);
+    out->m4 = hypot(out->m4, lost->bend);
+    out->curvature = hypot(out->curvature, lost->curvature / 2);
+    out->alpha = hypot(out->alpha, lost->height + lost->bend - 2 * lost->slope);
+}
+
+/* Heights of a curve are in proportion to the RMS height. */
+static void losses_add_functional(const struct line_losses *lost, struct map_functional *out) {
+    const struct functional *f = &out->found;
+    struct functional *e = &out->errors.found;
+    const struct {
+        double value, *error;
+    } heights[] = {{f->line.k, &e->line.k},
+                   {f->line.pk, &e->line.pk},
+                   {f->line.vk, &e->line.vk},
+                   {f->secant.k, &e->secant.k},
+                   {f->secant.pk, &e->secant.pk},
+                   {f->secant.vk, &e->secant.vk},
+                   {f->xp, &e->xp},
+                   {f->vmp, &e->vmp},
+                   {f->vmc, &e->vmc},
+                   {f->vvc, &e->vvc},
+                   {f->vvv, &e->vvv}};
+    for (size_t n = 0; n < sizeof heights / sizeof *heights; n++)
+        *heights[n].error = hypot(*heights[n].error, lost->height / 2 * heights[n].value);
+}
+
+/* What lines lose is of slopes across them alone. */
+static void losses_add_directions(const struct line_losses *lost, struct isotropy *out) {
+    const double size = out->anisotropy;
+    out->anisotropy_error = hypot(out->anisotropy_error, lost->slope);
+    out->ratio_error = hypot(out->ratio_error, out->ratio * lost->slope / (1 - size * size));
+    out->direction_error = fmin(hypot(out->direction_error, lost->slope / (2 * size)), M_PI / 4);
+}
+
+static void lines_add(struct map_characterisation *found, const struct line_losses *lost) {
+    losses_add(lost, &found->areal, &found->errors);
+    losses_add(lost, &found->areal, &found->moment_errors);
+    losses_add_functional(lost, &found->functional);
+    losses_add_directions(lost, &found->directions.fine);
+    losses_add_directions(lost, &found->directions.coarse);
+    for (int s = 0; s < MAP_STENCILS; s++) {
+        struct map_summits *summits = &found->parameters.summits[s];
+        summits->errors.height_deviation =
+            hypot(summits->errors.height_deviation, lost->height / 2 * summits->height_deviation);
+    }
+    for (size_t n = 0; n < found->scales.count; n++) {
+        struct map_scale *scale = &found->scales.scale[n];
+        scale->height_error = hypot(scale->height_error, lost->slope / 2 * scale->found.height);
+        scale->slope_error = hypot(scale->slope_error, lost->slope / 2 * scale->found.slope);
+        scale->curvature_error =
+            hypot(scale->curvature_error, lost->curvature / 2 * scale->found.curvature);
+    }
+    if (found->spectra.has_fit && found->spectra.fit.fitted)
+        widen(&found->spectra.fit.rms_height, lost->height / 2);
+}
+
+static void noise_add(const struct preparation_record *record, struct scalar_errors *out) {
+    const double slope = record->denoised_slope, curvature = record->denoised_curvature;
+    out->slope = hypot(out->slope, slope);
+    out->m2 = hypot(out->m2, 2 * slope);
+    out->area = hypot(out->area, 2 * slope);
+    out->curvature = hypot(out->curvature, curvature);
+    out->m4 = hypot(out->m4, 2 * curvature);
+    out->alpha = hypot(out->alpha, 2 * fabs(curvature - 2 * slope));
+}
+
+int map_remedies_add(struct map_characterisation *found, const struct measured_map *map,
+                     const struct preparation_record *record, struct error *err) {
+    struct line_losses lost;
+    if (!found->certainty.has_errors)
+        return 0;
+    int status = line_losses_measure(map, record->lines, record->lines_along, &lost, err);
+    if (status == 0 && record->lines != SCAN_LINES_NONE)
+        lines_add(found, &lost);
+    if (status == 0 && record->denoised) {
+        noise_add(record, &found->errors);
+        noise_add(record, &found->moment_errors);
+        /* it ends where waves were removed, as far as the fit before knew */
+        found->spectra.fit.short_wavelength.low = (double)NAN;
+        found->spectra.fit.short_wavelength.high = (double)NAN;
+    }
+    return status;
+}
