@@ -37,6 +37,17 @@ double face_stretch_change(const struct mesh *mesh, const double *u, const doubl
     return most;
 }
 
+double face_largest_move(const struct mesh *mesh, const double *change) {
+    struct sum sum = {0};
+    double most = 0;
+    for (size_t node = 0; node < mesh->face; node++)
+        sum_add(&sum, change[2 * node]);
+    double mean = sum_value(&sum) / (double)mesh->face;
+    for (size_t node = 0; node < mesh->face; node++)
+        most = fmax(most, fmax(fabs(change[2 * node] - mean), fabs(change[2 * node + 1])));
+    return most;
+}
+
 /* A cell of the face; values are by corner, in the order of element.h. Of profiles the second half
  * is 0. */
 struct cell {

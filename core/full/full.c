@@ -1,5 +1,6 @@
 #include "core/full/full.h"
 #include "core/full/face.h"
+#include "core/full/load_steps.h"
 #include "core/sum.h"
 #include <float.h>
 #include <math.h>
@@ -290,218 +291,126 @@ static void count_work(struct full *f, const struct newton_end *end, struct full
     f->used += full_limit_count(&f->options.limit, end->iterations, end->linear, end->factored);
 }
 
-/* Takes one load step; *change is face_stretch_change after it, 0 where it failed. An equilibrium
- * that changed by more than FACE_CHANGE_MOST is refused, because the face may have reached it only
- * by folding. */
-static int step_to(struct full *f, double load, double *change, struct newton_end *end,
-                   struct full_report *report, struct error *err) {
-    if (!f->careful)
-        predict(f, load);
+/* What load steps work on. */
+struct loading {
+    struct full *full;
+    struct newton_end *end;
+    struct full_report *report;
+};
+
+/* Solves within what is left of the limit; *change is face_stretch_change from `before`. An
+ * equilibrium that changed by more than FACE_CHANGE_MOST is refused, because the face may have
+ * reached it only by folding. */
+static int solve(const struct loading *loading, double load, const double *before, double *change,
+                 struct error *err) {
+    struct full *f = loading->full;
     f->newton.limit = full_limit_left(&f->options.limit, f->used);
-    int status = newton_solve(&f->newton, load, end, err);
-    count_work(f, end, report);
-    *change = status == 0 ? face_stretch_change(f->mesh, f->newton.u, f->kept) : 0;
+    int status = newton_solve(&f->newton, load, loading->end, err);
+    count_work(f, loading->end, loading->report);
+    *change = status == 0 ? face_stretch_change(f->mesh, f->newton.u, before) : 0;
     if (*change > FACE_CHANGE_MOST)
         status = error_set(err, ERROR_NUMERIC, "the face jumps, by %.2g of a cell", *change);
+    return status;
+}
+
+static int step_to(void *solver, double load, double *change, struct error *err) {
+    const struct loading *loading = solver;
+    struct full *f = loading->full;
+    if (!f->careful)
+        predict(f, load);
+    int status = solve(loading, load, f->kept, change, err);
     if (status != 0)
         restore(f);
     else {
         keep(f, load);
-        report->steps++;
+        loading->report->steps++;
     }
     return status;
 }
 
-static int check_limit(const struct full *f, double goal, struct error *err) {
-    const double seconds = f->options.limit.seconds;
-    if (!(seconds > 0 && f->used > seconds))
-        return 0;
-    return error_set(err, ERROR_NUMERIC,
-                     "contact on the true geometry under a mean pressure of %g E* was reached up "
-                     "to %g E* only: the time limit of %g s was used up",
-                     goal, f->load, seconds);
-}
-
-static int end_load(const struct full *f, double goal, double step, struct error *err) {
-    return error_context(err,
-                         "contact on the true geometry under a mean pressure of %g E* was "
-                         "reached up to %g E* only (steepest slope %.3g, worst element "
-                         "%.2g); the next step of %.2g E* failed",
-                         goal, f->load, f->mesh->slope, f->mesh->quality, step);
-}
-
-/* Goes from the last load to another, in one step or in smaller ones. Steps grow again once two in
- * a row have converged with changes below half of FACE_CHANGE_MOST. */
-static int raise_load(struct full *f, double goal, struct newton_end *end,
-                      struct full_report *report, struct error *err) {
-    double whole = goal - f->load, step = whole, change;
-    bool cut = false;
-    int status = 0;
-    do {
-        if (check_limit(f, goal, err) != 0)
-            return ERROR_NUMERIC;
-        step = fabs(step) < fabs(goal - f->load) ? step : goal - f->load;
-        double next = step == goal - f->load ? goal : f->load + step;
-        status = step_to(f, next, &change, end, report, err);
-        if (status == 0) {
-            step *= cut || 2 * change > FACE_CHANGE_MOST ? 1 : 2;
-            cut = false;
-            continue;
-        }
-        if (status != ERROR_NUMERIC)
-            return status;
-        cut = true;
-        step /= 2;
-        report->cuts++;
-        if (fabs(step) < f->options.least_step * fabs(whole) || whole == 0)
-            return end_load(f, goal, 2 * step, err);
-    } while (f->load != goal || status != 0);
-    return 0;
-}
-
-/* --- overhangs and jumps --- */
-
-/* Drags of a jump: the first and the largest one, E* times the mesh's unit; factor by which they
- * rise where a round fails, and fall after small changes of the face; rounds. From the largest drag
- * over the mean force of a node of DRAG_SMALL on, and after each fall by DRAG_FALL, equilibrium
- * without drag is tried. Rounds balance to DRAG_TOLERANCE, and from DRAG_REST on to the tolerance
- * of a load, at which a drag counts as none. */
-static const double DRAG_FIRST = 0.02, DRAG_MOST = 10, DRAG_RISE = 4, DRAG_FALL = 0.25;
-static const double DRAG_TOLERANCE = 1e-5, DRAG_SMALL = 1e-2, DRAG_REST = 1e-4;
-enum { DRAG_ROUNDS = 200 };
-
-static double largest_move(const struct newton *n) {
-    double most = 0;
-    for (size_t k = 0; k < mesh_degrees_of_freedom(n->mesh); k++)
-        most = fmax(most, fabs(n->u[k] - n->anchor[k]));
-    return most;
-}
-
-static void hold(struct full *f) {
-    state_take(&f->held, &f->newton);
-    memcpy(f->newton.anchor, f->held.u, mesh_degrees_of_freedom(f->mesh) * sizeof *f->held.u);
-}
-
-/* Solves with this drag from the state that is held; *change is face_stretch_change after it. */
-static int drag_on(struct full *f, double load, double drag, double tolerance, double *change,
-                   struct newton_end *end, struct full_report *report, struct error *err) {
+static int drag(void *solver, double load, double drag, double tolerance, struct dragged *out,
+                struct error *err) {
+    const struct loading *loading = solver;
+    struct full *f = loading->full;
     struct newton *n = &f->newton;
     double usual = n->tolerance;
     n->drag = drag;
     n->tolerance = tolerance;
     n->evaluated = false;
-    n->limit = full_limit_left(&f->options.limit, f->used);
-    int status = newton_solve(n, load, end, err);
+    int status = solve(loading, load, f->held.u, &out->change, err);
     n->tolerance = usual;
-    count_work(f, end, report);
-    *change = status == 0 ? face_stretch_change(f->mesh, n->u, f->held.u) : 0;
-    if (*change > FACE_CHANGE_MOST)
-        status = error_set(err, ERROR_NUMERIC, "the face jumps, by %.2g of a cell", *change);
+    out->force = mesh_largest_move(f->mesh, n->u, n->anchor) * drag / load;
     return status;
 }
 
-/* The rounds of a jump: implicit steps of motion against drag, whose end is at rest. */
-static int drag_rounds(struct full *f, double load, struct newton_end *end,
-                       struct full_report *report, struct error *err) {
-    double drag = DRAG_FIRST, tried = INFINITY, dragged = INFINITY, change;
-    int status = ERROR_NUMERIC;
-    for (int round = 0; round < DRAG_ROUNDS && drag < DRAG_MOST; round++) {
-        bool exact = dragged < DRAG_REST;
-        double tolerance = exact ? f->newton.tolerance : DRAG_TOLERANCE;
-        status = drag_on(f, load, drag, tolerance, &change, end, report, err);
-        if (status != 0 && status != ERROR_NUMERIC)
-            return status;
-        if (status != 0) {
-            state_give(&f->held, &f->newton);
-            drag *= DRAG_RISE;
-            continue;
-        }
-        dragged = largest_move(&f->newton) * drag / load;
-        hold(f);
-        if (exact && dragged <= f->newton.tolerance)
-            return 0;
-        drag /= 8 * change < FACE_CHANGE_MOST ? DRAG_RISE : 2 * change < FACE_CHANGE_MOST ? 2 : 1;
-        if (dragged > DRAG_SMALL || dragged > tried * DRAG_FALL)
-            continue;
-        status = drag_on(f, load, 0, f->newton.tolerance, &change, end, report, err);
-        if (status != ERROR_NUMERIC)
-            return status;
-        tried = dragged;
-        state_give(&f->held, &f->newton);
-    }
-    return status != 0 ? status
-                       : error_set(err, ERROR_NUMERIC,
-                                   "the face jumps and finds no rest in %d rounds", DRAG_ROUNDS);
+static void hold(void *solver) {
+    struct full *f = ((const struct loading *)solver)->full;
+    state_take(&f->held, &f->newton);
+    memcpy(f->newton.anchor, f->held.u, mesh_degrees_of_freedom(f->mesh) * sizeof *f->held.u);
 }
 
-/* Goes from the last load to another that no equilibrium leads to nearby: the block moves against a
- * drag until it is at rest, as far as it jumps. */
-static int jump(struct full *f, double load, struct newton_end *end, struct full_report *report,
-                struct error *err) {
-    restore(f);
-    hold(f);
-    int status = drag_rounds(f, load, end, report, err);
-    f->newton.drag = 0;
-    if (status != 0)
-        restore(f);
+static void fall(void *solver) {
+    struct full *f = ((const struct loading *)solver)->full;
+    state_give(&f->held, &f->newton);
+}
+
+static void leave(void *solver) {
+    restore(((const struct loading *)solver)->full);
+}
+
+static void land(void *solver, double load, bool rests) {
+    const struct loading *loading = solver;
+    loading->full->newton.drag = 0;
+    if (!rests)
+        restore(loading->full);
     else {
-        keep(f, load);
-        report->steps++;
-        report->jumps++;
+        (void)newton_evaluate(&loading->full->newton); /* without drag, and no element turns */
+        keep(loading->full, load);
+        loading->report->steps++;
     }
-    return status;
 }
 
-/* After so many halvings of a load step it is a jump, after so many it fails. The first step over
- * the change of load. */
-enum { CUTS_SMOOTH = 2, CUTS_MOST = 5 };
-static const double CAREFUL_STEP = 0.125;
-/* Iterations of Newton's method after which a load is given up. */
+static bool is_used_up(const struct full *f) {
+    return f->options.limit.seconds > 0 && f->used > f->options.limit.seconds;
+}
+
+/* Iterations of Newton's method after which a load is given up where the face is careful. */
 enum { NEWTON_MOST = 2500 };
 
-static bool is_jump(const struct full *f, double whole, double step, int cuts) {
-    return cuts >= (whole == 0 ? 1 : CUTS_SMOOTH) ||
-           fabs(step) < 2 * CAREFUL_STEP * f->options.least_step * fabs(whole);
-}
-
-/* Returns whether no smaller step is tried. */
-static bool is_last(const struct full *f, double whole, double step, int cuts) {
-    return cuts == CUTS_MOST || (whole == 0 && cuts > 1) ||
-           fabs(step) < CAREFUL_STEP * f->options.least_step * fabs(whole);
-}
-
-/* As raise_load, with overhangs and jumps, and from the last active set. A state at which a jump
- * came to rest may need its drag again. */
-static int raise_carefully(struct full *f, double goal, struct newton_end *end,
-                           struct full_report *report, struct error *err) {
-    double whole = goal - f->load, step = CAREFUL_STEP * whole, change = 0;
-    int status = 0, cuts = 0;
-    do {
-        if (check_limit(f, goal, err) != 0)
-            return ERROR_NUMERIC;
-        if (report->newton > NEWTON_MOST) {
-            (void)error_set(err, ERROR_NUMERIC, "%zu iterations of Newton's were too few",
-                            report->newton);
-            return end_load(f, goal, step, err);
-        }
-        step = fabs(step) < fabs(goal - f->load) ? step : goal - f->load;
-        double next = step == goal - f->load ? goal : f->load + step;
-        status = is_jump(f, whole, step, cuts) ? jump(f, next, end, report, err)
-                                               : step_to(f, next, &change, end, report, err);
-        if (status == 0) {
-            step *= cuts > 0 || 2 * change > FACE_CHANGE_MOST ? 1 : 2;
-            cuts = 0;
-            continue;
-        }
-        if (status != ERROR_NUMERIC)
-            return status;
-        cuts++;
-        step /= 2;
-        report->cuts++;
-        if (is_last(f, whole, step, cuts))
-            return end_load(f, goal, 2 * step, err);
-    } while (f->load != goal || status != 0);
+static int check(void *solver, struct error *err) {
+    const struct loading *loading = solver;
+    if (is_used_up(loading->full))
+        return error_set(err, ERROR_NUMERIC, "the time limit of %g s was used up",
+                         loading->full->options.limit.seconds);
+    if (loading->full->careful && loading->report->newton > NEWTON_MOST)
+        return error_set(err, ERROR_NUMERIC, "%zu iterations of Newton's were too few",
+                         loading->report->newton);
     return 0;
+}
+
+static int raise_load(const struct loading *loading, double goal, struct error *err) {
+    static const struct load_solver SOLVER = {step_to, check, drag, hold, fall, leave, land};
+    struct full *f = loading->full;
+    struct load_steps steps = {.by = &SOLVER,
+                               .solver = (void *)loading,
+                               .least_step = f->options.least_step,
+                               .tolerance = f->options.tolerance,
+                               .careful = f->careful};
+    int status = load_steps_follow(&steps, f->load, goal, err);
+    loading->report->cuts += steps.cuts;
+    loading->report->jumps += steps.jumps;
+    if (status == ERROR_NUMERIC && is_used_up(f))
+        return error_context(err,
+                             "contact on the true geometry under a mean pressure of %g E* was "
+                             "reached up to %g E* only",
+                             goal, f->load);
+    if (status == ERROR_NUMERIC)
+        return error_context(err,
+                             "contact on the true geometry under a mean pressure of %g E* was "
+                             "reached up to %g E* only (steepest slope %.3g, worst element "
+                             "%.2g); the next step of %.2g E* failed",
+                             goal, f->load, f->mesh->slope, f->mesh->quality, steps.failed);
+    return status;
 }
 
 static int state_create(struct full_state *state, const struct newton *n, struct error *err) {
@@ -532,18 +441,16 @@ static int become_careful(struct full *f, struct error *err) {
     return 0;
 }
 
+/* Goes on carefully where the usual steps end. */
 static int reach_load(struct full *f, double goal, struct newton_end *end,
                       struct full_report *report, struct error *err) {
+    struct loading loading = {f, end, report};
     struct error ignored = {0};
-    int status = ERROR_NUMERIC;
-    if (!f->careful) {
-        status = raise_load(f, goal, end, report, err);
-        bool refused = f->flat_only || f->options.kinematics == KINEMATICS_SMALL;
-        if (status != ERROR_NUMERIC || refused || check_limit(f, goal, err) != 0 ||
-            become_careful(f, &ignored) != 0)
-            return status;
-    }
-    return raise_carefully(f, goal, end, report, err);
+    int status = raise_load(&loading, goal, err);
+    bool refused = f->careful || f->flat_only || f->options.kinematics == KINEMATICS_SMALL;
+    if (status != ERROR_NUMERIC || refused || is_used_up(f) || become_careful(f, &ignored) != 0)
+        return status;
+    return raise_load(&loading, goal, err);
 }
 
 /* --- results --- */

@@ -273,3 +273,10 @@ double mesh_stretch(const struct mesh *mesh, const double *u, size_t j, size_t i
     double x2 = -1 + c[0] - b[0], y2 = mesh->across + c[1] - b[1];
     return (x1 * y2 - x2 * y1) / (2 * mesh->across);
 }
+
+double mesh_largest_move(const struct mesh *mesh, const double *u, const double *before) {
+    double most = 0;
+    for (size_t f = 0; f < mesh_degrees_of_freedom(mesh); f++)
+        most = fmax(most, fabs(u[f] - before[f]));
+    return most;
+}

@@ -86,6 +86,9 @@ void mesh_position(const struct mesh *mesh, const struct mesh_element *element,
  * cross product of its diagonals. */
 double mesh_stretch(const struct mesh *mesh, const double *u, size_t j, size_t i);
 
+/* Returns the largest change of a displacement between two states. */
+double mesh_largest_move(const struct mesh *mesh, const double *u, const double *before);
+
 static inline size_t mesh_degrees_of_freedom(const struct mesh *mesh) {
     return mesh->nodes * (size_t)mesh->dimension;
 }

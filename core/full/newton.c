@@ -27,9 +27,10 @@ static const double ROUNDINGS = 8, ROUNDING_MOST = 0.01;
  * active set that do not improve on the best one. RETURNS: active sets met before, after which
  * Newton's method gives up. */
 enum { HALVINGS = 8, PATIENCE = 10, RETURNS = 3 };
-/* Of a face that meets itself: depth of a node in columns that makes a step too long; change of its
+/* Of a face that meets itself: depth of a node in columns that makes a step too long; columns that
+ * a step moves a node at most, as what meets across more may pass through unseen; change of its
  * forces over the largest contact force below which they have settled, and rounds until then. */
-static const double DEEPEST = 0.25, SETTLED = 1e-7;
+static const double DEEPEST = 0.25, LONGEST = 0.5, SETTLED = 1e-7;
 enum { RENEWALS = 60 };
 
 int newton_create(struct newton *out, const struct mesh *mesh, const struct material *material,
@@ -235,21 +236,11 @@ static void measure(const struct newton *n, struct newton_end *end) {
     }
 }
 
-/* Adds the drag to forces and tangent. */
-static void add_drag(struct newton *n) {
-    const size_t d = (size_t)n->mesh->dimension, slots = n->tangent->slots, own = slots / 4;
-    for (size_t f = 0; f < mesh_degrees_of_freedom(n->mesh); f++) {
-        n->force[f] += n->drag * (n->u[f] - n->anchor[f]);
-        n->tangent->values[((f / d * slots + own) * d + f % d) * d + f % d] += n->drag;
-    }
-}
-
-/* Computes forces and tangent at u. */
-static bool evaluate(struct newton *n) {
+bool newton_evaluate(struct newton *n) {
     n->evaluated = tangent_evaluate(n->mesh, &n->material, n->u, NULL, n->force, n->tangent);
     n->tangent->links = 0;
     if (n->evaluated && n->drag > 0)
-        add_drag(n);
+        tangent_add_drag(n->tangent, n->drag, n->u, n->anchor, n->force);
     if (n->evaluated && n->overhangs)
         self_contact_evaluate(&n->self, n->material.convex, n->u, n->force, n->tangent);
     return n->evaluated;
@@ -283,10 +274,11 @@ static int solve_factored(struct newton *n, double tolerance, struct newton_end 
     if (status == ERROR_NUMERIC) { /* stress makes the tangent indefinite: the factorised matrix
                                       leaves its terms out */
         n->material.convex = true;
-        status =
-            evaluate(n) ? factorisation_run(n->factorisation, n->tangent, n->active, err) : status;
+        status = newton_evaluate(n)
+                     ? factorisation_run(n->factorisation, n->tangent, n->active, err)
+                     : status;
         n->material.convex = false;
-        (void)evaluate(n); /* cannot fail where it succeeded before */
+        (void)newton_evaluate(n); /* cannot fail where it succeeded before */
     }
     if (status != 0)
         return status;
@@ -319,7 +311,7 @@ static int newton_change(struct newton *n, double off, struct newton_end *end, s
  * element. */
 static int advance(struct newton *n, struct error *err) {
     size_t unknowns = newton_unknowns(n);
-    double length = 1;
+    double length = n->overhangs ? fmin(1, LONGEST / face_largest_move(n->mesh, n->change)) : 1;
     bool folds = false;
     memcpy(n->before, n->u, unknowns * sizeof *n->before);
     for (int halving = 0; halving < HALVINGS; halving++, length /= 2) {
@@ -327,7 +319,7 @@ static int advance(struct newton *n, struct error *err) {
             n->u[f] = n->before[f] + length * n->change[f];
         folds = n->overhangs ? self_contact_depth(&n->self, n->u, n->active) > DEEPEST
                              : face_folds(n->mesh, n->u);
-        if (!folds && evaluate(n))
+        if (!folds && newton_evaluate(n))
             return 0;
     }
     n->evaluated = false;
@@ -381,6 +373,7 @@ static struct round assess(struct newton *n, double pressure, bool first,
 struct newton_progress {
     double least;  /* smallest residual, in the units of the tolerance */
     size_t rounds; /* rounds since then */
+    size_t begun;  /* iterations before contact of the face with itself was last found */
 };
 
 /* Returns 0 when the iteration may go on from a round whose residual is `off`. */
@@ -391,7 +384,7 @@ static int check_progress(const struct newton *n, struct newton_progress *progre
     progress->rounds = better ? 0 : progress->rounds + 1;
     if (end->cycles > RETURNS)
         return error_set(err, ERROR_NUMERIC, "the sets of nodes in contact come back");
-    if (end->iterations == n->max_iterations || progress->rounds > PATIENCE)
+    if (end->iterations - progress->begun == n->max_iterations || progress->rounds > PATIENCE)
         return error_set(err, ERROR_NUMERIC,
                          "%zu iterations of Newton's left %.2g of the largest force",
                          end->iterations, end->residual);
@@ -417,7 +410,8 @@ static int renew(struct newton *n, double largest, int *renewals, bool *settled,
                          "contact of the face with itself does not settle: after %d rounds its "
                          "forces change by %.2g of the largest force",
                          RENEWALS, left / largest);
-    return evaluate(n) ? 0 : error_set(err, ERROR_NUMERIC, "an element is turned inside out");
+    return newton_evaluate(n) ? 0
+                              : error_set(err, ERROR_NUMERIC, "an element is turned inside out");
 }
 
 /* Prepares forces, gaps and the active set. */
@@ -429,7 +423,7 @@ static int begin(struct newton *n, double pressure, struct error *err) {
                          force_rounding(n) / load);
     if (!n->evaluated && n->overhangs)
         self_contact_search(&n->self, n->u, n->active);
-    if (!n->evaluated && !evaluate(n))
+    if (!n->evaluated && !newton_evaluate(n))
         return error_set(err, ERROR_NUMERIC, "an element is turned inside out");
     newton_measure_gaps(n);
     active_fill(n);
@@ -458,7 +452,7 @@ int newton_solve(struct newton *n, double pressure, struct newton_end *end, stru
             status = renew(n, round.largest, &renewals, &settled, err);
             if (status != 0)
                 return status;
-            progress.least = INFINITY;
+            progress = (struct newton_progress){.least = INFINITY, .begun = end->iterations};
             continue;
         }
         double off = fmax(end->residual, round.inside * COMPLEMENTARITY / round.largest);

@@ -113,6 +113,9 @@ struct newton_end {
  * no node is active, the nearest one becomes so. After ERROR_NUMERIC, and ERROR_STOPPED when stop
  * returned non-zero, u and the set are undefined. */
 int newton_solve(struct newton *newton, double pressure, struct newton_end *end, struct error *err);
+/* Computes forces and tangent at u, with the pairs of a face that meets itself as they are. Returns
+ * false where an element is turned inside out. */
+bool newton_evaluate(struct newton *newton);
 /* Computes gap and opening from u. */
 void newton_measure_gaps(struct newton *newton);
 /* Returns the tributary area of a node in squares (profiles: steps) of the mesh's unit; all nodes

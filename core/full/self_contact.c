@@ -4,9 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* E*: a hundred times the stiffness of a node of the face, so that multipliers take a few rounds.
- */
-static const double STIFFNESS = 100;
+/* E*: ten times the stiffness of a node of the face. Multipliers then take some ten rounds, but
+ * pairs seldom alternate between touching and not; with 100 E* three times as many iterations of
+ * Newton's were taken. */
+static const double STIFFNESS = 10;
 /* Distance, in columns, within which a node and an arc are a pair. */
 static const double REACH = 1;
 /* Width of a bin of the search in columns: neighbours within REACH are in the same one or beside
@@ -184,30 +185,36 @@ static void prepare(struct self_contact *self, const double *u) {
     }
 }
 
-/* Returns whether an arc is across air from a node before it: from the segment behind the one to
+/* Returns whether a node and another behind it are across air: from the segment behind the one to
  * that before the other the face turns by about half a turn to the right, into the block. Around a
  * crest it turns to the left. */
-static bool faces(const struct self_contact *self, size_t node, size_t arc) {
-    size_t face = self->mesh->face, number = arc > node ? arc : arc + face;
-    if (number - node < ARC_NODES - 1 || number - node > face / 2)
+static bool faces(const struct self_contact *self, size_t left, size_t right) {
+    size_t face = self->mesh->face, number = right > left ? right : right + face;
+    if (number - left < ARC_NODES - 1 || number - left > face / 2)
         return false;
-    double turned = self->turning[number - 1] - self->turning[node];
+    double turned = self->turning[number - 1] - self->turning[left];
     return turned < -M_PI / 2 && turned > -3 * M_PI / 2;
+}
+
+/* Returns whether an arc is across air from a node of the flank of this kind. */
+static bool is_across(const struct self_contact *self, enum self_kind kind, size_t node,
+                      size_t arc) {
+    return arc != node && (kind == SELF_LEFT ? faces(self, node, arc) : faces(self, arc, node));
 }
 
 /* Fills the pair of a node with the nearest arc across air. Returns whether there is one within
  * REACH. */
-static bool nearest(const struct self_contact *self, const double *u, size_t node,
-                    struct self_pair *out) {
+static bool nearest(const struct self_contact *self, const double *u, enum self_kind kind,
+                    size_t node, struct self_pair *out) {
     static const double MIDDLE = 0.5, NEAR = 3;
     const struct mesh *mesh = self->mesh;
     size_t bins = bins_of(mesh), at = bin_of(mesh, point_of(mesh, u, node).x);
     size_t around = bins < 3 ? bins : 3;
     double least = INFINITY;
-    *out = (struct self_pair){.node = node};
+    *out = (struct self_pair){.node = node, .kind = kind};
     for (size_t side = 0; side < around; side++)
         for (size_t k = self->bin[(at + bins - 1 + side) % bins]; k != NONE; k = self->next[k]) {
-            if (k == node || !faces(self, node, k))
+            if (!is_across(self, kind, node, k))
                 continue;
             struct arc arc = arc_of(mesh, u, k, MIDDLE);
             struct point from = from_arc(mesh, u, node, &arc);
@@ -222,7 +229,7 @@ static bool nearest(const struct self_contact *self, const double *u, size_t nod
         return false;
     project(mesh, u, out);
     struct point own = arc_of(mesh, u, node, MIDDLE).along;
-    return fabs(out->gap) < REACH && out->arc != node && faces(self, node, out->arc) &&
+    return fabs(out->gap) < REACH && is_across(self, kind, node, out->arc) &&
            out->normal[0] * own.y - out->normal[1] * own.x < 0;
 }
 
@@ -250,7 +257,7 @@ static bool meets_lip(const struct mesh *mesh, const double *u, const bool *acti
     if (!active[node] || active[node_behind(mesh, node)])
         return false;
     *out = (struct self_pair){
-        .node = node, .arc = next_lip(mesh, u, active, node, &over), .lips = true};
+        .node = node, .arc = next_lip(mesh, u, active, node, &over), .kind = SELF_LIPS};
     measure_lips(mesh, u, out);
     return over && out->arc != node && fabs(out->gap) < REACH;
 }
@@ -263,37 +270,61 @@ static bool overhangs(const struct mesh *mesh, const double *u) {
 }
 
 /* Finds the pair of a node with an arc, or of lips. */
-static bool find(const struct self_contact *self, const double *u, const bool *active, bool lips,
-                 size_t node, struct self_pair *out) {
-    return lips ? meets_lip(self->mesh, u, active, node, out) : nearest(self, u, node, out);
+static bool find(const struct self_contact *self, const double *u, const bool *active,
+                 enum self_kind kind, size_t node, struct self_pair *out) {
+    return kind == SELF_LIPS ? meets_lip(self->mesh, u, active, node, out)
+                             : nearest(self, u, kind, node, out);
+}
+
+/* Where a pair is on the curve from a point of it, in arcs. */
+static double arcs_from(const struct mesh *mesh, const struct self_pair *pair, double point) {
+    double from = (double)pair->arc + pair->at - point, face = (double)mesh->face;
+    return from - face * round(from / face);
+}
+
+/* A pair goes on with the multipliers of that which its node had, and with where that was; on
+ * another fold there is nothing to go on from. */
+static void inherit(const struct mesh *mesh, struct self_pair *pair, const struct self_pair *old) {
+    static const double SAME = 3;
+    pair->start = (double)pair->arc + pair->at;
+    if (old == NULL)
+        return;
+    pair->multiplier = old->multiplier;
+    if (fabs(arcs_from(mesh, pair, (double)old->arc + old->at)) > SAME)
+        return;
+    pair->start = old->start;
+    pair->shear_multiplier = old->shear_multiplier;
+    pair->shear_before = old->shear_before;
 }
 
 /* Adds the pairs of one kind to count others, with the multipliers of the old ones, which begin at
  * *old. */
-static size_t add_pairs(struct self_contact *self, const double *u, const bool *active, bool lips,
-                        size_t before, size_t *old, size_t count) {
+static size_t add_pairs(struct self_contact *self, const double *u, const bool *active,
+                        enum self_kind kind, size_t before, size_t *old, size_t count) {
     const struct self_pair *had = self->old;
     for (size_t node = 0; node < self->mesh->face; node++) {
-        while (*old < before && (had[*old].lips == lips ? had[*old].node < node : lips))
+        while (*old < before && had[*old].kind == kind && had[*old].node < node)
             ++*old;
-        if (!find(self, u, active, lips, node, &self->pair[count]))
+        if (!find(self, u, active, kind, node, &self->pair[count]))
             continue;
-        if (*old < before && had[*old].lips == lips && had[*old].node == node)
-            self->pair[count].multiplier = had[*old].multiplier;
-        count++;
+        bool same = *old < before && had[*old].kind == kind && had[*old].node == node;
+        inherit(self->mesh, &self->pair[count++], same ? &had[*old] : NULL);
     }
+    while (*old < before && had[*old].kind == kind)
+        ++*old;
     return count;
 }
 
 void self_contact_search(struct self_contact *self, const double *u, const bool *active) {
-    size_t before = self->count, old = 0;
+    size_t before = self->count, old = 0, count = 0;
     self->count = 0;
     if (!overhangs(self->mesh, u))
         return;
     memcpy(self->old, self->pair, before * sizeof *self->pair);
     prepare(self, u);
-    self->count = add_pairs(self, u, active, false, before, &old, 0);
-    self->count = add_pairs(self, u, active, true, before, &old, self->count);
+    for (enum self_kind kind = 0; kind < SELF_KINDS; kind++)
+        count = add_pairs(self, u, active, kind, before, &old, count);
+    self->count = count;
 }
 
 double self_contact_depth(struct self_contact *self, const double *u, const bool *active) {
@@ -303,10 +334,10 @@ double self_contact_depth(struct self_contact *self, const double *u, const bool
         return 0;
     prepare(self, u);
     for (size_t node = 0; node < self->mesh->face; node++) {
-        if (find(self, u, active, false, node, &pair))
-            deepest = fmax(deepest, -pair.gap);
-        if (find(self, u, active, true, node, &pair))
-            deepest = fmax(deepest, -pair.gap);
+        for (enum self_kind lips = 0; lips < SELF_KINDS; lips++)
+            if (find(self, u, active, lips, node, &pair)) {
+                deepest = fmax(deepest, -pair.gap);
+            }
     }
     return deepest;
 }
@@ -356,24 +387,72 @@ static struct tangent_link link_of(const struct mesh *mesh, const double *u,
     return link;
 }
 
+/* Fills what a pair slides and the force along it, within friction of that across. */
+static void measure_shear(const struct self_contact *self, struct self_pair *pair) {
+    bool slides = self->friction > 0 && pair->kind != SELF_LIPS;
+    double bound = self->friction * pair->force;
+    double size = hypot(pair->along[0], pair->along[1]);
+    pair->slip = slides ? arcs_from(self->mesh, pair, pair->start) * size : 0;
+    pair->shear =
+        slides ? fmax(-bound, fmin(bound, pair->shear_multiplier - STIFFNESS * pair->slip)) : 0;
+}
+
+/* Fills along, the derivative of the force along the arc over that force, and adds its stiffness.
+ * With A, B and m of link_of, weights W of the points, and t = c'/|c'|: t advances by dt = (A + g
+ * B)/m, the slip by |c'| dt and its share of d|c'|, and t turns by (B + n . c'' dt)/|c'|. */
+static void add_shear(const struct self_contact *self, const double *u,
+                      const struct self_pair *pair, const double by[LINK_MOST],
+                      double along[LINK_MOST], struct tangent_link *link) {
+    struct arc arc = arc_of(self->mesh, u, pair->arc, pair->at);
+    const double size = hypot(arc.along.x, arc.along.y);
+    const double unit[2] = {arc.along.x / size, arc.along.y / size};
+    const double since = pair->slip / size, bends = unit[0] * arc.bend.x + unit[1] * arc.bend.y;
+    const double bound = self->friction * pair->force;
+    const bool sticks = fabs(pair->shear_multiplier - STIFFNESS * pair->slip) <= bound;
+    double advance[LINK_MOST], grow[LINK_MOST], turn[LINK_MOST], weight[LINK_MOST];
+    double change[LINK_MOST];
+    for (size_t i = 0; i < LINK_MOST; i++) {
+        size_t a = i / 2, k = i % 2;
+        double slope = a == 0 ? 0 : arc.slope[a - 1], across = slope * pair->normal[k];
+        weight[i] = a == 0 ? 1 : -arc.shape[a - 1];
+        along[i] = weight[i] * unit[k];
+        advance[i] =
+            (along[i] * size + pair->gap * across) / (size * size - pair->gap * pair->bend);
+        grow[i] = slope * unit[k] + bends * advance[i];
+        turn[i] = (across + pair->bend * advance[i]) / size;
+        change[i] = -STIFFNESS * (sticks ? size * advance[i] + since * grow[i]
+                                         : copysign(self->friction, pair->shear) * by[i]);
+    }
+    for (size_t i = 0; i < LINK_MOST; i++)
+        for (size_t j = 0; j < LINK_MOST; j++) {
+            size_t a = i / 2, k = i % 2;
+            double moves = a == 0 ? 0 : -arc.slope[a - 1] * unit[k] * advance[j];
+            moves += weight[i] * pair->normal[k] * turn[j];
+            link->stiffness[i][j] -= along[i] * change[j] + pair->shear * moves;
+        }
+}
+
 void self_contact_evaluate(struct self_contact *self, bool convex, const double *u, double *force,
                            struct tangent *tangent) {
     size_t links = 0;
-    double by[LINK_MOST];
+    double by[LINK_MOST], along[LINK_MOST] = {0};
     for (size_t c = 0; c < self->count; c++) {
         struct self_pair *pair = &self->pair[c];
-        if (pair->lips)
+        if (pair->kind == SELF_LIPS)
             measure_lips(self->mesh, u, pair);
         else
             project(self->mesh, u, pair);
         pair->force = fmax(0, pair->multiplier - STIFFNESS * pair->gap);
+        measure_shear(self, pair);
         if (pair->force == 0)
             continue;
-        self->link[links] =
-            pair->lips ? lips_of(pair, by) : link_of(self->mesh, u, pair, convex, by);
+        struct tangent_link *link = &self->link[links++];
+        *link =
+            pair->kind == SELF_LIPS ? lips_of(pair, by) : link_of(self->mesh, u, pair, convex, by);
+        if (self->friction > 0 && pair->kind != SELF_LIPS)
+            add_shear(self, u, pair, by, along, link);
         for (int i = 0; i < LINK_MOST; i++)
-            force[self->link[links].at[i]] -= pair->force * by[i];
-        links++;
+            force[link->at[i]] -= pair->force * by[i] + pair->shear * along[i];
     }
     tangent->link = self->link;
     tangent->links = links;
@@ -381,15 +460,35 @@ void self_contact_evaluate(struct self_contact *self, bool convex, const double 
 
 double self_contact_renew(struct self_contact *self, const double *u, const bool *active) {
     double change = 0;
-    for (size_t c = 0; c < self->count; c++)
+    for (size_t c = 0; c < self->count; c++) {
         self->pair[c].multiplier = self->pair[c].force;
+        self->pair[c].shear_multiplier = self->pair[c].shear;
+    }
     self_contact_search(self, u, active);
     for (size_t c = 0; c < self->count; c++) {
-        const struct self_pair *pair = &self->pair[c];
-        double force = pair->multiplier;
-        change = fmax(change, fabs(fmax(0, force - STIFFNESS * pair->gap) - force));
+        struct self_pair *pair = &self->pair[c];
+        double force = pair->multiplier, shear = pair->shear_multiplier;
+        pair->force = fmax(0, force - STIFFNESS * pair->gap);
+        measure_shear(self, pair);
+        change = fmax(change, fmax(fabs(pair->force - force), fabs(pair->shear - shear)));
     }
     return change;
+}
+
+void self_contact_settle(struct self_contact *self) {
+    for (size_t c = 0; c < self->count; c++) {
+        struct self_pair *pair = &self->pair[c];
+        pair->start = (double)pair->arc + pair->at;
+        pair->slip = 0;
+        pair->shear_before = pair->shear;
+    }
+}
+
+double self_contact_dissipation(const struct self_contact *self) {
+    double sum = 0;
+    for (size_t c = 0; c < self->count; c++)
+        sum -= (self->pair[c].shear + self->pair[c].shear_before) / 2 * self->pair[c].slip;
+    return sum;
 }
 
 struct self_measure self_contact_measure(struct self_contact *self, const double *u,

@@ -280,3 +280,12 @@ bool tangent_evaluate(const struct mesh *mesh, const struct material *material, 
         *energy = sum_value(&total);
     return made;
 }
+
+void tangent_add_drag(struct tangent *tangent, double drag, const double *u, const double *before,
+                      double *force) {
+    const size_t d = (size_t)tangent->mesh->dimension, slots = tangent->slots, own = slots / 4;
+    for (size_t f = 0; f < mesh_degrees_of_freedom(tangent->mesh); f++) {
+        force[f] += drag * (u[f] - before[f]);
+        tangent->values[((f / d * slots + own) * d + f % d) * d + f % d] += drag;
+    }
+}

@@ -8,7 +8,8 @@
 
 enum { NEIGHBOURS_MOST = 18 };
 
-/* Stiffness between degrees of freedom at[i] and at[j] that need be no neighbours; symmetric. */
+/* Stiffness between degrees of freedom at[i] and at[j] that need be no neighbours; symmetric but
+ * for friction. */
 enum { LINK_MOST = 8 };
 struct tangent_link {
     size_t at[LINK_MOST];
@@ -44,6 +45,11 @@ void tangent_apply(const struct tangent *tangent, const double *x, double *y);
 /* Returns the number of displacements and, where the tangent stores the volumetric part apart, of
  * the elements' pressures. */
 size_t tangent_unknowns(const struct tangent *tangent);
+
+/* Adds a drag (E* times the mesh's unit) on each displacement from `before` to forces and tangent.
+ */
+void tangent_add_drag(struct tangent *tangent, double drag, const double *u, const double *before,
+                      double *force);
 
 /* Computes the energy (E* times the cube, of profiles the square, of the mesh's unit; may be NULL),
  * the inner forces at displacements u, and the tangent (may be NULL), which contains all forces as

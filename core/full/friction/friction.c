@@ -1,6 +1,7 @@
 #include "core/full/friction/friction.h"
 #include "core/full/face.h"
 #include "core/full/friction/friction_newton.h"
+#include "core/full/load_steps.h"
 #include "core/sum.h"
 #include <float.h>
 #include <math.h>
@@ -14,6 +15,9 @@ struct point {
     unsigned char *node; /* enum face_node */
     double *direction;   /* of sliding nodes, as traction */
     double shear[SIDEWAYS_MOST], flat[SIDEWAYS_MOST], pressure;
+    double work, dissipation; /* since the end of pressing */
+    struct self_pair *pair;   /* of a face that meets itself, as newton.self has them; or NULL */
+    size_t pairs;
 };
 
 struct friction {
@@ -27,11 +31,13 @@ struct friction {
     const struct mesh *mesh;
     struct friction_newton newton;
     struct point kept; /* of the last step that converged */
+    struct point held; /* during a jump; empty until the first one */
     bool pressed;
+    bool careful;         /* the face may overhang and jump, as in full.c */
     size_t nodes_without; /* in contact without friction, as the next: at the last pressure */
     double gap_without;
+    double most; /* pressure that contact without friction reaches where it folds */
     double start_flat, start_sliding, start_far, start_energy; /* at the end of pressing */
-    double work, dissipation;                                  /* since then */
     double *start;    /* [node * sideways + axis]: displacement over the flat then */
     double *p, *gap;  /* by node of the face: results */
     double *q, *slip; /* [axis * face + node] */
@@ -44,14 +50,37 @@ static int options_check(const struct friction_options *friction, struct error *
     return 0;
 }
 
+static int point_create(struct point *point, const struct friction *f, bool pairs,
+                        struct error *err) {
+    const size_t n = f->newton.unknowns, along = f->face * f->sideways;
+    if (point->u == NULL) {
+        point->u = array_create(n, sizeof *point->u);
+        point->traction = array_create(along, sizeof *point->traction);
+        point->direction = array_create(along, sizeof *point->direction);
+        point->node = array_create(f->face, sizeof *point->node);
+    }
+    if (pairs && point->pair == NULL)
+        point->pair = array_create(PAIRS_A_NODE * f->face, sizeof *point->pair);
+    if (point->u != NULL && point->traction != NULL && point->direction != NULL &&
+        point->node != NULL && (!pairs || point->pair != NULL))
+        return 0;
+    return error_memory(err, (n + 2 * along) * sizeof(double), "contact with friction");
+}
+
+static void point_clear(struct point *point) {
+    free(point->u);
+    free(point->traction);
+    free(point->node);
+    free(point->direction);
+    free(point->pair);
+    *point = (struct point){0};
+}
+
 static int arrays_create(struct friction *f, struct error *err) {
     struct {
         double **array;
         size_t count;
-    } const arrays[] = {{&f->kept.u, f->newton.unknowns},
-                        {&f->kept.traction, f->face * f->sideways},
-                        {&f->kept.direction, f->face * f->sideways},
-                        {&f->start, f->face * f->sideways},
+    } const arrays[] = {{&f->start, f->face * f->sideways},
                         {&f->p, f->face},
                         {&f->q, f->face * f->sideways},
                         {&f->gap, f->face},
@@ -61,8 +90,7 @@ static int arrays_create(struct friction *f, struct error *err) {
         if (*arrays[a].array == NULL)
             return error_memory(err, arrays[a].count * sizeof(double), "contact with friction");
     }
-    f->kept.node = array_create(f->face, sizeof *f->kept.node);
-    return f->kept.node != NULL ? 0 : error_memory(err, f->face, "contact with friction");
+    return point_create(&f->kept, f, false, err);
 }
 
 int friction_create(struct friction **out, const struct grid *grid, const struct block *block,
@@ -82,7 +110,6 @@ int friction_create(struct friction **out, const struct grid *grid, const struct
     struct material material = material_of(block->poisson, options->kinematics);
     status = full_create(&f->full, grid, block, options, err);
     if (status == 0) {
-        full_set_overhangs(f->full, false);
         f->mesh = full_mesh(f->full);
         f->face = f->mesh->face;
         f->sideways = (size_t)f->mesh->dimension - 1;
@@ -107,10 +134,8 @@ void friction_destroy(struct friction **friction) {
         return;
     friction_newton_clear(&f->newton);
     full_destroy(&f->full);
-    free(f->kept.u);
-    free(f->kept.traction);
-    free(f->kept.node);
-    free(f->kept.direction);
+    point_clear(&f->kept);
+    point_clear(&f->held);
     free(f->p);
     free(f->q);
     free(f->gap);
@@ -141,67 +166,100 @@ static size_t along(const struct friction *f, size_t node, size_t axis) {
     return node * (f->sideways + 1) + axis;
 }
 
-/* Returns a node's displacement over the flat in the last state, along an axis. */
-static double over_flat(const struct friction *f, size_t node, size_t axis) {
-    return f->kept.u[along(f, node, axis)] - f->kept.flat[axis];
+/* Returns a node's displacement over the flat at a point, along an axis. */
+static double over_flat(const struct friction *f, const struct point *point, size_t node,
+                        size_t axis) {
+    return point->u[along(f, node, axis)] - point->flat[axis];
+}
+
+static void take(const struct friction *f, struct point *point) {
+    const struct friction_newton *n = &f->newton;
+    memcpy(point->u, n->u, n->unknowns * sizeof *n->u);
+    memcpy(point->node, n->node, f->face);
+    memcpy(point->direction, n->direction, f->face * f->sideways * sizeof *n->direction);
+    for (size_t node = 0; node < f->face; node++)
+        for (size_t k = 0; k < f->sideways; k++)
+            point->traction[node * f->sideways + k] = n->force[along(f, node, k)];
+    memcpy(point->shear, n->shear, sizeof n->shear);
+    memcpy(point->flat, n->flat, sizeof n->flat);
+    point->pairs = n->self.count;
+    if (point->pair != NULL)
+        memcpy(point->pair, n->self.pair, point->pairs * sizeof *point->pair);
+}
+
+static void give(struct friction *f, const struct point *point) {
+    struct friction_newton *n = &f->newton;
+    memcpy(n->u, point->u, n->unknowns * sizeof *n->u);
+    memcpy(n->node, point->node, f->face);
+    memcpy(n->direction, point->direction, f->face * f->sideways * sizeof *n->direction);
+    memcpy(n->shear, point->shear, sizeof n->shear);
+    memcpy(n->flat, point->flat, sizeof n->flat);
+    n->self.count = point->pairs;
+    if (point->pair != NULL)
+        memcpy(n->self.pair, point->pair, point->pairs * sizeof *point->pair);
+    n->evaluated = false;
 }
 
 static void keep(struct friction *f, double pressure) {
-    const struct friction_newton *n = &f->newton;
-    memcpy(f->kept.u, n->u, n->unknowns * sizeof *n->u);
-    memcpy(f->kept.node, n->node, f->face);
-    memcpy(f->kept.direction, n->direction, f->face * f->sideways * sizeof *n->direction);
-    for (size_t node = 0; node < f->face; node++)
-        for (size_t k = 0; k < f->sideways; k++)
-            f->kept.traction[node * f->sideways + k] = n->force[along(f, node, k)];
-    memcpy(f->kept.shear, n->shear, sizeof n->shear);
-    memcpy(f->kept.flat, n->flat, sizeof n->flat);
+    take(f, &f->kept);
     f->kept.pressure = pressure;
 }
 
 static void restore(struct friction *f) {
-    struct friction_newton *n = &f->newton;
-    memcpy(n->u, f->kept.u, n->unknowns * sizeof *n->u);
-    memcpy(n->node, f->kept.node, f->face);
-    memcpy(n->direction, f->kept.direction, f->face * f->sideways * sizeof *n->direction);
-    memcpy(n->shear, f->kept.shear, sizeof n->shear);
-    memcpy(n->flat, f->kept.flat, sizeof n->flat);
-    n->evaluated = false;
+    give(f, &f->kept);
 }
 
-/* Slip counts from the last point. */
-static void settle(struct friction *f) {
+/* Slip counts from a point, at which the face is. */
+static void settle(struct friction *f, const struct point *from) {
     for (size_t node = 0; node < f->face; node++)
         for (size_t k = 0; k < f->sideways; k++)
-            f->newton.reference[node * f->sideways + k] = over_flat(f, node, k);
+            f->newton.reference[node * f->sideways + k] = over_flat(f, from, node, k);
+    self_contact_settle(&f->newton.self);
 }
 
-/* Adds what the step to the present state worked and dissipated. */
-static void add_works(struct friction *f) {
+/* Fills what was worked and dissipated to the present state, after a step from a point. */
+static void add_works(const struct friction *f, const struct point *from, struct point *to) {
     const struct friction_newton *n = &f->newton;
     struct sum slid = {0};
     for (size_t node = 0; node < f->face; node++)
         for (size_t k = 0; k < f->sideways; k++)
-            sum_add(&slid,
-                    (n->force[along(f, node, k)] + f->kept.traction[node * f->sideways + k]) / 2 *
-                        friction_newton_slip(n, node, k));
-    f->dissipation -= sum_value(&slid);
+            sum_add(&slid, (n->force[along(f, node, k)] + from->traction[node * f->sideways + k]) /
+                               2 * friction_newton_slip(n, node, k));
+    to->dissipation = from->dissipation - sum_value(&slid);
+    if (n->self.count > 0)
+        to->dissipation += self_contact_dissipation(&n->self);
+    double work = from->work;
     for (size_t k = 0; k < f->sideways; k++)
-        f->work += (n->shear[k] + f->kept.shear[k]) / 2 * (n->flat[k] - f->kept.flat[k]);
+        work += (n->shear[k] + from->shear[k]) / 2 * (n->flat[k] - from->flat[k]);
+    to->work = work;
+}
+
+/* Presses without friction, for what that is. */
+static int press_full(struct friction *f, double pressure, struct friction_state *out,
+                      struct error *err) {
+    struct contact_state state;
+    struct full_report report;
+    if (pressure > f->most)
+        return error_set(err, ERROR_NUMERIC,
+                         "without friction the load was reached up to %g E* only", f->most);
+    int status = full_press(f->full, pressure, &state, &report, err);
+    out->newton += report.newton;
+    if (status == ERROR_NUMERIC && full_newton(f->full)->overhangs)
+        f->most = report.reached;
+    if (status != 0)
+        return status;
+    f->nodes_without = state.nodes;
+    f->gap_without = state.mean_gap;
+    return 0;
 }
 
 /* Takes the nodes in contact without friction under this pressure for a guess; from no contact the
  * displacements too. */
 static int guess(struct friction *f, double pressure, struct friction_state *out,
                  struct error *err) {
-    struct contact_state state;
-    struct full_report report;
-    int status = full_press(f->full, pressure, &state, &report, err);
-    out->newton += report.newton;
+    int status = press_full(f, pressure, out, err);
     if (status != 0)
         return status;
-    f->nodes_without = state.nodes;
-    f->gap_without = state.mean_gap;
     const struct newton *without = full_newton(f->full);
     if (f->kept.pressure == 0) {
         memcpy(f->newton.u, without->u, f->newton.unknowns * sizeof(double));
@@ -218,33 +276,114 @@ static int guess(struct friction *f, double pressure, struct friction_state *out
     return 0;
 }
 
-static int step_to(struct friction *f, const struct friction_goal *goal, double *change,
-                   struct friction_state *out, struct error *err) {
-    struct friction_end end = {0};
-    *change = 0;
-    settle(f);
-    int status = goal->pressure != f->kept.pressure ? guess(f, goal->pressure, out, err) : 0;
-    f->newton.limit = full_limit_left(&f->limit, f->used);
-    if (status == 0)
-        status = friction_newton_solve(&f->newton, goal, &end, err);
-    f->used += full_limit_count(&f->limit, end.iterations, end.work.iterations, end.work.factored);
-    out->newton += end.iterations;
-    out->linear += end.work.iterations;
-    out->factored += end.work.factored;
-    if (status == 0) {
-        *change = face_stretch_change(f->mesh, f->newton.u, f->kept.u);
-        if (*change > FACE_CHANGE_MOST)
-            status = error_set(err, ERROR_NUMERIC, "the face jumps, by %.2g of a cell", *change);
+/* What load steps work on: a step from a point to a goal, of which the load is the part done. */
+struct following {
+    struct friction *friction;
+    struct friction_goal from, goal;
+    struct friction_state *out;
+};
+
+static struct friction_goal goal_at(const struct following *way, double done) {
+    struct friction_goal next = way->goal;
+    if (done < 1) {
+        next.pressure = way->from.pressure + done * (way->goal.pressure - way->from.pressure);
+        next.drive = way->from.drive + done * (way->goal.drive - way->from.drive);
     }
+    return next;
+}
+
+/* Solves within what is left of the limit. *change: of cells since a point. */
+static int solve(const struct following *way, const struct friction_goal *goal,
+                 const struct point *from, double *change, struct error *err) {
+    struct friction *f = way->friction;
+    struct friction_end end = {0};
+    f->newton.limit = full_limit_left(&f->limit, f->used);
+    int status = friction_newton_solve(&f->newton, goal, &end, err);
+    f->used += full_limit_count(&f->limit, end.iterations, end.work.iterations, end.work.factored);
+    way->out->newton += end.iterations;
+    way->out->linear += end.work.iterations;
+    way->out->factored += end.work.factored;
+    way->out->residual = end.residual;
+    *change = status == 0 ? face_stretch_change(f->mesh, f->newton.u, from->u) : 0;
+    if (*change > FACE_CHANGE_MOST)
+        status = error_set(err, ERROR_NUMERIC, "the face jumps, by %.2g of a cell", *change);
+    return status;
+}
+
+static int step_to(void *solver, double done, double *change, struct error *err) {
+    const struct following *way = solver;
+    struct friction *f = way->friction;
+    struct friction_goal goal = goal_at(way, done);
+    *change = 0;
+    settle(f, &f->kept);
+    /* Where the face folds the last nodes are nearer than those without friction. */
+    bool guesses = goal.pressure != f->kept.pressure && !f->careful;
+    int status = guesses ? guess(f, goal.pressure, way->out, err) : 0;
+    if (status == 0)
+        status = solve(way, &goal, &f->kept, change, err);
     if (status != 0) {
         restore(f);
         return status;
     }
-    add_works(f);
-    keep(f, goal->pressure);
-    out->residual = end.residual;
-    out->steps++;
+    add_works(f, &f->kept, &f->kept);
+    keep(f, goal.pressure);
+    way->out->steps++;
     return 0;
+}
+
+static int drag(void *solver, double done, double drag, double tolerance, struct dragged *out,
+                struct error *err) {
+    const struct following *way = solver;
+    struct friction *f = way->friction;
+    struct friction_newton *n = &f->newton;
+    struct friction_goal goal = goal_at(way, done);
+    double usual = n->tolerance;
+    n->drag = drag;
+    n->tolerance = tolerance;
+    n->evaluated = false;
+    settle(f, &f->held);
+    int status = solve(way, &goal, &f->held, &out->change, err);
+    n->tolerance = usual;
+    out->force = mesh_largest_move(f->mesh, n->u, n->anchor) * drag / goal.pressure;
+    if (status == 0)
+        add_works(f, &f->held, &f->held);
+    return status;
+}
+
+static void hold(void *solver) {
+    struct friction *f = ((const struct following *)solver)->friction;
+    take(f, &f->held);
+    memcpy(f->newton.anchor, f->held.u, mesh_degrees_of_freedom(f->mesh) * sizeof *f->held.u);
+}
+
+static void fall(void *solver) {
+    struct friction *f = ((const struct following *)solver)->friction;
+    give(f, &f->held);
+}
+
+/* The forces of the last point are those of the held one. */
+static void leave(void *solver) {
+    struct friction *f = ((const struct following *)solver)->friction;
+    restore(f);
+    f->held.work = f->kept.work;
+    f->held.dissipation = f->kept.dissipation;
+    for (size_t node = 0; node < f->face; node++)
+        f->newton.force[along(f, node, 0)] = f->kept.traction[node];
+}
+
+static void land(void *solver, double done, bool rests) {
+    const struct following *way = solver;
+    struct friction *f = way->friction;
+    f->newton.drag = 0;
+    if (!rests)
+        restore(f);
+    else {
+        (void)friction_newton_evaluate(&f->newton); /* without drag, and no element turns */
+        keep(f, goal_at(way, done).pressure);
+        f->kept.work = f->held.work;
+        f->kept.dissipation = f->held.dissipation;
+        way->out->steps++;
+    }
 }
 
 static double drive_now(const struct friction *f) {
@@ -257,45 +396,67 @@ static double face_area(const struct friction *f) {
     return (double)f->face * f->mesh->across;
 }
 
-/* Goes from the last point to a goal, in one step or in smaller ones, which grow again as those of
- * full_press do. */
+static bool is_used_up(const struct friction *f) {
+    return f->limit.seconds > 0 && f->used > f->limit.seconds;
+}
+
+/* Iterations of Newton's method after which a step is given up where the face is careful. */
+enum { NEWTON_MOST = 2500 };
+
+static int check(void *solver, struct error *err) {
+    const struct following *way = solver;
+    if (is_used_up(way->friction))
+        return error_set(err, ERROR_NUMERIC, "the time limit of %g s was used up",
+                         way->friction->limit.seconds);
+    if (way->friction->careful && way->out->newton > NEWTON_MOST)
+        return error_set(err, ERROR_NUMERIC, "%zu iterations of Newton's were too few",
+                         way->out->newton);
+    return 0;
+}
+
+/* Goes from the last point to a goal, in one step or in smaller ones. */
+static int follow_steps(struct friction *f, const struct friction_goal *goal,
+                        struct friction_state *out, struct error *err) {
+    static const struct load_solver SOLVER = {step_to, check, drag, hold, fall, leave, land};
+    struct following way = {f, {f->kept.pressure, drive_now(f)}, *goal, out};
+    struct load_steps steps = {.by = &SOLVER,
+                               .solver = &way,
+                               .least_step = f->options.least_step,
+                               .tolerance = f->options.tolerance,
+                               .careful = f->careful};
+    int status = load_steps_follow(&steps, 0, 1, err);
+    out->cuts += steps.cuts;
+    out->jumps += steps.jumps;
+    if (status != ERROR_NUMERIC)
+        return status;
+    return error_context(err,
+                         "contact with friction %g under a mean pressure of %g E* and a "
+                         "traction of %g E* was followed over %.3g of a step only; the "
+                         "next %.2g of it failed",
+                         f->coefficient, f->kept.pressure, f->kept.shear[0] / face_area(f),
+                         steps.reached, steps.failed);
+}
+
+/* Allows overhangs and jumps from the last point on. */
+static int become_careful(struct friction *f, struct error *err) {
+    int status = friction_newton_allow_overhangs(&f->newton, err);
+    if (status == 0)
+        status = point_create(&f->kept, f, true, err);
+    if (status == 0)
+        status = point_create(&f->held, f, true, err);
+    f->newton.overhangs = f->careful = status == 0;
+    return status;
+}
+
+/* As follow_steps, and on carefully where the usual steps end. */
 static int follow(struct friction *f, const struct friction_goal *goal, struct friction_state *out,
                   struct error *err) {
-    struct friction_goal from = {f->kept.pressure, drive_now(f)};
-    double done = 0, step = 1, change;
-    bool cut = false;
-    while (done < 1) {
-        step = fmin(step, 1 - done);
-        double to = done + step;
-        struct friction_goal next = *goal;
-        if (to < 1) {
-            next.pressure = from.pressure + to * (goal->pressure - from.pressure);
-            next.drive = from.drive + to * (goal->drive - from.drive);
-        }
-        int status = step_to(f, &next, &change, out, err);
-        if (status == 0) {
-            done = to;
-            step *= cut || 2 * change > FACE_CHANGE_MOST ? 1 : 2;
-            cut = false;
-            continue;
-        }
-        if (status != ERROR_NUMERIC)
-            return status;
-        cut = true;
-        step /= 2;
-        out->cuts++;
-        if (f->limit.seconds > 0 && f->used > f->limit.seconds)
-            error_set(err, ERROR_NUMERIC, "the time limit of %g s was used up", f->limit.seconds);
-        else if (step >= f->options.least_step)
-            continue;
-        return error_context(err,
-                             "contact with friction %g under a mean pressure of %g E* and a "
-                             "traction of %g E* was followed over %.3g of a step only; the "
-                             "next %.2g of it failed",
-                             f->coefficient, f->kept.pressure, f->kept.shear[0] / face_area(f),
-                             done, 2 * step);
-    }
-    return 0;
+    struct error ignored = {0};
+    int status = follow_steps(f, goal, out, err);
+    bool refused = f->careful || f->options.kinematics == KINEMATICS_SMALL || is_used_up(f);
+    if (status != ERROR_NUMERIC || refused || become_careful(f, &ignored) != 0)
+        return status;
+    return follow_steps(f, goal, out, err);
 }
 
 /* --- results --- */
@@ -323,7 +484,7 @@ static void fill_nodes(struct friction *f, struct friction_state *out) {
         f->p[node] = touches ? fmax(DBL_MIN, force) : 0;
         f->gap[node] = n->gap[node] * f->mesh->unit;
         for (size_t k = 0; k < f->sideways; k++) {
-            double slip = over_flat(f, node, k) - f->start[node * f->sideways + k];
+            double slip = over_flat(f, &f->kept, node, k) - f->start[node * f->sideways + k];
             f->q[k * f->face + node] = touches ? n->force[along(f, node, k)] / f->mesh->across : 0;
             f->slip[k * f->face + node] = touches ? slip * f->mesh->unit : NAN;
         }
@@ -354,9 +515,12 @@ static void fill_state(struct friction *f, struct friction_state *out) {
     out->mean_gap = face_mean_gap(f->mesh, deforms ? n->u : NULL, n->gap) * f->mesh->unit;
     out->displacement = (f->kept.flat[0] - f->start_flat) * f->mesh->unit;
     out->sliding = (flat_over_face(f) - f->start_sliding) * f->mesh->unit;
-    out->work = f->work * by_area;
-    out->dissipation = f->dissipation * by_area;
+    out->work = f->kept.work * by_area;
+    out->dissipation = f->kept.dissipation * by_area;
     out->energy = (n->energy - f->start_energy) * by_area;
+    if (f->careful)
+        out->self =
+            self_contact_measure(&f->newton.self, n->u, friction_newton_touching(&f->newton));
     out->pressing_work = f->kept.pressure * (f->start_far - far_height(f)) * f->mesh->unit;
 }
 
@@ -370,7 +534,8 @@ static void lift(struct friction *f) {
     memset(n->node, NODE_FREE, f->face);
     memset(n->shear, 0, sizeof n->shear);
     memset(n->flat, 0, sizeof n->flat);
-    n->evaluated = false;
+    n->evaluated = n->overhangs = f->careful = false;
+    n->self.count = 0;
     keep(f, 0);
 }
 
@@ -381,6 +546,8 @@ static int press_without(struct friction *f, double pressure, struct friction_st
     struct friction_newton *n = &f->newton;
     size_t first = mesh_far_side(f->mesh);
     int status = guess(f, pressure, out, err);
+    if (status == 0 && full_newton(f->full)->overhangs)
+        status = become_careful(f, err);
     if (status != 0)
         return status;
     for (size_t k = 0; k < f->sideways; k++) {
@@ -391,11 +558,15 @@ static int press_without(struct friction *f, double pressure, struct friction_st
         for (size_t node = 0; node < f->mesh->nodes; node++)
             n->u[along(f, node, k)] -= mean;
     }
-    if (!tangent_evaluate(f->mesh, &n->material, n->u, &n->energy, n->force, n->tangent))
+    if (f->careful) {
+        const struct self_contact *self = &full_newton(f->full)->self;
+        n->self.count = self->count;
+        memcpy(n->self.pair, self->pair, self->count * sizeof *self->pair);
+    }
+    if (!friction_newton_evaluate(n))
         return error_set(err, ERROR_NUMERIC,
                          "an element is turned inside out under a mean pressure of %g E*",
                          pressure);
-    n->evaluated = true;
     keep(f, pressure);
     return 0;
 }
@@ -409,7 +580,7 @@ static int press_with(struct friction *f, double pressure, struct friction_state
         struct friction_goal goal = {.pressure = pressure * root * root};
         status = follow(f, &goal, out, err);
     }
-    return status;
+    return status == 0 && f->careful ? press_full(f, pressure, out, err) : status;
 }
 
 int friction_press(struct friction *f, double pressure, struct friction_state *out,
@@ -420,6 +591,7 @@ int friction_press(struct friction *f, double pressure, struct friction_state *o
     struct friction_state state = {0};
     f->pressed = false;
     f->used = 0;
+    f->most = INFINITY;
     if (f->newton.lu != NULL)
         unsymmetric_forget(f->newton.lu);
     lift(f);
@@ -428,14 +600,14 @@ int friction_press(struct friction *f, double pressure, struct friction_state *o
     if (status != 0)
         return status;
     f->pressed = true;
-    f->work = f->dissipation = 0;
+    f->kept.work = f->kept.dissipation = 0;
     f->start_flat = f->kept.flat[0];
     f->start_sliding = flat_over_face(f);
     f->start_far = far_height(f);
     f->start_energy = f->newton.energy;
     for (size_t node = 0; node < f->face; node++)
         for (size_t k = 0; k < f->sideways; k++)
-            f->start[node * f->sideways + k] = over_flat(f, node, k);
+            f->start[node * f->sideways + k] = over_flat(f, &f->kept, node, k);
     fill_state(f, &state);
     *out = state;
     return 0;

@@ -6,7 +6,9 @@
  * mean traction along x is taken to values below friction times the pressure. Both may rise and
  * fall; the pressure stays. Across x, on surfaces, the flat is free to follow, and the mean
  * traction is 0. Slip of a step is that since the step before: a path is as fine as its
- * steps, and a step that fails is halved. Tractions are forces of the flat on the block over the
+ * steps, and a step that fails is halved. Where a profile does not go on so, its face may overhang,
+ * meet itself with the same friction, and jump against a drag (F14.10), whose work is none of the
+ * works below. Tractions are forces of the flat on the block over the
  * tributary areas of the flat grid, in E* = E/(1 - nu^2), positive where the flat pulls forward.
  *
  * A workspace belongs to one thread. Order of calls: friction_begin, friction_press, then
@@ -44,11 +46,13 @@ struct friction_state {
     double pressing_work;                 /* of the pressure on the far side */
     double dissipation;                   /* by slip on the face, by trapezoids */
     double energy;                        /* gained by the block */
-    size_t steps, cuts; /* of this call: steps that converged, and steps that were halved */
-    size_t newton;      /* iterations, those without friction too */
-    size_t linear;      /* iterations of the equations with friction */
-    size_t factored;    /* their factorisations */
-    double residual;    /* largest out-of-balance force, over the largest contact force */
+    size_t steps, cuts;       /* of this call: steps that converged, and steps that were halved */
+    size_t jumps;             /* steps that a drag led to their equilibrium */
+    size_t newton;            /* iterations, those without friction too */
+    size_t linear;            /* iterations of the equations with friction */
+    size_t factored;          /* their factorisations */
+    double residual;          /* largest out-of-balance force, over the largest contact force */
+    struct self_measure self; /* as in full_report */
 };
 
 struct friction;

@@ -17,6 +17,9 @@ static const double ROUNDINGS = 8, ROUNDING_MOST = 0.01;
 /* A direction that has so much across the first axis. */
 static const double TURNED = 0.1;
 enum { HALVINGS = 8, PATIENCE = 10, RETURNS = 3 };
+/* Of a face that meets itself, as in newton.c. */
+static const double DEEPEST = 0.25, LONGEST = 0.5, SETTLED = 1e-7;
+enum { RENEWALS = 60 };
 
 static int arrays_create(struct friction_newton *n, struct error *err) {
     const size_t unknowns = n->unknowns, face = n->mesh->face;
@@ -43,7 +46,9 @@ static int arrays_create(struct friction_newton *n, struct error *err) {
     n->conditions.direction = n->direction;
     n->conditions.turn = n->turn;
     n->conditions.node = n->node = array_create(face, sizeof *n->node);
-    return n->node != NULL ? 0 : error_memory(err, face, "contact with friction");
+    n->touches = array_create(face, sizeof *n->touches);
+    return n->node != NULL && n->touches != NULL ? 0
+                                                 : error_memory(err, face, "contact with friction");
 }
 
 int friction_newton_create(struct friction_newton *out, const struct mesh *mesh,
@@ -75,9 +80,26 @@ void friction_newton_clear(struct friction_newton *n) {
     for (size_t a = 0; a < sizeof arrays / sizeof *arrays; a++)
         free(arrays[a]);
     free(n->node);
+    free(n->touches);
+    free(n->anchor);
+    self_contact_clear(&n->self);
     tangent_destroy(&n->tangent);
     unsymmetric_destroy(&n->lu);
     *n = (struct friction_newton){0};
+}
+
+int friction_newton_allow_overhangs(struct friction_newton *n, struct error *err) {
+    size_t count = mesh_degrees_of_freedom(n->mesh);
+    if (n->mesh->dimension != 2)
+        return error_set(err, ERROR_INPUT, "surfaces may not overhang");
+    if (n->anchor == NULL)
+        n->anchor = array_create(count, sizeof *n->anchor);
+    if (n->anchor == NULL)
+        return error_memory(err, count * sizeof *n->anchor, "displacements");
+    int status = n->self.pair == NULL ? self_contact_create(&n->self, n->mesh, err) : 0;
+    n->self.friction = n->conditions.friction;
+    n->overhangs = status == 0;
+    return status;
 }
 
 void friction_newton_drive(struct friction_newton *n, struct drive drive) {
@@ -429,16 +451,27 @@ static int newton_step(struct friction_newton *n, const struct friction_goal *go
     return 0;
 }
 
-static bool evaluate(struct friction_newton *n) {
+bool friction_newton_evaluate(struct friction_newton *n) {
     n->evaluated = tangent_evaluate(n->mesh, &n->material, n->u, &n->energy, n->force, n->tangent);
+    n->tangent->links = 0;
+    if (n->evaluated && n->drag > 0)
+        tangent_add_drag(n->tangent, n->drag, n->u, n->anchor, n->force);
+    if (n->evaluated && n->overhangs)
+        self_contact_evaluate(&n->self, false, n->u, n->force, n->tangent);
     return n->evaluated;
+}
+
+const bool *friction_newton_touching(struct friction_newton *n) {
+    for (size_t node = 0; node < n->mesh->face; node++)
+        n->touches[node] = n->node[node] != NODE_FREE;
+    return n->touches;
 }
 
 /* Advances u, flat and shear by the longest of the step and its halves that neither folds the face
  * nor inverts an element. */
 static int advance(struct friction_newton *n, const struct motion *motion, struct error *err) {
     struct motion before;
-    double length = 1;
+    double length = n->overhangs ? fmin(1, LONGEST / face_largest_move(n->mesh, n->change)) : 1;
     bool folds = false;
     memcpy(before.flat, n->flat, sizeof before.flat);
     memcpy(before.shear, n->shear, sizeof before.shear);
@@ -450,8 +483,10 @@ static int advance(struct friction_newton *n, const struct motion *motion, struc
             n->flat[k] = before.flat[k] + length * motion->flat[k];
             n->shear[k] = before.shear[k] + length * motion->shear[k];
         }
-        folds = face_folds(n->mesh, n->u);
-        if (!folds && evaluate(n))
+        folds = n->overhangs
+                    ? self_contact_depth(&n->self, n->u, friction_newton_touching(n)) > DEEPEST
+                    : face_folds(n->mesh, n->u);
+        if (!folds && friction_newton_evaluate(n))
             return 0;
     }
     n->evaluated = false;
@@ -525,6 +560,7 @@ static struct round assess(struct friction_newton *n, const struct friction_goal
 struct progress {
     double least; /* residual, in the units of the tolerance */
     size_t rounds;
+    size_t begun; /* iterations before contact of the face with itself was last found */
 };
 
 static int check_progress(const struct friction_newton *n, struct progress *progress, double off,
@@ -538,7 +574,7 @@ static int check_progress(const struct friction_newton *n, struct progress *prog
                          "the sets of nodes that stick and slide come back, %zu times in %zu "
                          "iterations of Newton's; residual %.2g of the largest force",
                          end->cycles, end->iterations, end->residual);
-    if (end->iterations == n->max_iterations || progress->rounds > PATIENCE)
+    if (end->iterations - progress->begun == n->max_iterations || progress->rounds > PATIENCE)
         return error_set(err, ERROR_NUMERIC,
                          "%zu iterations of Newton's left %.2g of the largest force, and gaps and "
                          "slips of %.2g columns",
@@ -551,16 +587,38 @@ static int check_progress(const struct friction_newton *n, struct progress *prog
     return 0;
 }
 
+/* As in newton.c. */
+static int renew(struct friction_newton *n, double largest, int *renewals, bool *settled,
+                 struct error *err) {
+    size_t before = n->self.count;
+    double left = self_contact_renew(&n->self, n->u, friction_newton_touching(n));
+    *settled = left <= fmax(SETTLED, n->tolerance) * largest;
+    if (before == 0 && n->self.count == 0)
+        return 0;
+    if (++*renewals > RENEWALS)
+        return error_set(err, ERROR_NUMERIC,
+                         "contact of the face with itself does not settle: after %d rounds its "
+                         "forces change by %.2g of the largest force",
+                         RENEWALS, left / largest);
+    return friction_newton_evaluate(n)
+               ? 0
+               : error_set(err, ERROR_NUMERIC, "an element is turned inside out");
+}
+
 int friction_newton_solve(struct friction_newton *n, const struct friction_goal *goal,
                           struct friction_end *end, struct error *err) {
     struct set_history history = {0};
     struct progress progress = {.least = INFINITY};
+    bool settled = false;
+    int renewals = 0;
     *end = (struct friction_end){0};
     double load = goal->pressure * n->mesh->across * (double)n->mesh->face;
     if (force_rounding(n) > ROUNDING_MOST * load)
         return error_set(err, ERROR_NUMERIC, "rounding makes forces up to %.2g of so light a load",
                          force_rounding(n) / load);
-    if (!n->evaluated && !evaluate(n))
+    if (!n->evaluated && n->overhangs)
+        self_contact_search(&n->self, n->u, friction_newton_touching(n));
+    if (!n->evaluated && !friction_newton_evaluate(n))
         return error_set(err, ERROR_NUMERIC, "an element is turned inside out at the start");
     friction_newton_measure_gaps(n);
     fill_contact(n);
@@ -568,12 +626,22 @@ int friction_newton_solve(struct friction_newton *n, const struct friction_goal 
     (void)set_history_meets(&history, n->mesh->face, n->node);
     for (;;) {
         struct round round = assess(n, goal, &history, end);
-        if (end->iterations > 0 && round.changes == 0 && round.residual <= round.balanced &&
-            round.inside <= round.closed && round.driven)
+        bool balanced = end->iterations > 0 && round.changes == 0 &&
+                        round.residual <= round.balanced && round.inside <= round.closed &&
+                        round.driven;
+        if (balanced && (settled || !n->overhangs))
             return 0;
+        settled = false;
+        int status = balanced ? renew(n, round.largest, &renewals, &settled, err) : 0;
+        if (status != 0)
+            return status;
+        if (balanced) {
+            progress = (struct progress){.least = INFINITY, .begun = end->iterations};
+            continue;
+        }
         double off = fmax(end->residual, round.inside * COMPLEMENTARITY / round.largest);
         struct motion motion;
-        int status = check_progress(n, &progress, off, &round, end, err);
+        status = check_progress(n, &progress, off, &round, end, err);
         if (status == 0)
             status = newton_step(n, goal, off, &motion, end, err);
         end->iterations++;

@@ -34,6 +34,7 @@ struct friction_newton {
     struct material material;
     struct face_conditions conditions; /* what nodes do is owned, as all below */
     unsigned char *node;               /* by node of the face: enum face_node */
+    bool *touches;                     /* scratch of friction_newton_touching */
     double *direction, *turn;          /* of sliding nodes (face_conditions.h) */
     struct tangent *tangent;
     struct unsymmetric *lu; /* of profiles */
@@ -48,6 +49,9 @@ struct friction_newton {
     double *gap, *opening;   /* by node of the face, at u */
     double shear[SIDEWAYS_MOST], flat[SIDEWAYS_MOST]; /* force along the face on the block, and the
                                                          flat's displacement */
+    bool overhangs;                                   /* as in newton.h, and the next three */
+    struct self_contact self;
+    double drag, *anchor;
     double energy; /* of the block at u, E* times the cube (profiles: square) of the mesh's unit */
     double flat_height;      /* vertical position of the flat */
     double tolerance;        /* largest residual, over the largest contact force */
@@ -65,6 +69,16 @@ int friction_newton_create(struct friction_newton *out, const struct mesh *mesh,
                            const struct material *material, enum gap_weighting weighting,
                            double friction, struct gmres *gmres, struct error *err);
 void friction_newton_clear(struct friction_newton *newton);
+/* As newton_allow_overhangs; the face meets itself with the same friction. ERROR_INPUT for a
+ * surface. */
+int friction_newton_allow_overhangs(struct friction_newton *newton, struct error *err);
+
+/* Computes forces, energy and tangent at u, with the pairs of a face that meets itself as they are.
+ * Returns false where an element is turned inside out. */
+bool friction_newton_evaluate(struct friction_newton *newton);
+
+/* By node of the face, whether it touches the flat; valid until the next call. */
+const bool *friction_newton_touching(struct friction_newton *newton);
 
 /* The loads at the end of the increment. */
 struct friction_goal {

@@ -15,6 +15,7 @@ struct unsymmetric {
     const struct mesh *mesh; /* borrowed */
     int *unknown; /* by degree of freedom: number of its unknown; shear and flat are the last two */
     size_t unknowns, entries; /* entries: triplets, at most */
+    size_t links;             /* of the tangent that was analysed */
     size_t count;             /* of triplets */
     int *row, *column;        /* triplets, as value */
     double *value;
@@ -176,6 +177,47 @@ static void put_stiffness(struct unsymmetric *lu, const struct tangent *tangent,
         }
 }
 
+/* Stiffness of nodes that meet across air. */
+static void put_links(struct unsymmetric *lu, const struct tangent *tangent,
+                      const struct face_conditions *conditions) {
+    for (size_t l = 0; l < tangent->links; l++) {
+        const struct tangent_link *link = &tangent->link[l];
+        for (size_t i = 0; i < LINK_MOST; i++)
+            for (size_t j = 0; j < LINK_MOST; j++)
+                put_force(lu, conditions, link->at[i] / 2, link->at[i] % 2,
+                          lu->unknown[link->at[j]], link->stiffness[i][j]);
+    }
+}
+
+/* Makes room for the entries of links. What was analysed without them, or with others, is
+ * forgotten. */
+static int make_room(struct unsymmetric *lu, const struct tangent *tangent, struct error *err) {
+    size_t most = entries_of(lu->mesh) + tangent->links * 2 * LINK_MOST * LINK_MOST;
+    if (tangent->links == 0 && lu->links == 0)
+        return 0;
+    umfpack_di_free_symbolic(&lu->symbolic);
+    lu->links = tangent->links;
+    if (most <= lu->entries)
+        return 0;
+    int **const numbers[] = {&lu->row, &lu->column, &lu->index};
+    double **const values[] = {&lu->value, &lu->number};
+    for (size_t a = 0; a < sizeof numbers / sizeof *numbers; a++) {
+        free(*numbers[a]);
+        *numbers[a] = array_create(most, sizeof **numbers[a]);
+    }
+    for (size_t a = 0; a < sizeof values / sizeof *values; a++) {
+        free(*values[a]);
+        *values[a] = array_create(most, sizeof **values[a]);
+    }
+    lu->entries = most;
+    if (lu->row != NULL && lu->column != NULL && lu->index != NULL && lu->value != NULL &&
+        lu->number != NULL)
+        return 0;
+    lu->entries = 0;
+    return error_memory(err, most * (2 * sizeof(double) + 3 * sizeof(int)),
+                        "equations with friction");
+}
+
 static void put_contact(struct unsymmetric *lu, const struct face_conditions *conditions) {
     const struct level *face = &lu->mesh->level[0];
     double beside = conditions->weighting == GAP_STANDARD ? 1.0 / 6 : 0;
@@ -218,12 +260,16 @@ static int failure(const struct unsymmetric *lu, int status, struct error *err) 
 int unsymmetric_set(struct unsymmetric *lu, const struct tangent *tangent,
                     const struct face_conditions *conditions, struct error *err) {
     int n = (int)lu->unknowns;
+    int status = make_room(lu, tangent, err);
+    if (status != 0)
+        return status;
     lu->count = 0;
     put_stiffness(lu, tangent, conditions);
+    put_links(lu, tangent, conditions);
     put_contact(lu, conditions);
     put_far_side(lu, conditions);
-    int status = umfpack_di_triplet_to_col(n, n, (int)lu->count, lu->row, lu->column, lu->value,
-                                           lu->start, lu->index, lu->number, NULL);
+    status = umfpack_di_triplet_to_col(n, n, (int)lu->count, lu->row, lu->column, lu->value,
+                                       lu->start, lu->index, lu->number, NULL);
     return status == UMFPACK_OK ? 0 : failure(lu, status, err);
 }
 

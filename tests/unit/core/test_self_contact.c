@@ -1,5 +1,6 @@
 /* Protects contact of a face with itself: what counts as a pair, forces that are the gradient of an
- * energy and balance, their tangent, the periodic images, and multipliers that take the forces. */
+ * energy and balance, their tangent, the periodic images, and multipliers that take the forces;
+ * with friction Coulomb's law, its tangent, and forces that turn with the face. */
 #include "tests/support/check.h"
 
 #include "core/full/self_contact.h"
@@ -106,7 +107,7 @@ static void lips_on_the_flat_meet(void **state) {
     self_contact_search(&f.self, f.u, f.active);
     (void)find(&f);
     const struct self_pair *last = &f.self.pair[f.self.count - 1];
-    assert_true(f.self.count > 0 && last->lips && last->node == FIRST);
+    assert_true(f.self.count > 0 && last->kind == SELF_LIPS && last->node == FIRST);
     check_close(last->gap, -0.16, 1e-12);
     check_close(f.force[2 * FIRST], last->force, 1e-12);
     check_close(f.force[2 * (FIRST + 2 * DEEP)], -last->force, 1e-12);
@@ -151,6 +152,84 @@ static void forces_and_tangent_are_derivatives(void **state) {
     close_fold(&f);
 }
 
+/* A fold that is pressed together, with friction, whose left flank then rises by so much. */
+static void rub(struct folded *f, double rise) {
+    fold(f, FIRST, -0.3, 1);
+    f->self.friction = 0.4;
+    f->self.count = 0;
+    self_contact_search(&f->self, f->u, f->active);
+    (void)find(f);
+    self_contact_settle(&f->self);
+    for (size_t a = 1; a < DEEP; a++)
+        f->u[2 * (FIRST + a) + 1] += rise;
+}
+
+/* Errors of central differences are of second order. */
+static void friction_follows_coulomb_and_its_tangent(void **state) {
+    (void)state;
+    static const double STEP = 1e-5, RISES[] = {0.004, -0.1, 0.1};
+    struct folded f;
+    double plus[FACE_VALUES], stiffness[FACE_VALUES];
+    open_fold(&f);
+    for (size_t r = 0; r < 3; r++) {
+        size_t slide = 0, stick = 0;
+        rub(&f, RISES[r]);
+        (void)find(&f);
+        for (size_t c = 0; c < f.self.count; c++) {
+            const struct self_pair *pair = &f.self.pair[c];
+            double bound = 0.4 * pair->force;
+            assert_true(fabs(pair->shear) <= bound * (1 + 1e-12) && pair->shear * pair->slip <= 0);
+            slide += bound > 0 && fabs(pair->shear) >= bound;
+            stick += fabs(pair->shear) < bound;
+        }
+        assert_true(r == 0 ? stick > 0 : slide > 0);
+        assert_true(self_contact_dissipation(&f.self) > 0);
+        for (size_t i = 2 * FIRST; i < 2 * (FIRST + 2 * DEEP + 1); i++) {
+            double here = f.u[i];
+            (void)find(&f);
+            memset(f.change, 0, mesh_degrees_of_freedom(f.mesh) * sizeof *f.change);
+            f.change[i] = 1;
+            tangent_apply(f.tangent, f.change, f.force);
+            memcpy(stiffness, f.force, sizeof stiffness);
+            f.u[i] = here + STEP;
+            (void)find(&f);
+            memcpy(plus, f.force, sizeof plus);
+            f.u[i] = here - STEP;
+            (void)find(&f);
+            f.u[i] = here;
+            for (size_t k = 0; k < FACE_VALUES; k++)
+                check_close((plus[k] - f.force[k]) / (2 * STEP), stiffness[k], 1e-5);
+        }
+    }
+    close_fold(&f);
+}
+
+static void forces_turn_with_the_face(void **state) {
+    (void)state;
+    static const double COSINE = 0.8, SINE = 0.6;
+    struct folded f;
+    double force[FACE_VALUES];
+    open_fold(&f);
+    rub(&f, 0.1);
+    (void)find(&f);
+    memcpy(force, f.force, sizeof force);
+    for (size_t node = FIRST - 2; node < FIRST + 2 * DEEP + 3; node++) {
+        double x = (double)node + f.u[2 * node] - FIRST,
+               y = f.mesh->height[node] + f.u[2 * node + 1];
+        f.u[2 * node] = COSINE * x - SINE * y + FIRST - (double)node;
+        f.u[2 * node + 1] = SINE * x + COSINE * y - f.mesh->height[node];
+    }
+    (void)find(&f);
+    double most = 0;
+    for (size_t i = FIRST; i < FIRST + 2 * DEEP + 1; i++) {
+        check_close(f.force[2 * i], COSINE * force[2 * i] - SINE * force[2 * i + 1], 1e-9);
+        check_close(f.force[2 * i + 1], SINE * force[2 * i] + COSINE * force[2 * i + 1], 1e-9);
+        most = fmax(most, fabs(force[2 * i + 1]));
+    }
+    assert_true(most > 0.1);
+    close_fold(&f);
+}
+
 static void forces_balance_and_become_multipliers(void **state) {
     (void)state;
     struct folded f, across;
@@ -189,6 +268,8 @@ int main(void) {
         cmocka_unit_test(flanks_meet_across_air_alone),
         cmocka_unit_test(lips_on_the_flat_meet),
         cmocka_unit_test(forces_and_tangent_are_derivatives),
+        cmocka_unit_test(friction_follows_coulomb_and_its_tangent),
+        cmocka_unit_test(forces_turn_with_the_face),
         cmocka_unit_test(forces_balance_and_become_multipliers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
