@@ -112,12 +112,13 @@ static void check_cell(const struct like_case *like, struct values *values) {
 }
 
 /* Refuses faces of other kinds than the map's. */
-static void check_faces(struct values *values, const struct surface_case *surface) {
+static void check_faces(const struct like_case *like, struct values *values,
+                        const struct surface_case *surface) {
     static const char RMS_RATIO[] = "/surface/plateau/rms_ratio";
-    if (surface != NULL && surface->grooves != NULL)
+    if (surface != NULL && surface->grooves != NULL && isnan(like->groove_depth_error))
         values_fault(values, "/surface/grooves/period",
-                     "a surface like a measured one is compared with it without grooves; allowed: "
-                     "one of grooves and like");
+                     "a surface like a measured one has the grooves of the map; allowed: one of "
+                     "grooves and like");
     if (values_is_given(values, RMS_RATIO))
         values_fault(values, RMS_RATIO,
                      "a surface like a measured one has the spectrum and the heights of the map; "
@@ -136,7 +137,8 @@ int like_case_fill(struct like_case *out, struct values *values, const struct su
     const double spacing = values_number(values, "/surface/like/spacing");
     out->spacing = spacing;
     read_fitted(out, values);
-    check_faces(values, surface);
+    out->groove_depth_error = values_number(values, "/surface/like/groove_depth_error");
+    check_faces(out, values, surface);
     size_t before = values_fault_count(values);
     int status = read_points(out, values, surface_case_dimension(values) == 1, err);
     if (status == 0)

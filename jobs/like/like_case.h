@@ -30,6 +30,7 @@ struct like_case {
                          the only one */
     struct like_map maps[JOINT_PATCHES_MOST];
     double between;                        /* maps: deviation of ln C between them */
+    double groove_depth_error;             /* relative; NaN: the map has no grooves */
     bool hold;                             /* surfaces hold the map (like_hold.h) */
     bool held[LIKE_HELD_COUNT];            /* given by the study */
     double measured[PATCH_QUANTITY_COUNT]; /* of the map, lengths in lambda_s; NaN: not known */

@@ -3,6 +3,7 @@
 #include "core/surface/conditional.h"
 #include "core/surface/height_table.h"
 #include "core/surface/modes.h"
+#include "core/surface/spectrum.h"
 #include "core/surface/translation/translation.h"
 #include "jobs/like/like_estimate.h"
 #include "jobs/like/like_joint.h"
@@ -34,6 +35,7 @@ struct like_draw {
     struct height_table *heights;
     struct translation *translation;
     struct generator *generator;
+    struct grooves grooves;
 };
 
 /* Frees what the last draw made. */
@@ -152,7 +154,9 @@ static int draw_fill(struct like_draw *draw, struct error *err) {
         return draw->z != NULL ? maps_fill(draw, &options, err)
                                : error_memory(err, points * sizeof *draw->z, "a surface");
     }
-    int status = generator_create(&draw->whole, &surface->spectrum, &draw->cell, &options, &reason);
+    struct spectrum rest = surface->spectrum; /* the map was fitted without its grooves */
+    rest.grooves = NULL;
+    int status = generator_create(&draw->whole, &rest, &draw->cell, &options, &reason);
     if (status != 0 && status != ERROR_INPUT)
         return error_set(err, status, "%s", reason.text);
     status = like_patch_create(&draw->patch, &draw->cut, &draw->cell, err);
@@ -304,6 +308,30 @@ static int set_translation(struct like_draw *draw, struct error *err) {
     return status;
 }
 
+/* Draws the depth of the grooves, which is that of the map to its error, whatever the scale of the
+ * random part is. */
+static int set_grooves(struct like_draw *draw, struct random_key key, struct error *err) {
+    const struct surface_case *base = draw->base;
+    struct surface_case *surface = &draw->surface;
+    struct moments of_case, drawn;
+    double u[2];
+    if (base->grooves == NULL)
+        return 0;
+    int status = spectrum_moments(&base->spectrum, &base->grid, &of_case, err);
+    if (status == 0)
+        status = spectrum_moments(&surface->spectrum, &surface->grid, &drawn, err);
+    if (status != 0)
+        return status;
+    random_uniform(key, STREAM_GROOVES, GROOVE_FAMILIES_MOST, 2, u); /* those before are phases */
+    const double normal = sqrt(-2 * log1p(-u[0])) * cos(2 * M_PI * u[1]);
+    const double error = isnan(draw->like->groove_depth_error) ? 0 : draw->like->groove_depth_error;
+    draw->grooves = *base->grooves;
+    draw->grooves.depth *= fmax(1 + error * normal, 0) * of_case.rms_height / drawn.rms_height;
+    surface->grooves = &draw->grooves;
+    surface->spectrum.grooves = &draw->grooves;
+    return 0;
+}
+
 /* --- the surface --- */
 
 static int keep_gaussian(struct like_draw *draw, struct error *err) {
@@ -329,6 +357,8 @@ int like_draw_make(struct like_draw *draw, struct random_key key, bool gaussian,
     status = set_heights(draw, err);
     if (status == 0)
         status = set_translation(draw, err);
+    if (status == 0)
+        status = set_grooves(draw, key, err);
     if (status == 0)
         status = generator_create(&draw->generator, &surface->spectrum, &surface->grid,
                                   &surface->options, err);

@@ -1,11 +1,11 @@
 #include "jobs/like/like_fit.h"
-#include "core/statistics/grooves/map_grooves.h"
 #include "core/statistics/measured_map.h"
 #include "core/statistics/uncertainty/isotropy.h"
 #include "core/statistics/uncertainty/map_chance.h"
 #include "core/statistics/uncertainty/stationarity.h"
 #include "core/surface/heights.h"
 #include "jobs/like/like_estimate.h"
+#include "jobs/like/like_grooves.h"
 #include "jobs/like/like_hold.h"
 #include "jobs/like/like_joint.h"
 #include "schema/json/field.h"
@@ -36,6 +36,8 @@ struct fit {
     struct like_joint joint; /* of several */
     double longest;          /* the wave that the study names, over lambda_s; 0: none */
     double parts_p_value;    /* of parts of the map that are alike; NaN: not known */
+    struct like_grooves grooves;
+    double *rest; /* the heights without them, which are fitted, owned; NULL: there are none */
 };
 
 /* --- the map --- */
@@ -76,21 +78,34 @@ static int measure_parts(struct fit *fit, struct error *err) {
     return status;
 }
 
-/* Random surfaces have no grooves. */
-static int check_grooves(const struct measured_map *map, const char *unit, struct error *err) {
-    struct map_grooves grooves;
-    int status = map_grooves_find(&grooves, map, err);
-    if (status != 0 || grooves.families == 0)
-        return status;
-    const struct map_groove *first = &grooves.family[0];
+static int refuse_grooves(const struct fit *fit, struct error *err) {
+    const struct map_groove *first = &fit->grooves.found.family[0];
+    const char *unit = fit->unit;
     return error_set(
         err, ERROR_INPUT,
-        "the map has grooves (every %.4g%s%s, %.3g%s%s deep; p-value %.2g), and random "
-        "surfaces have none: give \"degroove\": true, which takes them out, and make "
-        "them by a study with /surface/grooves (`rugo characterise --group grooves` "
-        "has the values)",
+        "the map has grooves (every %.4g%s%s, %.3g%s%s deep; p-value %.2g), and surfaces that hold "
+        "a map, are like several of them or have grooves of their own are not made with them: give "
+        "\"degroove\": true, which takes them out",
         first->period, *unit != '\0' ? " " : "", unit, first->fit.depth, *unit != '\0' ? " " : "",
         unit, first->p_value);
+}
+
+/* Takes the grooves out of the heights that are fitted. */
+static int take_grooves(struct fit *fit, const cJSON *surface, struct error *err) {
+    const size_t points = grid_points(fit->map.grid);
+    int status = map_grooves_find(&fit->grooves.found, &fit->map, err);
+    if (status != 0 || fit->grooves.found.families == 0)
+        return status;
+    if (fit->count > 1 || fit->source->hold ||
+        cJSON_GetObjectItemCaseSensitive(surface, "grooves") != NULL)
+        return refuse_grooves(fit, err);
+    fit->rest = array_create(points, sizeof *fit->rest);
+    if (fit->rest == NULL)
+        return error_memory(err, points * sizeof *fit->rest, "a map without its grooves");
+    memcpy(fit->rest, fit->map.z, points * sizeof *fit->rest);
+    map_grooves_take(&fit->grooves.found, fit->map.grid, fit->rest);
+    fit->map.z = fit->rest;
+    return 0;
 }
 
 /* --- parameters, each only where the study has none --- */
@@ -230,6 +245,9 @@ static bool put_prepared(cJSON *like, const struct fit *fit) {
         used += snprintf(text + used, (size_t)(SIZE - used),
                          "%snoise: taken out of the spectrum, with the waves in it",
                          used > 0 ? "; " : "");
+    if (fit->rest != NULL && used >= 0 && used < SIZE)
+        used += snprintf(text + used, (size_t)(SIZE - used), "%s%s", used > 0 ? "; " : "",
+                         fit->grooves.words);
     if (fabs(left) > NAMED && used >= 0 && used < SIZE)
         used +=
             snprintf(text + used, (size_t)(SIZE - used), "%sRMS %s of the surfaces: %+.3g %% off",
@@ -282,6 +300,8 @@ static bool put_marks(cJSON *like, const struct fit *fit) {
                           choice_name(LIKE_SPECTRA, (int)fit->choices.spectrum)) &&
            field_put_text(like, "heights", choice_name(LIKE_HEIGHTS, (int)fit->choices.heights)) &&
            put_uncertainty(like, fit) &&
+           (fit->rest == NULL ||
+            field_put(like, "groove_depth_error", json_number(fit->grooves.depth_error))) &&
            (fit->patch == NULL || (cJSON_AddTrueToObject(like, "hold") != NULL &&
                                    field_put_text(like, "patch", fit->patch)));
 }
@@ -408,6 +428,16 @@ static int estimate_together(struct fit *fit, struct error *err) {
                               fit->longest * shortest, &fit->choices, err);
 }
 
+/* Gives the study the grooves. What is compared with sub-maps of its surfaces, which have them, is
+ * the map with them. */
+static int make_grooves(struct fit *fit, cJSON *surface, const struct height_map *map,
+                        struct error *err) {
+    const struct measured_map whole = {&map->grid, map->z, BOUNDARY_OPEN};
+    int status =
+        like_grooves_put(surface, &fit->grooves, &map->grid, fit->wavelength, fit->unit, err);
+    return status == 0 ? patch_measure(&whole, fit->estimate.measured, err) : status;
+}
+
 int like_fit_together(cJSON *surface, size_t count, const struct height_map *maps,
                       const struct like_source *sources, struct error *err) {
     const struct height_map *map = &maps[0];
@@ -420,21 +450,26 @@ int like_fit_together(cJSON *surface, size_t count, const struct height_map *map
                       .longest = field_number(surface, "wavelength_ratio")};
     int status = check_map(map, err);
     if (status == 0)
-        status = check_grooves(&fit.map, fit.unit, err);
+        status = take_grooves(&fit, surface, err);
     if (status == 0)
         status = measure_parts(&fit, err);
-    if (status != 0)
+    if (status != 0) {
+        free(fit.rest);
         return status;
+    }
     choose(&fit, surface);
     status = count > 1 ? estimate_together(&fit, err)
                        : like_estimate_measure(&fit.estimate, &fit.map, &fit.choices, err);
     if (status == 0 && !put_all(surface, &fit))
         status = error_memory(err, sizeof fit, "a fitted surface");
+    if (status == 0 && fit.rest != NULL)
+        status = make_grooves(&fit, surface, map, err);
     if (status == 0 && sources->hold)
         status = like_hold_text(&fit.patch, map, fit.wavelength, err);
     if (status == 0)
         status = put_like(surface, &fit, err);
     free(fit.patch);
+    free(fit.rest);
     like_estimate_clear(&fit.estimate);
     return status;
 }

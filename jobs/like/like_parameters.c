@@ -162,6 +162,14 @@ static const struct parameter ROWS[] = {
      .example_json = "0.1",
      .help = "several maps: standard deviation of the logarithm of their spectral densities "
              "between maps, beyond what their waves explain"},
+    {.path = "/surface/like/groove_depth_error",
+     .type = PARAMETER_NUMBER,
+     .minimum = 0,
+     .maximum = 10,
+     .later = true,
+     .example_json = "0.02",
+     .help = "a map with grooves, which the study has in /surface/grooves: the standard error of "
+             "their depth, over the depth"},
     {.path = "/surface/like/others",
      .type = PARAMETER_TEXT,
      .minimum = 1,

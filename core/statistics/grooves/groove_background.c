@@ -226,6 +226,40 @@ static double power_at(const struct groove_background *b, double mx, double my) 
     return from > 0 && to > 0 ? from * pow(to / from, part) : fmax(from, to);
 }
 
+/* Returns the median of what the neighbours have over what their rings have; that of the quarter of
+ * them that has most, where that is so much more that an end of the spectrum must be near, of which
+ * rings along a lay do not say exactly where it is. */
+static double ratio_near(const struct groove_background *b, double mx, double my) {
+    enum { FAR = 8, ACROSS = 2 * FAR + 1, QUARTERS = 4 };
+    static const double END = 4;
+    const struct modes *modes = b->modes;
+    double all[ACROSS * ACROSS], quarter[QUARTERS][ACROSS * ACROSS], most = 0;
+    size_t count = 0, quarter_count[QUARTERS] = {0};
+    for (long dy = -FAR; dy <= FAR; dy++)
+        for (long dx = -FAR; dx <= FAR; dx++) {
+            const long x = lround(mx) + dx, y = lround(my) + dy;
+            if ((labs(dx) < NEAREST && labs(dy) < NEAREST) || (x == 0 && y == 0) ||
+                labs(x) > (long)modes->mode_x || labs(y) > (long)modes->mode_y)
+                continue;
+            const double ring = power_at(b, (double)x, (double)y);
+            if (!(ring > 0))
+                continue;
+            const double ratio = modes_power(modes, (size_t)labs(x), x < 0 ? -y : y) / ring;
+            const size_t q = labs(dx) > labs(dy) ? dx > 0 : 2 + (dy > 0);
+            all[count++] = ratio;
+            quarter[q][quarter_count[q]++] = ratio;
+        }
+    const double middle = median_of(all, count);
+    for (size_t q = 0; q < QUARTERS; q++)
+        most = fmax(most, median_of(quarter[q], quarter_count[q]));
+    return (most > END * middle ? most : middle) / MEDIAN;
+}
+
+double groove_background_near(const struct groove_background *b, double mx, double my) {
+    const double ring = power_at(b, mx, my);
+    return b->profile ? ring : ring * ratio_near(b, mx, my);
+}
+
 double groove_background_power(const struct groove_background *b, double mx, double my) {
     return fmax(power_at(b, mx, my), b->least);
 }

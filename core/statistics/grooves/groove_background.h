@@ -13,6 +13,9 @@ int groove_background_create(struct groove_background **out, const struct modes 
 void groove_background_destroy(struct groove_background **background);
 /* Returns the expected power of a wave of mx, my periods along the sides (any numbers). */
 double groove_background_power(const struct groove_background *background, double mx, double my);
+/* Returns the same where lines have been taken out, by the waves around that one: their median over
+ * what their rings have, times that of its ring. Nothing is taken for granted. */
+double groove_background_near(const struct groove_background *background, double mx, double my);
 /* Returns the probability of such a power or more in a wave of the random part. It compares with
  * the largest of what rings and neighbours on either side have, so that a sharp end of a spectrum
  * makes no line. alone: the wave is all that is left of grooves, so that it must stand out of its

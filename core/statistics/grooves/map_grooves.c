@@ -160,12 +160,11 @@ static void family_fill(struct map_groove *out, const struct grid *grid) {
     const struct groove_lines *lines = &out->lines;
     const bool profile = grid_is_profile(grid);
     const double kx = lines->mx / grid->lx, ky = profile ? 0 : lines->my / grid->ly;
-    const double ex = lines->mx_error / grid->lx, ey = profile ? 0 : lines->my_error / grid->ly;
     const double k = hypot(kx, ky);
     out->period = 1 / k;
-    out->period_error = hypot(kx * ex, ky * ey) / (k * k * k);
+    out->period_error = out->period * lines->stretch_error;
     out->angle = profile ? (double)NAN : remainder(atan2(kx, -ky), M_PI);
-    out->angle_error = profile ? (double)NAN : hypot(ky * ex, kx * ey) / (k * k);
+    out->angle_error = profile ? (double)NAN : lines->angle_error;
     if (out->angle <= -M_PI / 2 + out->angle_error) /* along y, to its error */
         out->angle = M_PI / 2;
     out->periods = hypot(lines->mx, profile ? 0 : lines->my);
@@ -174,48 +173,8 @@ static void family_fill(struct map_groove *out, const struct grid *grid) {
         out->mean_square += 2 * creal(lines->coefficient[h] * conj(lines->coefficient[h]));
 }
 
-/* What a named shape has beyond the lines that the grid resolves, which it folds back. */
-enum { FOLDS = 200 };
-struct beyond {
-    size_t first, count;
-    double complex coefficient[FOLDS];
-};
-
-static void beyond_fill(struct beyond *out, const struct map_groove *family) {
-    const struct groove_shape_fit *fit = &family->fit;
-    *out = (struct beyond){.first = family->lines.count + 1};
-    if (fit->shape == GROOVE_HARMONICS || fit->shape == GROOVE_SINE || !(fit->depth > 0) ||
-        family->lines.count == GROOVE_LINES_MOST)
-        return;
-    for (size_t h = out->first; out->count < FOLDS; h++) {
-        const double complex unit = groove_shape_coefficient(fit->shape, h);
-        const double phase = 2 * M_PI * (double)h * fit->at;
-        out->coefficient[out->count++] =
-            fit->depth * (fit->reversed ? conj(unit) : unit) * (cos(phase) + sin(phase) * I);
-    }
-}
-
-static double beyond_height(const struct beyond *beyond, const struct groove_lines *lines, double x,
-                            double y) {
-    const double t = 2 * M_PI * (lines->mx * x + lines->my * y);
-    const double complex turn = cos(t) + sin(t) * I;
-    const double start = (double)beyond->first * t;
-    double complex sum = 0;
-    for (size_t h = beyond->count; h-- > 0;)
-        sum = sum * turn + beyond->coefficient[h];
-    return beyond->count > 0 ? 2 * creal(sum * (cos(start) + sin(start) * I)) : 0;
-}
-
 static void family_take(const struct map_groove *family, const struct grid *grid, double *z) {
-    const double nx = (double)grid->nx, ny = (double)grid->ny;
-    struct beyond beyond;
-    beyond_fill(&beyond, family);
-    for (size_t j = 0; j < grid->ny; j++)
-        for (size_t i = 0; i < grid->nx; i++) {
-            const double x = ((double)i + 0.5) / nx - 0.5, y = ((double)j + 0.5) / ny - 0.5;
-            z[j * grid->nx + i] -= groove_lines_height(&family->lines, x, y) +
-                                   beyond_height(&beyond, &family->lines, x, y);
-        }
+    groove_family_add(&family->lines, &family->fit, grid, -1, 0, z);
 }
 
 /* Fits the family of a candidate, and takes it out of the heights. */
@@ -227,8 +186,10 @@ static int family_find(struct map_groove *out, struct search *search,
     const double part = 1 / (double)divisor_of(search, &map, mx, my);
     groove_lines_fit(&out->lines, &map, search->background, part * mx, part * my);
     groove_shape_find(&out->fit, &out->lines);
+    if (out->fit.p_value < GROOVE_SHAPE_LEVEL)
+        groove_shape_forget(&out->fit, &out->lines);
     family_fill(out, search->map->grid);
-    family_take(out, search->map->grid, search->z);
+    groove_family_add(&out->lines, &out->fit, search->map->grid, -1, GROOVE_JUMP, search->z);
     return search_measure(search, &LAY_NONE, err);
 }
 
@@ -277,7 +238,28 @@ static double mean_square_of(const struct measured_map *map) {
     return average_value(&squares) - average_value(&mean) * average_value(&mean);
 }
 
-/* Puts back the other families, fits one anew beside the final background, and judges it. */
+/* Estimates all families beside each other and beside what is left: each anew beside the last
+ * estimates of the others. */
+static int estimate(struct map_grooves *grooves, struct search *search, struct lay *lay,
+                    struct error *err) {
+    enum { ROUNDS = 2 };
+    const struct grid *grid = search->map->grid;
+    int status = 0;
+    for (int round = 0; round < ROUNDS && status == 0; round++) {
+        status = find_lay(lay, search, err);
+        if (status == 0)
+            status = search_measure(search, lay, err);
+        for (size_t f = 0; f < grooves->families && status == 0; f++) {
+            struct map_groove *family = &grooves->family[f];
+            status = groove_family_estimate(&family->lines, &family->fit, grid, search->background,
+                                            lay, search->z, err);
+            family_fill(family, grid);
+        }
+    }
+    return status == 0 ? search_measure(search, lay, err) : status;
+}
+
+/* Judges each family beside what is left of all, to which it is added. */
 static int judge(struct map_grooves *out, struct search *search, double *windowed,
                  struct error *err) {
     const struct grid *grid = search->map->grid;
@@ -292,17 +274,11 @@ static int judge(struct map_grooves *out, struct search *search, double *windowe
     for (size_t f = 0; f < out->families && status == 0; f++) {
         struct map_groove family = out->family[f];
         const struct measured_map one = {grid, z, BOUNDARY_OPEN};
-        memcpy(z, search->map->z, points * sizeof *z);
-        for (size_t other = 0; other < out->families; other++)
-            if (other != f)
-                family_take(&out->family[other], grid, z);
+        memcpy(z, search->z, points * sizeof *z);
+        groove_family_add(&family.lines, &family.fit, grid, 1, GROOVE_JUMP, z);
         status = windowed_heights(&one, windowed, &power, err);
-        if (status != 0)
-            break;
-        groove_lines_fit(&family.lines, &map, search->background, family.lines.mx, family.lines.my);
-        family_fill(&family, grid);
-        groove_shape_find(&family.fit, &family.lines);
-        if (family.mean_square > SHARE_LEAST * total && family_stands(&family, search, &map))
+        if (status == 0 && family.mean_square > SHARE_LEAST * total &&
+            family_stands(&family, search, &map))
             out->family[kept++] = family;
     }
     out->families = kept;
@@ -327,9 +303,7 @@ int map_grooves_find(struct map_grooves *out, const struct measured_map *map, st
         out->families++;
     }
     if (status == 0 && out->families > 0)
-        status = find_lay(&lay, &search, err);
-    if (status == 0 && out->families > 0)
-        status = search_measure(&search, &lay, err);
+        status = estimate(out, &search, &lay, err);
     if (status == 0 && out->families > 0) {
         double *windowed = array_create(grid_points(map->grid), sizeof *windowed);
         status = windowed != NULL

@@ -1,8 +1,8 @@
-/* Periodic grooves in a map, as machining leaves them: FORMULAS.md, F18.72 to F18.75. */
+/* Periodic grooves in a map, as machining leaves them: FORMULAS.md, F18.72 to F18.79. */
 #ifndef RUGO_CORE_STATISTICS_GROOVES_MAP_GROOVES_H
 #define RUGO_CORE_STATISTICS_GROOVES_MAP_GROOVES_H
 
-#include "core/statistics/grooves/groove_lines.h"
+#include "core/statistics/grooves/groove_family.h"
 #include "core/statistics/measured_map.h"
 
 #define MAP_GROOVES_LEVEL 1e-3 /* of the test, of all waves of a map together */
@@ -25,7 +25,7 @@ struct map_grooves {
 };
 
 /* Seeks lines that a random face, with or without a lay, would not have. Grooves of less than
- * MAP_GROOVES_PERIODS periods across the map are not seen. Memory: four maps. ERROR_MEMORY, or
+ * MAP_GROOVES_PERIODS periods across the map are not seen. Memory: eight maps. ERROR_MEMORY, or
  * ERROR_INPUT for a map of holes alone. */
 int map_grooves_find(struct map_grooves *out, const struct measured_map *map, struct error *err);
 /* Takes the mean profiles of all families out of heights on the grid of the map. */

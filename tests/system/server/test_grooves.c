@@ -1,6 +1,7 @@
 /* Protects: grooves from a study to a map and back, by the commands: studies of both kinds run with
  * them, by one worker and by two to the same bytes; a surface of the study is found to have the
- * grooves that were asked for; a study like it names them and how to take them out. */
+ * grooves that were asked for; a study like it makes them again, and one that holds it names how to
+ * take them out. */
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include <stdio.h>
@@ -61,8 +62,8 @@ static void what_is_made_is_found(void **state) {
         run_rugo("characterise", (const char *[]){"characterise", "map.npy", "--dx", "0.25", NULL}),
         0);
     expect_in("characterise.out", "Grooves: every 3.2");
-    expect_in("characterise.out", "at 90.0");
-    expect_in("characterise.out", "arcs of radius 6.");
+    expect_in("characterise.out", "90.0");
+    expect_in("characterise.out", "radius 6.4");
     expect_in("characterise.out", "without its grooves");
     assert_int_equal(run_rugo("characterise", (const char *[]){"characterise", "map.npy", "--dx",
                                                                "0.25", "--degroove", NULL}),
@@ -71,21 +72,44 @@ static void what_is_made_is_found(void **state) {
     assert_null(strstr(text, "Grooves:"));
     assert_non_null(strstr(text, "degroove: every 3.2"));
     free(text);
+}
+
+/* The study that is written for a map makes surfaces in which the same grooves are found. */
+static void like_makes_them(void **state) {
+    (void)state;
+    write_text("study.json",
+               "{\"name\":\"s\",\"kind\":\"statistics\",\"seed\":4,\"realisations\":8," SURFACE
+               "}");
+    assert_int_equal(
+        run_rugo("generate", (const char *[]){"generate", "study.json", "-o", "map.npy", NULL}), 0);
+    assert_int_equal(run_rugo("characterise", (const char *[]){"characterise", "map.npy", "--dx",
+                                                               "0.25", "--format", "study", NULL}),
+                     0);
+    expect_in("characterise.out", "\"grooves\"");
+    expect_in("characterise.out", "grooves: every 3.2 at 90 degrees, 0.2 deep");
+    assert_int_equal(rename("characterise.out", "again.json"), 0);
+    assert_int_equal(
+        run_rugo("generate", (const char *[]){"generate", "again.json", "-o", "again.npy", NULL}),
+        0);
+    /* lengths are in lambda_s of the law that was fitted, 32/33 of the map's unit */
+    assert_int_equal(run_rugo("characterise", (const char *[]){"characterise", "again.npy", "--dx",
+                                                               "0.2578125", NULL}),
+                     0);
+    expect_in("characterise.out", "Grooves: every 3.300");
+    expect_in("characterise.out", "0.2062"); /* 0.2 of the unit */
+    expect_in("characterise.out", "radius 6.6");
     write_text("like.json",
                "{\"name\":\"l\",\"kind\":\"statistics\",\"realisations\":2,\"surface\":"
-               "{\"like\":{\"file\":\"map.npy\",\"dx\":\"0.25\"}}}");
+               "{\"like\":{\"file\":\"map.npy\",\"dx\":\"0.25\",\"hold\":true}}}");
     assert_int_not_equal(run_rugo("check", (const char *[]){"check", "like.json", NULL}), 0);
     expect_in("check.err", "give \"degroove\": true");
-    write_text("like.json",
-               "{\"name\":\"l\",\"kind\":\"statistics\",\"realisations\":2,\"surface\":"
-               "{\"like\":{\"file\":\"map.npy\",\"dx\":\"0.25\",\"degroove\":true}}}");
-    assert_int_equal(run_rugo("check", (const char *[]){"check", "like.json", NULL}), 0);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(studies_run),
         cmocka_unit_test(what_is_made_is_found),
+        cmocka_unit_test(like_makes_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

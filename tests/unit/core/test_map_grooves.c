@@ -86,11 +86,11 @@ static struct map_grooves find(const double *z, enum boundary boundary) {
     return out;
 }
 
-/* 95 % intervals hold the truth in 92 to 98 % of 120 sines of depth 1, whose errors are those of
- * the random part: 110 to 118 of them, and two less or more by what 120 draws scatter. */
+/* 95 % intervals hold the truth in 38 of 40 sines of depth 1, less three deviations of such a count
+ * (tests/validation/core/test_groove_errors.c has more). */
 static void errors_hold(void **state) {
     (void)state;
-    enum { MAPS = 120, LOW = 108, HIGH = 119 };
+    enum { MAPS = 40, LOW = 34 };
     struct maker maker = maker_create(1);
     int period = 0, angle = 0, depth = 0, found = 0;
     for (uint64_t r = 0; r < MAPS; r++) {
@@ -109,9 +109,9 @@ static void errors_hold(void **state) {
     print_message("[   NOTE   ] of %d maps %d found; period, angle, depth within %d, %d, %d\n",
                   MAPS, found, period, angle, depth);
     assert_true(found == MAPS);
-    assert_true(period >= LOW && period <= HIGH);
-    assert_true(angle >= LOW && angle <= HIGH);
-    assert_true(depth >= LOW && depth <= HIGH);
+    assert_true(period >= LOW);
+    assert_true(angle >= LOW);
+    assert_true(depth >= LOW);
     maker_destroy(&maker);
 }
 

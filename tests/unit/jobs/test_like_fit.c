@@ -272,7 +272,7 @@ static void grooves(void **state) {
     for (size_t j = 0; j < map.grid.ny; j++) /* the same in every row: their grooves do not end */
         for (size_t i = 0; i < map.grid.nx; i++)
             map.z[j * map.grid.nx + i] = sin(0.8 * (double)j) + sin(0.21 * (double)(j * j));
-    refused(&map, "the map has grooves");
+    refused(&map, "as those of grooves that do not end");
     height_map_clear(&map);
 }
 

@@ -1,0 +1,24 @@
+/* Grooves of a map in a study of surfaces like it (FORMULAS.md, F18.80): the law is that of the map
+ * without them, and /surface/grooves makes them. */
+#ifndef RUGO_JOBS_LIKE_LIKE_GROOVES_H
+#define RUGO_JOBS_LIKE_LIKE_GROOVES_H
+
+#include "core/statistics/grooves/map_grooves.h"
+#include <cjson/cJSON.h>
+
+enum { LIKE_GROOVES_TEXT = 400 };
+struct like_grooves {
+    struct map_grooves found;      /* no families: there are none */
+    double depth_error;            /* standard error of the depth, over the depth */
+    char words[LIKE_GROOVES_TEXT]; /* what was found, and what is made */
+};
+
+/* Writes the found grooves into the object "surface" of a study whose spectrum, scale and cell are
+ * there, with whole numbers of periods along its sides, and fills the rest of `grooves`. map: of
+ * the heights; wavelength: lambda_s in its unit, which has the name `unit`. ERROR_INPUT: two
+ * families that are not mirror images of each other on the cell, or what surface_case_read()
+ * refuses; ERROR_MEMORY. */
+int like_grooves_put(cJSON *surface, struct like_grooves *grooves, const struct grid *map,
+                     double wavelength, const char *unit, struct error *err);
+
+#endif
