@@ -368,7 +368,9 @@ static int raise_load(struct full *f, double goal, struct newton_end *end,
  * of a load, at which a drag counts as none. */
 static const double DRAG_FIRST = 0.02, DRAG_MOST = 10, DRAG_RISE = 4, DRAG_FALL = 0.25;
 static const double DRAG_TOLERANCE = 1e-5, DRAG_SMALL = 1e-2, DRAG_REST = 1e-4;
-enum { DRAG_ROUNDS = 200 };
+/* Of surfaces: iterations of Newton's method of a round, the second where the face meets itself,
+ * and rounds after one that failed in which its drag, and up to twice as much, is not tried. */
+enum { DRAG_ROUNDS = 200, ROUND_MOST = 10, ROUND_MOST_MET = 30, DRAG_HELD = 6 };
 
 static double largest_move(const struct newton *n) {
     double most = 0;
@@ -387,12 +389,16 @@ static int drag_on(struct full *f, double load, double drag, double tolerance, d
                    struct newton_end *end, struct full_report *report, struct error *err) {
     struct newton *n = &f->newton;
     double usual = n->tolerance;
+    size_t most = n->max_iterations;
+    if (f->mesh->dimension == 3)
+        n->max_iterations = n->self.count > 0 ? ROUND_MOST_MET : ROUND_MOST;
     n->drag = drag;
     n->tolerance = tolerance;
     n->evaluated = false;
     n->limit = full_limit_left(&f->options.limit, f->used);
     int status = newton_solve(n, load, end, err);
     n->tolerance = usual;
+    n->max_iterations = most;
     count_work(f, end, report);
     *change = status == 0 ? face_stretch_change(f->mesh, n->u, f->held.u) : 0;
     if (*change > FACE_CHANGE_MOST)
@@ -400,11 +406,21 @@ static int drag_on(struct full *f, double load, double drag, double tolerance, d
     return status;
 }
 
+/* Returns the drag after a round that changed the face by so much, the `since`th after one that
+ * failed. A surface does not soon try again what failed, as that takes most of its iterations. */
+static double less_drag(const struct full *f, double drag, double change, double failed,
+                        int since) {
+    double less = drag / (8 * change < FACE_CHANGE_MOST   ? DRAG_RISE
+                          : 2 * change < FACE_CHANGE_MOST ? 2
+                                                          : 1);
+    return f->mesh->dimension == 3 && since < DRAG_HELD ? fmax(less, 2 * failed) : less;
+}
+
 /* The rounds of a jump: implicit steps of motion against drag, whose end is at rest. */
 static int drag_rounds(struct full *f, double load, struct newton_end *end,
                        struct full_report *report, struct error *err) {
-    double drag = DRAG_FIRST, tried = INFINITY, dragged = INFINITY, change;
-    int status = ERROR_NUMERIC;
+    double drag = DRAG_FIRST, tried = INFINITY, dragged = INFINITY, failed = 0, change;
+    int status = ERROR_NUMERIC, since = 0;
     for (int round = 0; round < DRAG_ROUNDS && drag < DRAG_MOST; round++) {
         bool exact = dragged < DRAG_REST;
         double tolerance = exact ? f->newton.tolerance : DRAG_TOLERANCE;
@@ -413,6 +429,8 @@ static int drag_rounds(struct full *f, double load, struct newton_end *end,
             return status;
         if (status != 0) {
             state_give(&f->held, &f->newton);
+            failed = drag;
+            since = 0;
             drag *= DRAG_RISE;
             continue;
         }
@@ -420,7 +438,7 @@ static int drag_rounds(struct full *f, double load, struct newton_end *end,
         hold(f);
         if (exact && dragged <= f->newton.tolerance)
             return 0;
-        drag /= 8 * change < FACE_CHANGE_MOST ? DRAG_RISE : 2 * change < FACE_CHANGE_MOST ? 2 : 1;
+        drag = less_drag(f, drag, change, failed, ++since);
         if (dragged > DRAG_SMALL || dragged > tried * DRAG_FALL)
             continue;
         status = drag_on(f, load, 0, f->newton.tolerance, &change, end, report, err);

@@ -1,4 +1,5 @@
-/* Contact of the rough face of a profile with itself, where it overhangs and folds (F14.10).
+/* Contact of the rough face with itself, where it overhangs and folds: of profiles as follows
+ * (F14.10), of surfaces as in self_contact_surface.h (F14.11).
  *
  * Nodes on the left flank of a fold meet the right one, which is smoothed: the quadratic B-spline
  * of its nodes, a curve without corners that touches the middles of the cells. Its arc around node
@@ -21,37 +22,12 @@
 #ifndef RUGO_CORE_FULL_SELF_CONTACT_H
 #define RUGO_CORE_FULL_SELF_CONTACT_H
 
-#include "core/full/tangent.h"
-
-enum { ARC_NODES = 3 };
-
-struct self_pair {
-    size_t node, arc;  /* of the face: the node, and that around which the arc is */
-    bool lips;         /* both are lips on the flat */
-    double at;         /* t, as all below at the displacements last evaluated */
-    double normal[2];  /* n */
-    double along[2];   /* c'(t) */
-    double bend;       /* n . c''(t) */
-    double multiplier; /* q */
-    double gap, force;
-};
-
-struct self_contact {
-    const struct mesh *mesh; /* borrowed */
-    size_t count;
-    struct self_pair *pair; /* owned, as all below: those with arcs and then lips, each at most one
-                             * a node and in their order */
-    struct self_pair *old;  /* scratch of the search */
-    struct tangent_link *link; /* of pairs with a force */
-    size_t *bin, *next;        /* of the search: arcs by their position along x */
-    double *turning;           /* angle of a segment over that of the first, twice around */
-};
+#include "core/full/self_pair.h"
 
 int self_contact_create(struct self_contact *out, const struct mesh *mesh, struct error *err);
 void self_contact_clear(struct self_contact *self);
 double self_contact_bytes(const struct mesh *mesh);
 
-enum { PAIRS_A_NODE = 2 };
 /* Find the pairs at displacements u, and how deep the deepest node is in the face. active: by node
  * of the face, whether it touches the flat. Nodes that had a pair before keep its multiplier. */
 void self_contact_search(struct self_contact *self, const double *u, const bool *active);
@@ -67,7 +43,8 @@ double self_contact_renew(struct self_contact *self, const double *u, const bool
 /* What a face does to itself. */
 struct self_measure {
     size_t nodes;       /* that bear a force */
-    double length;      /* of the face at these nodes, as it stands: on one flank */
+    double length;      /* of the face at these nodes, as it stands: on one flank; of surfaces its
+                           area */
     double force;       /* sum */
     double penetration; /* of the deepest node in the smoothed face */
 };

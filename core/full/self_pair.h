@@ -1,0 +1,36 @@
+/* The pairs of a face that meets itself, as contact of profiles (self_contact.h) and of surfaces
+ * (self_contact_surface.h) keep them. Private to core/full. */
+#ifndef RUGO_CORE_FULL_SELF_PAIR_H
+#define RUGO_CORE_FULL_SELF_PAIR_H
+
+#include "core/full/tangent.h"
+
+enum { PAIRS_A_NODE = 2 };
+enum { ARC_NODES = 3 };
+
+struct self_pair {
+    size_t node, arc;  /* of the face: the node, and that around which the arc is */
+    bool lips;         /* both are lips on the flat */
+    double across;     /* of surfaces: t along y, as at along x (self_contact_surface.h) */
+    double at;         /* t, as all below at the displacements last evaluated */
+    double normal[2];  /* n */
+    double along[2];   /* c'(t) */
+    double bend;       /* n . c''(t) */
+    double multiplier; /* q */
+    double gap, force;
+};
+
+struct self_contact {
+    const struct mesh *mesh; /* borrowed */
+    size_t count;
+    struct self_pair *pair; /* owned, as all below: those with arcs and then lips, each at most one
+                             * a node and in their order */
+    struct self_pair *old;  /* scratch of the search */
+    struct tangent_link *link;   /* of pairs with a force */
+    struct tangent_patch *patch; /* in their stead, of surfaces */
+    size_t *bin, *next;          /* of the search: arcs by their position along x */
+    double *turning;             /* angle of a segment over that of the first, twice around; of
+                                    surfaces the middles of patches */
+};
+
+#endif
