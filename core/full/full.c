@@ -328,17 +328,25 @@ static int step_to(void *solver, double load, double *change, struct error *err)
     return status;
 }
 
+/* Of surfaces: iterations of Newton's method of a round under drag, the second where the face meets
+ * itself, and rounds after one that failed in which its drag is not tried again. */
+enum { ROUND_MOST = 10, ROUND_MOST_MET = 30, DRAG_HELD = 6 };
+
 static int drag(void *solver, double load, double drag, double tolerance, struct dragged *out,
                 struct error *err) {
     const struct loading *loading = solver;
     struct full *f = loading->full;
     struct newton *n = &f->newton;
     double usual = n->tolerance;
+    size_t most = n->max_iterations;
+    if (f->mesh->dimension == 3)
+        n->max_iterations = n->self.count > 0 ? ROUND_MOST_MET : ROUND_MOST;
     n->drag = drag;
     n->tolerance = tolerance;
     n->evaluated = false;
     int status = solve(loading, load, f->held.u, &out->change, err);
     n->tolerance = usual;
+    n->max_iterations = most;
     out->force = mesh_largest_move(f->mesh, n->u, n->anchor) * drag / load;
     return status;
 }
@@ -395,7 +403,8 @@ static int raise_load(const struct loading *loading, double goal, struct error *
                                .solver = (void *)loading,
                                .least_step = f->options.least_step,
                                .tolerance = f->options.tolerance,
-                               .careful = f->careful};
+                               .careful = f->careful,
+                               .spared = f->mesh->dimension == 3 ? DRAG_HELD : 0};
     int status = load_steps_follow(&steps, f->load, goal, err);
     loading->report->cuts += steps.cuts;
     loading->report->jumps += steps.jumps;

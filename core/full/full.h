@@ -9,10 +9,11 @@
  * stretched sideways. Mean gap and stiffness are of the face under load (F14.6), unless strains are
  * small. No load step changes the area of a cell of the face by more than a quarter. So one load
  * and many lead to the same solution, or fail at the same load to within a few smallest steps.
- * Where this ends, a profile goes on with overhangs, contact of the face with itself
- * (self_contact.h) and jumps (F14.10), which a drag leads to the equilibrium beyond. A surface, and
- * small strains, have no equilibrium there. A solver belongs to one thread. The elastic state has
- * no history, but the iteration for each load starts from the load before. */
+ * Where this ends, the face goes on with overhangs, contact with itself (self_contact.h) and jumps
+ * (F14.10, F14.11), which a drag leads to the equilibrium beyond; linear equations of surfaces then
+ * take up to 250 MB more (gmres_lengthen). Small strains have no equilibrium there. A solver
+ * belongs to one thread. The elastic state has no history, but the iteration for each load starts
+ * from the load before. */
 #ifndef RUGO_CORE_FULL_FULL_H
 #define RUGO_CORE_FULL_FULL_H
 
@@ -88,7 +89,7 @@ double full_bytes(const struct grid *grid, const struct block *block,
  * NULL, the initial value, never stops. */
 void full_set_stop(struct full *full, int (*stop)(void *context), void *context);
 
-/* Lets faces of profiles overhang and meet themselves where they do not go on otherwise; the
+/* Lets faces overhang and meet themselves where they do not go on otherwise; the
  * initial value is true. */
 void full_set_overhangs(struct full *full, bool allowed);
 

@@ -13,11 +13,21 @@ static const double DRAG_FIRST = 0.02, DRAG_MOST = 10, DRAG_RISE = 4, DRAG_FALL 
 static const double DRAG_TOLERANCE = 1e-5, DRAG_SMALL = 1e-2, DRAG_REST = 1e-4;
 enum { DRAG_ROUNDS = 200 };
 
+/* Returns the drag after a round that changed the face by so much, the `since`th after one that
+ * failed. */
+static double less_drag(const struct load_steps *s, double drag, double change, double failed,
+                        int since) {
+    double less = drag / (8 * change < FACE_CHANGE_MOST   ? DRAG_RISE
+                          : 2 * change < FACE_CHANGE_MOST ? 2
+                                                          : 1);
+    return since < s->spared ? fmax(less, 2 * failed) : less;
+}
+
 /* The rounds of a jump: implicit steps of motion against drag, whose end is at rest. */
 static int drag_rounds(const struct load_steps *s, double load, struct error *err) {
-    double drag = DRAG_FIRST, tried = INFINITY, force = INFINITY;
+    double drag = DRAG_FIRST, tried = INFINITY, force = INFINITY, failed = 0;
     struct dragged now = {0};
-    int status = ERROR_NUMERIC;
+    int status = ERROR_NUMERIC, since = 0;
     for (int round = 0; round < DRAG_ROUNDS && drag < DRAG_MOST; round++) {
         bool exact = force < DRAG_REST;
         double tolerance = exact ? s->tolerance : DRAG_TOLERANCE;
@@ -26,6 +36,8 @@ static int drag_rounds(const struct load_steps *s, double load, struct error *er
             return status;
         if (status != 0) {
             s->by->fall(s->solver);
+            failed = drag;
+            since = 0;
             drag *= DRAG_RISE;
             continue;
         }
@@ -33,9 +45,7 @@ static int drag_rounds(const struct load_steps *s, double load, struct error *er
         s->by->hold(s->solver);
         if (exact && force <= s->tolerance)
             return 0;
-        drag /= 8 * now.change < FACE_CHANGE_MOST   ? DRAG_RISE
-                : 2 * now.change < FACE_CHANGE_MOST ? 2
-                                                    : 1;
+        drag = less_drag(s, drag, now.change, failed, ++since);
         if (force > DRAG_SMALL || force > tried * DRAG_FALL)
             continue;
         status = s->by->drag(s->solver, load, 0, s->tolerance, &now, err);

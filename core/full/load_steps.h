@@ -42,6 +42,9 @@ struct load_steps {
     double least_step; /* smallest step over the whole change; smaller ones fail */
     double tolerance;  /* the solver's */
     bool careful;      /* small steps from the first one on, and jumps */
+    /* So many rounds after one that failed its drag, and up to twice as much, is not tried again,
+     * where failures take most of the iterations. */
+    int spared;
     /* Results: */
     double reached;     /* the last load */
     double failed;      /* step that failed */

@@ -70,18 +70,22 @@ static bool factorable(const struct mesh *mesh) {
 
 int newton_allow_overhangs(struct newton *n, struct error *err) {
     const struct mesh *mesh = n->mesh;
+    bool able = mesh->dimension == 3 ? n->solver == SOLVER_ITERATED : factorable(mesh);
     int status = 0;
-    if (!factorable(mesh))
-        return error_set(err, ERROR_INPUT,
-                         "a face of %zu x %zu nodes may not overhang: contact of a face with "
-                         "itself is that of profiles of up to 500000 degrees of freedom",
-                         mesh->level[0].nx, mesh->level[0].ny);
+    if (!able)
+        return error_set(
+            err, ERROR_INPUT,
+            "a face of %zu x %zu nodes may not overhang: profiles do that have up to 500000 "
+            "degrees of freedom, and surfaces whose equations are iterated",
+            mesh->level[0].nx, mesh->level[0].ny);
     if (n->anchor == NULL)
         n->anchor = array_create(mesh_degrees_of_freedom(mesh), sizeof *n->anchor);
     if (n->anchor == NULL)
         return error_memory(err, mesh_degrees_of_freedom(mesh) * sizeof *n->anchor,
                             "displacements");
-    if (n->self.pair == NULL)
+    if (!factorable(mesh))
+        status = gmres_lengthen(n->gmres, err);
+    if (status == 0 && n->self.pair == NULL)
         status = self_contact_create(&n->self, mesh, err);
     n->overhangs = status == 0;
     return status;
@@ -200,6 +204,12 @@ static bool active_met(const struct newton *n, struct set_history *history) {
 
 /* --- equilibrium --- */
 
+/* Returns whether the first node of the far side does not move sideways: a factorisation holds it.
+ * Drag holds the block where equations are iterated. */
+static bool is_pinned(const struct newton *n) {
+    return n->drag > 0 && n->factored;
+}
+
 /* Computes out-of-balance forces, outer less inner, in the layout of gmres_solve; they are 0 at
  * active nodes, where the flat carries the difference. Returns the largest. */
 static double residual(const struct newton *n, double pressure, double *out) {
@@ -218,7 +228,7 @@ static double residual(const struct newton *n, double pressure, double *out) {
         if (n->active[node])
             out[mesh_vertical(mesh, node)] = 0;
     out[mesh_vertical(mesh, far_side)] = sum_value(&far_force);
-    for (int k = 0; n->drag > 0 && k + 1 < mesh->dimension; k++)
+    for (int k = 0; is_pinned(n) && k + 1 < mesh->dimension; k++)
         out[far_side * (size_t)mesh->dimension + (size_t)k] = 0;
     for (size_t f = 0; f < newton_unknowns(n); f++)
         largest = fmax(largest, fabs(out[f]));
@@ -238,7 +248,7 @@ static void measure(const struct newton *n, struct newton_end *end) {
 
 bool newton_evaluate(struct newton *n) {
     n->evaluated = tangent_evaluate(n->mesh, &n->material, n->u, NULL, n->force, n->tangent);
-    n->tangent->links = 0;
+    n->tangent->links = n->tangent->patches = 0;
     if (n->evaluated && n->drag > 0)
         tangent_add_drag(n->tangent, n->drag, n->u, n->anchor, n->force);
     if (n->evaluated && n->overhangs)
@@ -260,7 +270,9 @@ static struct linear_system system_of(const struct newton *n, struct factorisati
     return (struct linear_system){.tangent = n->tangent,
                                   .active = n->active,
                                   .factorisation = factorisation,
-                                  .pinned = n->drag > 0,
+                                  .pinned = is_pinned(n),
+                                  .drag = factorisation == NULL ? n->drag : 0,
+                                  .lengthy = n->overhangs,
                                   .most = full_limit_linear(&n->limit, used_by(n, end))};
 }
 
@@ -417,7 +429,7 @@ static int renew(struct newton *n, double largest, int *renewals, bool *settled,
 /* Prepares forces, gaps and the active set. */
 static int begin(struct newton *n, double pressure, struct error *err) {
     double load = pressure * newton_node_area(n) * (double)n->mesh->face;
-    n->factored = n->solver == SOLVER_FACTORED || n->drag > 0;
+    n->factored = n->solver == SOLVER_FACTORED || (n->drag > 0 && factorable(n->mesh));
     if (force_rounding(n) > ROUNDING_MOST * load)
         return error_set(err, ERROR_NUMERIC, "rounding makes forces up to %.2g of so light a load",
                          force_rounding(n) / load);

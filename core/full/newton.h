@@ -70,7 +70,7 @@ struct newton {
     struct self_contact self;
     /* Each displacement from the anchor (mesh_degrees_of_freedom values) is dragged by a force of
      * so many E* times the mesh's unit. 0: equilibrium. Whoever changes either sets evaluated to
-     * false. The first node of the far side then does not move sideways. */
+     * false. Of profiles the first node of the far side then does not move sideways. */
     double drag, *anchor;
     bool evaluated;          /* force and tangent belong to u */
     double *before, *change; /* newton_unknowns: scratch */
@@ -87,8 +87,8 @@ struct newton {
 int newton_create(struct newton *out, const struct mesh *mesh, const struct material *material,
                   enum gap_weighting weighting, enum equation_solver solver, struct error *err);
 
-/* Prepares a profile for overhangs and drag. From then on the face may turn from the flat, and
- * meets itself. ERROR_INPUT for a surface, or a profile with too many nodes for a factorisation. */
+/* Prepares for overhangs and drag. From then on the face may turn from the flat, and meets itself.
+ * ERROR_INPUT for a profile with too many nodes for a factorisation, or a surface with one. */
 int newton_allow_overhangs(struct newton *newton, struct error *err);
 
 size_t newton_unknowns(const struct newton *newton);

@@ -1,4 +1,5 @@
 #include "core/full/self_contact.h"
+#include "core/full/self_contact_surface.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -21,10 +22,14 @@ static const size_t NONE = SIZE_MAX;
 enum { PROJECTIONS = 20 };
 
 int self_contact_create(struct self_contact *out, const struct mesh *mesh, struct error *err) {
-    size_t face = mesh->dimension == 2 ? mesh->face : 0;
+    size_t face = mesh->face;
     *out = (struct self_contact){.mesh = mesh};
-    if (face == 0)
-        return 0;
+    if (mesh->dimension == 3) {
+        int status = self_contact_surface_create(out, err);
+        if (status != 0)
+            self_contact_clear(out);
+        return status;
+    }
     out->pair = array_create(PAIRS_A_NODE * face, sizeof *out->pair);
     out->old = array_create(PAIRS_A_NODE * face, sizeof *out->old);
     out->link = array_create(PAIRS_A_NODE * face, sizeof *out->link);
@@ -41,6 +46,7 @@ int self_contact_create(struct self_contact *out, const struct mesh *mesh, struc
 void self_contact_clear(struct self_contact *self) {
     free(self->pair);
     free(self->link);
+    free(self->patch);
     free(self->old);
     free(self->bin);
     free(self->next);
@@ -51,7 +57,7 @@ void self_contact_clear(struct self_contact *self) {
 double self_contact_bytes(const struct mesh *mesh) {
     size_t pair = 2 * sizeof(struct self_pair) + sizeof(struct tangent_link);
     size_t node = PAIRS_A_NODE * pair + 2 * sizeof(double) + 2 * sizeof(size_t);
-    return mesh->dimension == 2 ? (double)(mesh->face * node) : 0;
+    return mesh->dimension == 2 ? (double)(mesh->face * node) : self_contact_surface_bytes(mesh);
 }
 
 /* --- the curve --- */
@@ -317,6 +323,10 @@ static size_t add_pairs(struct self_contact *self, const double *u, const bool *
 
 void self_contact_search(struct self_contact *self, const double *u, const bool *active) {
     size_t before = self->count, old = 0, count = 0;
+    if (self->mesh->dimension == 3) {
+        self_contact_surface_search(self, u);
+        return;
+    }
     self->count = 0;
     if (!overhangs(self->mesh, u))
         return;
@@ -330,6 +340,8 @@ void self_contact_search(struct self_contact *self, const double *u, const bool 
 double self_contact_depth(struct self_contact *self, const double *u, const bool *active) {
     struct self_pair pair;
     double deepest = 0;
+    if (self->mesh->dimension == 3)
+        return self_contact_surface_depth(self, u);
     if (!overhangs(self->mesh, u))
         return 0;
     prepare(self, u);
@@ -432,10 +444,29 @@ static void add_shear(const struct self_contact *self, const double *u,
         }
 }
 
+/* As self_contact_evaluate, of surfaces. */
+static void evaluate_surface(struct self_contact *self, bool convex, const double *u, double *force,
+                             struct tangent *tangent) {
+    tangent->patch = self->patch;
+    tangent->patches = 0;
+    for (size_t c = 0; c < self->count; c++) {
+        struct self_pair *pair = &self->pair[c];
+        self_contact_surface_project(self->mesh, u, pair);
+        pair->force = fmax(0, pair->multiplier - STIFFNESS * pair->gap);
+        if (pair->force > 0)
+            self_contact_surface_add(self->mesh, u, STIFFNESS, convex, pair, force,
+                                     &self->patch[tangent->patches++]);
+    }
+}
+
 void self_contact_evaluate(struct self_contact *self, bool convex, const double *u, double *force,
                            struct tangent *tangent) {
     size_t links = 0;
     double by[LINK_MOST], along[LINK_MOST] = {0};
+    if (self->mesh->dimension == 3) {
+        evaluate_surface(self, convex, u, force, tangent);
+        return;
+    }
     for (size_t c = 0; c < self->count; c++) {
         struct self_pair *pair = &self->pair[c];
         if (pair->kind == SELF_LIPS)
@@ -501,10 +532,14 @@ struct self_measure self_contact_measure(struct self_contact *self, const double
         if (!(pair->force > 0))
             continue;
         out.force += pair->force;
+        out.nodes++;
+        if (mesh->dimension == 3) {
+            out.length += self_contact_surface_area(mesh, u, pair->node);
+            continue;
+        }
         struct point before = point_of(mesh, u, pair->node + mesh->face - 1),
                      here = point_of(mesh, u, pair->node + mesh->face),
                      after = point_of(mesh, u, pair->node + mesh->face + 1);
-        out.nodes++;
         out.length += (hypot(here.x - before.x, here.y - before.y) +
                        hypot(after.x - here.x, after.y - here.y)) /
                       2;

@@ -1,4 +1,5 @@
-/* Contact of the rough face of a profile with itself, where it overhangs and folds (F14.10).
+/* Contact of the rough face with itself, where it overhangs and folds: of profiles as follows
+ * (F14.10), of surfaces as in self_contact_surface.h (F14.11).
  *
  * Nodes on each flank of a fold meet the other one, which is smoothed: the quadratic B-spline of
  * its nodes, a curve without corners that touches the middles of the cells. Nodes of one flank
@@ -24,38 +25,7 @@
 #ifndef RUGO_CORE_FULL_SELF_CONTACT_H
 #define RUGO_CORE_FULL_SELF_CONTACT_H
 
-#include "core/full/tangent.h"
-
-enum { ARC_NODES = 3, PAIRS_A_NODE = 3 };
-
-/* What a pair is: a node of the left or the right flank and an arc of the other one, or two lips
- * on the flat. */
-enum self_kind { SELF_LEFT, SELF_RIGHT, SELF_LIPS, SELF_KINDS };
-struct self_pair {
-    size_t node, arc; /* of the face: the node, and that around which the arc is */
-    enum self_kind kind;
-    double at;         /* t, as all below at the displacements last evaluated */
-    double normal[2];  /* n */
-    double along[2];   /* c'(t) */
-    double bend;       /* n . c''(t) */
-    double multiplier; /* q */
-    double gap, force;
-    /* With friction: where on the curve it was at self_contact_settle, in arcs, and what it slid
-     * along since then; the force on the node along c', its multiplier, and that force then. */
-    double start, slip, shear, shear_multiplier, shear_before;
-};
-
-struct self_contact {
-    const struct mesh *mesh; /* borrowed */
-    double friction;         /* coefficient; 0 where created */
-    size_t count;
-    struct self_pair *pair; /* owned, as all below: by kind, and of each kind at most one a node, in
-                             * their order */
-    struct self_pair *old;  /* scratch of the search */
-    struct tangent_link *link; /* of pairs with a force */
-    size_t *bin, *next;        /* of the search: arcs by their position along x */
-    double *turning;           /* angle of a segment over that of the first, twice around */
-};
+#include "core/full/self_pair.h"
 
 int self_contact_create(struct self_contact *out, const struct mesh *mesh, struct error *err);
 void self_contact_clear(struct self_contact *self);
@@ -81,7 +51,7 @@ double self_contact_dissipation(const struct self_contact *self);
 /* What a face does to itself. */
 struct self_measure {
     size_t nodes;       /* that bear a force */
-    double length;      /* of the face at these nodes, as it stands */
+    double length;      /* of the face at these nodes, as it stands; of surfaces its area */
     double force;       /* sum */
     double penetration; /* of the deepest node in the smoothed face */
 };

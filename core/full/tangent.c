@@ -118,8 +118,23 @@ WIDE_VECTORS static void apply_stencil(const struct tangent *tangent, const doub
         apply(3, tangent, x, y);
 }
 
+static void apply_patch(const struct tangent_patch *patch, const double *x, double *y) {
+    double by[PATCH_VECTORS] = {0}, factor[PATCH_VECTORS] = {0};
+    for (size_t v = 0; v < PATCH_VECTORS; v++)
+        for (size_t a = 0; a < 3 * (1 + PATCH_NODES); a++)
+            by[v] += patch->vector[v][a] * x[3 * patch->node[a / 3] + a % 3];
+    for (size_t v = 0; v < PATCH_VECTORS; v++)
+        for (size_t w = 0; w < PATCH_VECTORS; w++)
+            factor[v] += patch->matrix[v][w] * by[w];
+    for (size_t v = 0; v < PATCH_VECTORS; v++)
+        for (size_t a = 0; a < 3 * (1 + PATCH_NODES); a++)
+            y[3 * patch->node[a / 3] + a % 3] += patch->vector[v][a] * factor[v];
+}
+
 void tangent_apply(const struct tangent *tangent, const double *x, double *y) {
     apply_stencil(tangent, x, y);
+    for (size_t p = 0; p < tangent->patches; p++)
+        apply_patch(&tangent->patch[p], x, y);
     for (size_t l = 0; l < tangent->links; l++) {
         const struct tangent_link *link = &tangent->link[l];
         for (int i = 0; i < LINK_MOST; i++)

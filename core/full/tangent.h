@@ -16,6 +16,15 @@ struct tangent_link {
     double stiffness[LINK_MOST][LINK_MOST];
 };
 
+/* As a link, between a node and the nine of a patch of a surface (self_contact_surface.h): V^T C V
+ * with the vectors V, one a row, of three values a node, and the symmetric matrix C. */
+enum { PATCH_NODES = 9, PATCH_VECTORS = 5 };
+struct tangent_patch {
+    size_t node[1 + PATCH_NODES];
+    double vector[PATCH_VECTORS][3 * (1 + PATCH_NODES)];
+    double matrix[PATCH_VECTORS][PATCH_VECTORS];
+};
+
 /* values[((node*slots + slot)*d + i)*d + j]: force i of the node by displacement j of its
  * neighbour in the slot. The conditions on the far side are not applied here but in gmres.c and
  * factorisation.c. */
@@ -25,6 +34,8 @@ struct tangent {
     double *values;          /* owned */
     const struct tangent_link *link; /* borrowed */
     size_t links;
+    const struct tangent_patch *patch; /* borrowed; not in factorisations */
+    size_t patches;
     struct volumetric
         *volumetric; /* owned: the volumetric part apart, which values hold too; or NULL */
 };

@@ -111,6 +111,7 @@ int friction_create(struct friction **out, const struct grid *grid, const struct
     status = full_create(&f->full, grid, block, options, err);
     if (status == 0) {
         f->mesh = full_mesh(f->full);
+        full_set_overhangs(f->full, f->mesh->dimension == 2);
         f->face = f->mesh->face;
         f->sideways = (size_t)f->mesh->dimension - 1;
         status = friction_newton_create(&f->newton, f->mesh, &material, block->weighting,

@@ -13,8 +13,8 @@ static double weight_symbol(size_t mode, size_t n) {
     return (2 + cos(2 * PI * (double)mode / (double)n)) / 3;
 }
 
-static void fill_symbols(struct face_solver *s, const struct mesh *mesh,
-                         const struct preconditioner *preconditioner) {
+void face_solver_renew(struct face_solver *s, const struct mesh *mesh,
+                       const struct preconditioner *preconditioner) {
     const double *compliance = preconditioner_compliance(preconditioner);
     size_t nx = mesh->level[0].nx, ny = mesh->level[0].ny;
     for (size_t k = 0; k < level_waves(&mesh->level[0]); k++) {
@@ -46,7 +46,7 @@ int face_solver_create(struct face_solver *out, const struct mesh *mesh,
             status = error_memory(err, waves * sizeof(double), "the contact forces of the face");
     }
     if (status == 0)
-        fill_symbols(out, mesh, preconditioner);
+        face_solver_renew(out, mesh, preconditioner);
     else
         face_solver_clear(out);
     return status;

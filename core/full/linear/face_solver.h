@@ -18,6 +18,9 @@ struct face_solver {
 int face_solver_create(struct face_solver *out, const struct mesh *mesh,
                        const struct preconditioner *preconditioner, enum gap_weighting weighting,
                        struct error *err);
+/* Takes the compliance of the preconditioner anew, after it has changed. */
+void face_solver_renew(struct face_solver *solver, const struct mesh *mesh,
+                       const struct preconditioner *preconditioner);
 void face_solver_clear(struct face_solver *solver);
 
 /* Applies the gap weighting (F10.5) to values at the face's nodes; in and out may be the same. */

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BASIS = HESSENBERG_MOST, RESTARTS = 10, LANES = 8 };
+enum { BASIS = 24, RESTARTS = 10, LANES = 8 };
 _Static_assert((int)BASIS *(int)RESTARTS == (int)LINEAR_ITERATIONS_MOST, "another most");
 /* A restart that leaves more than this part of the residual is the last one. */
 static const double STALLED = 0.5;
@@ -21,6 +21,8 @@ static const double BULK_RATIO_LEAST = 4.8;
 static const double PROFILE_BULK_MOST = 60, SURFACE_BULK_MOST = 300;
 /* The preconditioner solves the face (face_solver.h) down to this residual. */
 static const double FACE_TOLERANCE = 1e-3;
+/* Bytes of the directions of gmres_lengthen, at most. */
+static const double LONG_BYTES = 2.5e8;
 /* Shears, displacements of the flat. */
 enum { BEHIND_MOST = 2 * SIDEWAYS_MOST };
 
@@ -32,12 +34,28 @@ struct gmres {
     double *given, *borne;             /* vectors of it */
     struct volumetric *volumetric; /* of the flat block; NULL where pressures are not unknowns */
     size_t degrees_of_freedom, unknowns; /* the pressures of elements follow the displacements */
-    double *basis[BASIS + 1];            /* orthonormal residuals */
-    double *direction[BASIS];            /* preconditioned */
+    size_t length; /* directions that there is room for: BASIS, or more (gmres_lengthen) */
+    double *basis[HESSENBERG_MOST + 1]; /* orthonormal residuals */
+    double *direction[HESSENBERG_MOST]; /* preconditioned */
+    struct material flat;               /* of the flat block */
+    double drag;                        /* of the preconditioner */
     double *load, *moved, *pressures;
     double *face, *target, *forces; /* by node of the face */
     struct hessenberg hessenberg;
 };
+
+/* Makes room for so many directions. */
+static int basis_create(struct gmres *gmres, size_t length, struct error *err) {
+    for (size_t b = 0; b < 2 * length + 1; b++) {
+        double **array = b <= length ? &gmres->basis[b] : &gmres->direction[b - length - 1];
+        if (*array == NULL)
+            *array = array_create(gmres->unknowns + BEHIND_MOST, sizeof(double));
+        if (*array == NULL)
+            return error_memory(err, gmres->unknowns * sizeof(double), "residuals");
+    }
+    gmres->length = length;
+    return 0;
+}
 
 int gmres_create(struct gmres **out, const struct mesh *mesh, const struct material *material,
                  enum gap_weighting weighting, struct error *err) {
@@ -49,21 +67,19 @@ int gmres_create(struct gmres **out, const struct mesh *mesh, const struct mater
     gmres->mesh = mesh;
     gmres->degrees_of_freedom = mesh_degrees_of_freedom(mesh);
     gmres->unknowns = mesh_unknowns(mesh, pressures);
-    struct material flat = *material;
     double most = mesh->dimension == 2 ? PROFILE_BULK_MOST : SURFACE_BULK_MOST;
-    flat.mean = fmin(flat.mean, most * flat.shear);
-    int status = pressures ? volumetric_create(&gmres->volumetric, mesh, &flat, true, err) : 0;
+    gmres->flat = *material;
+    gmres->flat.mean = fmin(material->mean, most * material->shear);
+    int status =
+        pressures ? volumetric_create(&gmres->volumetric, mesh, &gmres->flat, true, err) : 0;
     if (status == 0)
-        status = preconditioner_create(&gmres->preconditioner, mesh, &flat, gmres->volumetric, err);
+        status = preconditioner_create(&gmres->preconditioner, mesh, &gmres->flat,
+                                       gmres->volumetric, err);
     if (status == 0)
         status =
             face_solver_create(&gmres->face_solver, mesh, gmres->preconditioner, weighting, err);
-    for (size_t b = 0; status == 0 && b < 2 * BASIS + 1; b++) {
-        double **array = b <= BASIS ? &gmres->basis[b] : &gmres->direction[b - BASIS - 1];
-        *array = array_create(gmres->unknowns + BEHIND_MOST, sizeof(double));
-        if (*array == NULL)
-            status = error_memory(err, gmres->unknowns * sizeof(double), "residuals");
-    }
+    if (status == 0)
+        status = basis_create(gmres, BASIS, err);
     double **const others[] = {&gmres->face, &gmres->target, &gmres->forces,
                                &gmres->load, &gmres->moved,  &gmres->pressures};
     for (size_t a = 0; status == 0 && a < 6; a++) {
@@ -82,9 +98,9 @@ void gmres_destroy(struct gmres **handle) {
     struct gmres *gmres = *handle;
     if (gmres == NULL)
         return;
-    for (size_t b = 0; b <= BASIS; b++)
+    for (size_t b = 0; b <= HESSENBERG_MOST; b++)
         free(gmres->basis[b]);
-    for (size_t b = 0; b < BASIS; b++)
+    for (size_t b = 0; b < HESSENBERG_MOST; b++)
         free(gmres->direction[b]);
     free(gmres->face);
     free(gmres->target);
@@ -115,6 +131,12 @@ int gmres_add_friction(struct gmres *gmres, enum gap_weighting weighting, struct
     return gmres->given != NULL && gmres->borne != NULL
                ? 0
                : error_memory(err, 2 * values * sizeof *gmres->given, "forces along the face");
+}
+
+int gmres_lengthen(struct gmres *gmres, struct error *err) {
+    double most = LONG_BYTES / (2 * sizeof(double) * (double)gmres->unknowns);
+    size_t length = most < HESSENBERG_MOST ? (size_t)most : HESSENBERG_MOST;
+    return length > gmres->length ? basis_create(gmres, length, err) : 0;
 }
 
 size_t gmres_friction_unknowns(const struct gmres *gmres) {
@@ -375,7 +397,7 @@ static void precondition_friction(struct gmres *gmres, const struct face_conditi
 /* --- minimal residuals --- */
 
 static void combine(struct gmres *gmres, size_t n, size_t count, double *x) {
-    double factor[BASIS];
+    double factor[HESSENBERG_MOST];
     hessenberg_solve(&gmres->hessenberg, count, factor);
     for (size_t a = 0; a < count; a++)
         add(n, factor[a], gmres->direction[a], x);
@@ -386,9 +408,10 @@ static void combine(struct gmres *gmres, size_t n, size_t count, double *x) {
 static int cycle(struct gmres *gmres, const struct linear_system *system, double goal, size_t most,
                  double *x, double *left, size_t *iterations, struct error *err) {
     size_t n = unknowns_of(gmres, system), c = 0;
+    const size_t length = system->lengthy ? gmres->length : BASIS;
     scale(n, 1 / *left, gmres->basis[0]);
     gmres->hessenberg.right[0] = *left;
-    for (double size = 1; c < BASIS && c<most && * left> goal && size > 0; c++) {
+    for (double size = 1; c < length && c<most && * left> goal && size > 0; c++) {
         double *next = gmres->basis[c + 1];
         int status = 0;
         if (system->factorisation != NULL)
@@ -435,10 +458,26 @@ static void eliminate_pressures(struct gmres *gmres, const struct linear_system 
     volumetric_forces(system->tangent->volumetric, gmres->pressures, -1, x);
 }
 
+/* Gives the flat block the drag of the equations. */
+static int set_drag(struct gmres *gmres, const struct linear_system *system, struct error *err) {
+    if (system->factorisation != NULL || system->drag == gmres->drag)
+        return 0;
+    int status = preconditioner_set_drag(gmres->preconditioner, &gmres->flat, gmres->volumetric,
+                                         system->drag, err);
+    if (status != 0)
+        return status;
+    gmres->drag = system->drag;
+    face_solver_renew(&gmres->face_solver, gmres->mesh, gmres->preconditioner);
+    return 0;
+}
+
 int gmres_solve(struct gmres *gmres, const struct linear_system *system, double tolerance,
                 double *x, size_t *iterations, struct error *err) {
     size_t n = unknowns_of(gmres, system);
     bool eliminated = system->factorisation != NULL && gmres->volumetric != NULL;
+    int status = set_drag(gmres, system, err);
+    if (status != 0)
+        return status;
     if (eliminated)
         eliminate_pressures(gmres, system, x);
     double first = sqrt(dot(n, x, x)), left = first, before = INFINITY;
@@ -457,12 +496,12 @@ int gmres_solve(struct gmres *gmres, const struct linear_system *system, double 
         if (!(left <= STALLED * before) || *iterations >= end)
             break;
         before = left;
-        int status =
+        status =
             cycle(gmres, system, tolerance * first, end - *iterations, x, &left, iterations, err);
         if (status != 0)
             return status;
     }
-    if (system->friction == NULL)
+    if (system->friction == NULL && system->drag == 0)
         hold(gmres, x);
     if (eliminated)
         volumetric_pressures(system->tangent->volumetric, x, 1, gmres->pressures,

@@ -31,6 +31,9 @@ enum { LINEAR_ITERATIONS_MOST = 240 };
 int gmres_create(struct gmres **out, const struct mesh *mesh, const struct material *material,
                  enum gap_weighting weighting, struct error *err);
 void gmres_destroy(struct gmres **handle);
+/* Makes room for more directions before a restart, up to HESSENBERG_MOST and 250 MB
+ * (linear_system.lengthy). */
+int gmres_lengthen(struct gmres *gmres, struct error *err);
 /* Prepares equations with friction. */
 int gmres_add_friction(struct gmres *gmres, enum gap_weighting weighting, struct error *err);
 /* Returns the values of x with friction, with those behind. */
@@ -54,7 +57,11 @@ struct linear_system {
     const struct face_conditions
         *friction; /* in place of both, after gmres_add_friction; or NULL */
     bool pinned;   /* the first node of the far side does not move sideways, whatever its force */
-    size_t most;   /* iterations, up to LINEAR_ITERATIONS_MOST; 0: these */
+    /* What the tangent has on its diagonal in all displacements, where it is not factorised: the
+     * block does not drift then, and is left where it moves. */
+    double drag;
+    bool lengthy; /* with all directions that there is room for before a restart */
+    size_t most;  /* iterations, up to LINEAR_ITERATIONS_MOST; 0: these */
 };
 
 /* Solves for x, which has tangent_unknowns values. On entry x holds forces (at the first node of

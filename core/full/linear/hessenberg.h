@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stddef.h>
 
-enum { HESSENBERG_MOST = 24 };
+enum { HESSENBERG_MOST = 120 };
 struct hessenberg {
     double h[HESSENBERG_MOST + 1][HESSENBERG_MOST]; /* filled by the caller, a column a step */
     double cosine[HESSENBERG_MOST], sine[HESSENBERG_MOST];

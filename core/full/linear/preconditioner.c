@@ -103,6 +103,7 @@ enum { ZONES_MOST = 32 };
 struct preconditioner {
     const struct mesh *mesh; /* borrowed */
     size_t d;
+    double drag;
     struct transform *transform[ZONES_MOST]; /* by the number of times that columns have doubled */
     size_t *before;  /* [level]: waves of all levels above it; the last entry counts all waves */
     double *inverse; /* [level][i*d + j][wave]: inverse of the level's pivot, into which all levels
@@ -239,6 +240,8 @@ static void eliminate(struct preconditioner *preconditioner, struct layer_stiffn
     if (level > 0)
         add_above(preconditioner, &layers[level - 1], level, wave / rows, wave % rows,
                   share_of(mesh, level - 1), pivot);
+    for (int i = 0; i < (wave == 0 ? d - 1 : d); i++)
+        pivot[i][i] += preconditioner->drag;
     if (level == last)
         hold_far_side(d, wave == 0, pivot);
     bool floats =
@@ -335,6 +338,12 @@ int preconditioner_create(struct preconditioner **out, const struct mesh *mesh,
         preconditioner_destroy(&preconditioner);
     *out = preconditioner;
     return status;
+}
+
+int preconditioner_set_drag(struct preconditioner *preconditioner, const struct material *material,
+                            struct volumetric *volumetric, double drag, struct error *err) {
+    preconditioner->drag = drag;
+    return eliminate_all(preconditioner, material, volumetric, err);
 }
 
 void preconditioner_destroy(struct preconditioner **handle) {

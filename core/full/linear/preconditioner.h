@@ -21,6 +21,10 @@ struct preconditioner;
 int preconditioner_create(struct preconditioner **out, const struct mesh *mesh,
                           const struct material *material, struct volumetric *volumetric,
                           struct error *err);
+/* Gives each displacement but the mean vertical one of a level a stiffness of its own, `drag` (0 at
+ * first). material and volumetric are those of preconditioner_create. */
+int preconditioner_set_drag(struct preconditioner *preconditioner, const struct material *material,
+                            struct volumetric *volumetric, double drag, struct error *err);
 void preconditioner_destroy(struct preconditioner **handle);
 double preconditioner_bytes(const struct mesh *mesh);
 

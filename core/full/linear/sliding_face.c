@@ -7,7 +7,7 @@
 #include <string.h>
 
 static const double PI = 3.14159265358979323846;
-enum { BASIS = HESSENBERG_MOST, RESTARTS = 4, AXES = 3 };
+enum { BASIS = 24, RESTARTS = 4, AXES = 3 };
 
 struct sliding_face {
     size_t d, face, waves, values;

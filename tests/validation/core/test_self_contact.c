@@ -1,7 +1,8 @@
-/* Protects steep profiles of full: a symmetric groove that closes is one flank against a rigid
- * plane, which is solved here by itself; a rough profile of slope 1 that buckles and overhangs has
- * values beyond, and its flanks do not pass through each other; and another that is dragged with
- * friction closes works and energy to second order in the step, folds and all. */
+/* Protects steep faces of full: a symmetric groove that closes is one flank against a rigid plane,
+ * which is solved here by itself; a rough profile of slope 1 that buckles and overhangs has values
+ * beyond, and its flanks do not pass through each other; another that is dragged with friction
+ * closes works and energy to second order in the step, folds and all; and a surface that is alike
+ * in all rows closes as the profile does. */
 #include "tests/support/check.h"
 
 #include "core/full/face.h"
@@ -319,12 +320,54 @@ static void works_close_where_the_face_folds(void **state) {
     assert_true(coarse < 1e-2 && fine < 1e-3 && fine < coarse / 4);
 }
 
+/* A groove that closes, alike in four rows: nothing differs from the profile but how the equations
+ * are solved, to the tolerance of their solution (1e-9 of the largest force). Beyond, lips meet,
+ * which surfaces do not treat apart. */
+static void a_surface_alike_in_all_rows_is_a_profile(void **state) {
+    (void)state;
+    enum { NODES = 40, ROWS = 4 };
+    static const double WIDTH = 0.075, DEPTH = 0.2;
+    struct full_options options = FULL_DEFAULTS;
+    struct full_report report[2];
+    struct contact_state pressed[2];
+    double z[NODES * ROWS];
+    options.transition = INFINITY;
+    for (size_t i = 0; i < NODES * ROWS; i++) {
+        double from = fabs((double)(i % NODES) / NODES - 0.5);
+        z[i] = from < WIDTH ? -DEPTH * (1 - from / WIDTH) : 0;
+    }
+    for (int d = 0; d < 2; d++) {
+        struct error err = {0};
+        struct block block = {.model = MODEL_LAYERED,
+                              .poisson = 0.45,
+                              .height = 1,
+                              .layer_growth = 1.4,
+                              .weighting = GAP_DUAL};
+        struct grid grid = {NODES, d == 0 ? 1 : ROWS, 1, d == 0 ? 1 : (double)ROWS / NODES};
+        struct full *full = NULL;
+        if (full_create(&full, &grid, &block, &options, &err) != 0 ||
+            full_begin(full, z, &err) != 0 ||
+            full_press(full, 0.2, &pressed[d], &report[d], &err) != 0 ||
+            full_press(full, 0.5, &pressed[d], &report[d], &err) != 0)
+            fail_msg("%s", err.text);
+        assert_true(face_folds(full_mesh(full), full_newton(full)->u));
+        full_destroy(&full);
+    }
+    assert_true(report[0].self.nodes > 0);
+    assert_int_equal(report[1].self.nodes, ROWS * report[0].self.nodes);
+    assert_int_equal(pressed[1].nodes, ROWS * pressed[0].nodes);
+    check_relative(report[1].self.force, ROWS * report[0].self.force, 1e-6);
+    check_relative(pressed[1].mean_gap, pressed[0].mean_gap, 1e-8);
+    check_relative(report[1].stretch, report[0].stretch, 1e-8);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_groove_closes_on_its_plane),
         cmocka_unit_test(a_steep_profile_goes_on),
         cmocka_unit_test(flanks_do_not_pass_through_each_other),
         cmocka_unit_test(works_close_where_the_face_folds),
+        cmocka_unit_test(a_surface_alike_in_all_rows_is_a_profile),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,42 @@
+/* The pairs of a face that meets itself, as contact of profiles (self_contact.h) and of surfaces
+ * (self_contact_surface.h) keep them. Private to core/full. */
+#ifndef RUGO_CORE_FULL_SELF_PAIR_H
+#define RUGO_CORE_FULL_SELF_PAIR_H
+
+#include "core/full/tangent.h"
+
+enum { ARC_NODES = 3, PAIRS_A_NODE = 3 };
+
+/* What a pair is: a node of the left or the right flank and an arc of the other one, or two lips
+ * on the flat. */
+enum self_kind { SELF_LEFT, SELF_RIGHT, SELF_LIPS, SELF_KINDS };
+struct self_pair {
+    size_t node, arc; /* of the face: the node, and that around which the arc is */
+    enum self_kind kind;
+    double across;     /* of surfaces: t along y, as at along x (self_contact_surface.h) */
+    double at;         /* t, as all below at the displacements last evaluated */
+    double normal[2];  /* n */
+    double along[2];   /* c'(t) */
+    double bend;       /* n . c''(t) */
+    double multiplier; /* q */
+    double gap, force;
+    /* With friction: where on the curve it was at self_contact_settle, in arcs, and what it slid
+     * along since then; the force on the node along c', its multiplier, and that force then. */
+    double start, slip, shear, shear_multiplier, shear_before;
+};
+
+struct self_contact {
+    const struct mesh *mesh; /* borrowed */
+    double friction;         /* coefficient; 0 where created */
+    size_t count;
+    struct self_pair *pair; /* owned, as all below: by kind, and of each kind at most one a node, in
+                             * their order */
+    struct self_pair *old;  /* scratch of the search */
+    struct tangent_link *link;   /* of pairs with a force */
+    struct tangent_patch *patch; /* in their stead, of surfaces */
+    size_t *bin, *next;          /* of the search: arcs by their position along x */
+    double *turning;             /* angle of a segment over that of the first, twice around; of
+                                  * surfaces the middles of patches */
+};
+
+#endif

@@ -1,0 +1,208 @@
+/* Protects contact of a surface's face with itself: a fold that is alike in all rows is that of a
+ * profile, folds along both axes and across the sides of the cell are alike, forces are the
+ * gradient of an energy and balance as do their moments, and their tangent is exact. */
+#include "tests/support/check.h"
+
+#include "core/full/self_contact.h"
+#include <stdlib.h>
+#include <string.h>
+
+enum { NODES = 16, ROWS = 8, FACE = NODES * ROWS, DEEP = 3, FIRST = 4 };
+
+struct folded {
+    struct mesh *mesh;
+    struct tangent *tangent;
+    struct self_contact self;
+    double *u, *force, *change;
+    bool active[FACE];
+};
+
+static void open_fold(struct folded *f, size_t nx, size_t ny) {
+    struct error err = {0};
+    struct grid grid = {.nx = nx, .ny = ny, .lx = (double)nx, .ly = (double)ny};
+    struct block block = {.poisson = 0.3, .height = 12, .layer_growth = 2};
+    struct material material = material_of(block.poisson, KINEMATICS_HENCKY);
+    *f = (struct folded){0};
+    if (mesh_create(&f->mesh, &grid, &block, INFINITY, &err) != 0 ||
+        tangent_create(&f->tangent, f->mesh, &material, false, &err) != 0 ||
+        self_contact_create(&f->self, f->mesh, &err) != 0)
+        fail_msg("%s", err.text);
+    size_t count = mesh_degrees_of_freedom(f->mesh);
+    f->u = array_create(count, sizeof *f->u);
+    f->force = array_create(count, sizeof *f->force);
+    f->change = array_create(count, sizeof *f->change);
+    assert_true(f->u != NULL && f->force != NULL && f->change != NULL);
+}
+
+static void close_fold(struct folded *f) {
+    self_contact_clear(&f->self);
+    tangent_destroy(&f->tangent);
+    mesh_destroy(&f->mesh);
+    free(f->u);
+    free(f->force);
+    free(f->change);
+}
+
+/* Displaces the nodes of one line across a fold DEEP columns deep, whose leaning flanks are `width`
+ * apart at their narrowest, from node `first` on. `along` and the last component are displaced. */
+static void fold_line(struct folded *f, size_t first, double width, double up, size_t axis,
+                      size_t line) {
+    size_t d = (size_t)f->mesh->dimension, nx = f->mesh->level[0].nx;
+    size_t nodes = axis == 0 ? nx : f->mesh->level[0].ny;
+    for (size_t a = 0; a <= 2 * DEEP; a++) {
+        size_t number = first + a, at = number % nodes;
+        size_t node = axis == 0 ? line * nx + at : at * nx + line;
+        double depth = a <= DEEP ? (double)a : (double)(2 * DEEP - a);
+        double lean = width / 2 + 0.05 * depth + (a == 0 || a == 2 * DEEP ? 0.5 : 0);
+        double side = a < DEEP ? -1 : a > DEEP ? 1 : 0;
+        f->u[d * node + axis] = (double)(first + DEEP) + side * lean - (double)number;
+        f->u[d * node + d - 1] = up * depth + 0.02 * (double)a;
+    }
+}
+
+/* Folds all lines along an axis; widths differ by `uneven` from line to line. */
+static void fold(struct folded *f, size_t first, double width, double uneven, double up,
+                 size_t axis) {
+    size_t lines = axis == 0 ? f->mesh->level[0].ny : f->mesh->level[0].nx;
+    memset(f->u, 0, mesh_degrees_of_freedom(f->mesh) * sizeof *f->u);
+    for (size_t line = 0; line < lines; line++) {
+        double wave = sin(0.3 + 2 * M_PI * (double)line / (double)lines);
+        fold_line(f, first, width + uneven * wave, up, axis, line);
+    }
+}
+
+/* Computes forces and tangent; returns the energy. */
+static double find(struct folded *f) {
+    double energy = 0;
+    memset(f->force, 0, mesh_degrees_of_freedom(f->mesh) * sizeof *f->force);
+    self_contact_evaluate(&f->self, false, f->u, f->force, f->tangent);
+    for (size_t c = 0; c < f->self.count; c++) {
+        const struct self_pair *pair = &f->self.pair[c];
+        double stiffness = (pair->force - pair->multiplier) / -pair->gap;
+        if (pair->force > 0)
+            energy += pair->force * pair->force / (2 * stiffness);
+    }
+    return energy;
+}
+
+/* Both splines are the same curve, and of a profile the nodes before an arc meet it. */
+static void even_folds_are_those_of_a_profile(void **state) {
+    (void)state;
+    struct folded f, profile;
+    open_fold(&f, NODES, ROWS);
+    open_fold(&profile, NODES, 1);
+    for (size_t first = FIRST; first < FIRST + NODES; first += 5)
+        for (int width = -1; width < 2; width += 2) {
+            fold(&f, first, 0.2 * width, 0, 1, 0);
+            fold(&profile, first, 0.2 * width, 0, 1, 0);
+            self_contact_search(&f.self, f.u, f.active);
+            self_contact_search(&profile.self, profile.u, profile.active);
+            double energy = find(&f);
+            check_relative(energy, ROWS * find(&profile), 1e-10);
+            assert_true(width > 0 ? energy == 0 : energy > 0.1);
+            assert_true(f.self.count == ROWS * profile.self.count && profile.self.count >= 2);
+            check_close(self_contact_depth(&f.self, f.u, f.active),
+                        self_contact_depth(&profile.self, profile.u, profile.active), 1e-12);
+            for (size_t node = 0; node < FACE; node++) {
+                check_close(f.force[3 * node], profile.force[2 * (node % NODES)], 1e-10);
+                check_close(f.force[3 * node + 1], 0, 1e-10);
+                check_close(f.force[3 * node + 2], profile.force[2 * (node % NODES) + 1], 1e-10);
+            }
+        }
+    close_fold(&profile);
+    close_fold(&f);
+}
+
+static void crests_and_graphs_meet_nothing(void **state) {
+    (void)state;
+    struct folded f;
+    open_fold(&f, NODES, ROWS);
+    fold(&f, FIRST, 0.2, 0.04, -1, 0);
+    self_contact_search(&f.self, f.u, f.active);
+    assert_int_equal(f.self.count, 0);
+    memset(f.u, 0, mesh_degrees_of_freedom(f.mesh) * sizeof *f.u);
+    self_contact_search(&f.self, f.u, f.active);
+    assert_int_equal(f.self.count, 0);
+    close_fold(&f);
+}
+
+/* The same fold along the other axis and across the sides of the cell. Forces and their moments are
+ * in balance, as each acts along the line between a node and the nearest point. */
+static void axes_and_sides_are_alike(void **state) {
+    (void)state;
+    struct folded f, turned;
+    double moment[3] = {0}, sum[3] = {0}, most = 0;
+    open_fold(&f, NODES, ROWS);
+    open_fold(&turned, ROWS, NODES);
+    fold(&f, FIRST, -0.3, 0.1, 1, 0);
+    fold(&turned, FIRST + 9, -0.3, 0.1, 1, 1);
+    self_contact_search(&f.self, f.u, f.active);
+    self_contact_search(&turned.self, turned.u, turned.active);
+    check_relative(find(&turned), find(&f), 1e-10);
+    for (size_t node = 0; node < FACE; node++) {
+        const double *force = f.force + 3 * node, *u = f.u + 3 * node;
+        size_t other = (node % NODES + 9) % NODES * ROWS + node / NODES;
+        check_close(turned.force[3 * other + 1], force[0], 1e-10);
+        check_close(turned.force[3 * other], force[1], 1e-10);
+        check_close(turned.force[3 * other + 2], force[2], 1e-10);
+        /* Forces do not reach across the sides along the first axis, and those across the others
+         * bear no moment about the second. */
+        double x = (double)(node % NODES) + u[0];
+        moment[1] += f.mesh->height[node] * force[0] + u[2] * force[0] - x * force[2];
+        for (int k = 0; k < 3; k++) {
+            sum[k] += force[k];
+            most = fmax(most, fabs(force[k]));
+        }
+    }
+    assert_true(most > 1);
+    for (int k = 0; k < 3; k++)
+        check_close(sum[k], 0, 1e-11 * most);
+    check_close(moment[1], 0, 1e-10 * most);
+    close_fold(&turned);
+    close_fold(&f);
+}
+
+/* Central differences, whose errors are of second order; a pair's patch and point follow each
+ * displacement. Rows of all kinds are displaced in turn: every fifth value of the fold. */
+static void forces_and_tangent_are_derivatives(void **state) {
+    (void)state;
+    static const double STEP = 1e-5;
+    enum { VALUES = 3 * FACE };
+    struct folded f;
+    double force[VALUES], plus[VALUES], stiffness[VALUES];
+    open_fold(&f, NODES, ROWS);
+    fold(&f, FIRST, -0.3, 0.1, 1, 0);
+    self_contact_search(&f.self, f.u, f.active);
+    assert_true(find(&f) > 0 && f.tangent->patches > 0);
+    for (size_t i = 0; i < VALUES; i += 5) {
+        for (size_t c = 0; c < f.self.count; c++)
+            f.self.pair[c].multiplier = i % 2 == 0 ? 1 : 0;
+        double here = f.u[i];
+        (void)find(&f);
+        memcpy(force, f.force, sizeof force);
+        memset(f.change, 0, mesh_degrees_of_freedom(f.mesh) * sizeof *f.change);
+        f.change[i] = 1;
+        tangent_apply(f.tangent, f.change, f.force);
+        memcpy(stiffness, f.force, sizeof stiffness);
+        f.u[i] = here + STEP;
+        double above = find(&f);
+        memcpy(plus, f.force, sizeof plus);
+        f.u[i] = here - STEP;
+        double below = find(&f);
+        f.u[i] = here;
+        check_close((above - below) / (2 * STEP), force[i], 1e-5);
+        for (size_t k = 0; k < VALUES; k++)
+            check_close((plus[k] - f.force[k]) / (2 * STEP), stiffness[k], 1e-4);
+    }
+    close_fold(&f);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(even_folds_are_those_of_a_profile),
+        cmocka_unit_test(crests_and_graphs_meet_nothing),
+        cmocka_unit_test(axes_and_sides_are_alike),
+        cmocka_unit_test(forces_and_tangent_are_derivatives),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
