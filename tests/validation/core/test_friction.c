@@ -429,8 +429,8 @@ static void face_as_it_stands(void **state) {
     (void)state;
     struct dragged d = opened(64, 0.3, 0.5, 0), plain = opened(64, 0.3, 0.5, 0);
     struct full *full = NULL;
-    struct contact_state without;
-    struct full_report report;
+    struct contact_state without = {.nodes = 0};
+    struct full_report report = {.stretch = NAN};
     struct error err = {0};
     roughen(&d, 0.3, 7);
     memcpy(plain.z, d.z, sizeof d.z);
