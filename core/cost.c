@@ -183,7 +183,7 @@ struct newton_fit {
 };
 static const struct newton_fit PROFILE_NEWTON = {1.2, 0.18, 4.5, 0.95},
                                SURFACE_NEWTON = {0.6, 0.57, 1.8, 0.8};
-static const double GENTLE = 0.3, UPRIGHT = 0.3, PROFILE_WIDE = 25, SURFACE_WIDE = 8;
+static const double GENTLE = 0.3, UPRIGHT = 0.3, PROFILE_WIDE = 10, SURFACE_WIDE = 8;
 /* A load further than FAR/h' from the one before it is approached in steps: of lengths l in E* h',
  * FAR_STEPS (l h' - FAR) more loads' work. */
 static const double FAR = 0.09, FAR_STEPS = 33;
@@ -216,16 +216,20 @@ static const double FACTOR_BYTES = 900;
 static const double PROFILE_TRANSFORMS = 95, SURFACE_TRANSFORMS = 280;
 
 /* Of profiles, nanoseconds a degree of freedom of a step with friction, which rise by this power of
- * their number over FRICTION_FREEDOM, and with pressures as unknowns by a factor; bytes with those
- * of the factorisation. */
-static const double FRICTION_NS = 8000, FRICTION_FREEDOM = 4000, FRICTION_POWER = 0.35;
-static const double FRICTION_PRESSURES = 1.9, FRICTION_BYTES = 2100;
+ * their number over FRICTION_FREEDOM, by that of the iterations of a load without friction over
+ * FRICTION_LOAD, and with pressures as unknowns by a factor; bytes with those of the factorisation.
+ */
+static const double FRICTION_NS = 4000, FRICTION_FREEDOM = 4000, FRICTION_POWER = 0.25;
+static const double FRICTION_LOAD = 3, FRICTION_STEEP = 1.3;
+static const double FRICTION_PRESSURES = 1.8, FRICTION_BYTES = 2100;
 /* A step has so many iterations of Newton's method and half a factorisation, which takes this part
  * of it. */
 static const double FRICTION_NEWTON = 4, FRICTION_FACTORED = 0.5;
-/* Of surfaces, loads without friction that take as long, and bytes of a degree of freedom, more
- * with pressures as unknowns. */
-static const double SURFACE_FRICTION_LOADS = 1.15;
+/* Of surfaces, iterations of a step over those of a load without friction: Newton's, of the linear
+ * equations, and of these with pressures as unknowns, by a power of the side over
+ * FRICTION_SIDE. Bytes of a degree of freedom, more with pressures. */
+static const double SURFACE_FRICTION_NEWTON = 0.8, SURFACE_FRICTION_LINEAR = 1.4;
+static const double FRICTION_PRESSURE_LINEAR = 4.8, FRICTION_SIDE = 16, FRICTION_SIDE_POWER = 0.6;
 static const double SURFACE_FRICTION_BYTES = 510, SURFACE_PRESSURE_BYTES = 100;
 
 static double newton_iterations(const struct grid *grid, double poisson, bool pressures,
@@ -305,18 +309,36 @@ double cost_full_bytes(const struct grid *grid, const struct block *block,
     return isnan(bytes) ? 0 : bytes;
 }
 
+struct full_size cost_friction_size(const struct grid *grid, const struct full_size *size) {
+    struct full_size out = *size;
+    if (grid_is_profile(grid)) {
+        out.newton = FRICTION_NEWTON;
+        return out;
+    }
+    out.newton *= SURFACE_FRICTION_NEWTON;
+    out.linear *= size->pressures ? FRICTION_PRESSURE_LINEAR *
+                                        pow(mean_side(grid) / FRICTION_SIDE, FRICTION_SIDE_POWER)
+                                  : SURFACE_FRICTION_LINEAR;
+    return out;
+}
+
 double cost_friction_steps(const struct grid *grid, const struct full_size *size, double steps) {
-    if (!grid_is_profile(grid))
-        return SURFACE_FRICTION_LOADS * steps * cost_full_contact(grid, size, 1);
+    if (!grid_is_profile(grid)) {
+        const struct full_size step = cost_friction_size(grid, size);
+        return steps * cost_full_contact(grid, &step, 1);
+    }
     double slower = pow(size->degrees_of_freedom / FRICTION_FREEDOM, FRICTION_POWER) *
+                    pow(size->newton / FRICTION_LOAD, FRICTION_STEEP) *
                     (size->pressures ? FRICTION_PRESSURES : 1);
     return 1e-9 * FRICTION_NS * slower * size->degrees_of_freedom * steps;
 }
 
 struct full_limit cost_friction_limit(const struct grid *grid, const struct full_size *size,
                                       double seconds) {
-    if (!grid_is_profile(grid))
-        return cost_full_limit(grid, size, seconds);
+    if (!grid_is_profile(grid)) {
+        const struct full_size of = cost_friction_size(grid, size);
+        return cost_full_limit(grid, &of, seconds);
+    }
     const double step = cost_friction_steps(grid, size, 1);
     return (struct full_limit){.seconds = seconds,
                                .newton = (1 - FRICTION_FACTORED / 2) / FRICTION_NEWTON * step,

@@ -71,10 +71,16 @@ struct full_limit cost_friction_limit(const struct grid *grid, const struct full
                                       double seconds);
 double cost_full_bytes(const struct grid *grid, const struct block *block,
                        const struct full_options *options, const struct full_size *size);
-/* CPU seconds of steps with friction (core/full/friction), and bytes of their solver. Of seven
- * studies of profiles of 128 to 512 points, slopes to 0.3 and Poisson's ratios to 0.4999, on a busy
- * machine, the time was 0.87 to 1.31 of the estimate, the memory 0.95 to 1.02; of six studies of
- * surfaces of 16 x 16 to 64 x 64 points 0.81 to 1.20, and the memory 0.93. */
+/* Returns the iterations of a step with friction, from those of a load without it: of surfaces also
+ * those of the linear equations, which are many where pressures are unknowns. */
+struct full_size cost_friction_size(const struct grid *grid, const struct full_size *size);
+/* CPU seconds of steps with friction (core/full/friction), and bytes of their solver. Fitted to
+ * studies of profiles of 128 and 256 points, slopes to 0.7, Poisson's ratios of 0 to 0.4999 and
+ * coefficients of 0.3 and 0.8, and of surfaces to 32 x 32 points. Ten others, by which the whole
+ * was then scaled, took 0.57 to 0.94 of the estimate on a busy machine. With a coefficient of 0.8
+ * some steps are halved many times, which took up to four times the estimate at slope 0.4 and a
+ * ratio of 0.4999. The memory was 0.93 to 1.02 of it. Profiles steeper than 0.7 jump (full.h):
+ * their loads may take ten times the estimate. */
 double cost_friction_steps(const struct grid *grid, const struct full_size *size, double steps);
 double cost_friction_bytes(const struct grid *grid, const struct block *block,
                            const struct full_options *options, const struct full_size *size);

@@ -118,11 +118,6 @@ static bool read_face(const struct contact_case *one_case, const char *path, con
                      "\"%s\" is of the face as it stands under load, which small strains leave "
                      "as it was; take other kinematics",
                      name);
-    else if (one_case->friction > 0)
-        values_fault(values, path,
-                     "\"%s\" and friction: curves by sliding are over the flat grid, of vertical "
-                     "gaps; leave one of them out",
-                     name);
     return true;
 }
 

@@ -68,7 +68,7 @@ static struct level_changes changes_of(const struct contact_tally *tally,
 }
 
 static double size_of(const struct contact_error *error, double value) {
-    return (fabs(error->value) + error->bound) / fabs(value);
+    return value != 0 ? (fabs(error->value) + error->bound) / fabs(value) : 0;
 }
 
 /* A change between levels vanishes at a load where the error changes sign. Where no order is
@@ -127,16 +127,21 @@ static void add_floors(const struct contact_tally *tally, enum contact_measure m
         out[k].bound += share * fabs(finest_mean(tally, measure, model, k).value);
 }
 
-/* Adds to bounds of areas by edges what these may be off beside yielded nodes, where their law does
- * not hold (F21.5). */
-static void add_yielded(const struct contact_tally *tally, enum contact_measure measure,
-                        size_t model, struct contact_error *out) {
+/* Returns the measure by which an area by edges may be off where their law does not hold: beside
+ * yielded nodes (F21.5), and of what sticks (F14.20). 0: none. */
+static size_t unknown_of(const struct contact_case *one_case, enum contact_measure measure) {
     bool by_edges = measure == MEASURE_EDGES || measure == MEASURE_EDGES_STRETCHED ||
                     measure == MEASURE_PERIMETER;
-    if (!by_edges || !measure_is_of(tally->one_case, EDGES_YIELDED))
-        return;
-    for (size_t k = 0; k < tally->one_case->load_count; k++)
-        out[k].bound += finest_mean(tally, (enum contact_measure)EDGES_YIELDED, model, k).value;
+    if (by_edges && measure_is_of(one_case, EDGES_YIELDED))
+        return EDGES_YIELDED;
+    return (size_t)measure == SLIDING_STICK_BY_EDGES ? SLIDING_STICK_UNKNOWN : 0;
+}
+
+static void add_unknown(const struct contact_tally *tally, enum contact_measure measure,
+                        size_t model, struct contact_error *out) {
+    const size_t unknown = unknown_of(tally->one_case, measure);
+    for (size_t k = 0; unknown != 0 && k < values_of(tally, measure); k++)
+        out[k].bound += finest_mean(tally, (enum contact_measure)unknown, model, k).value;
 }
 
 static bool mesh_errors(const struct contact_tally *tally, enum contact_measure measure,
@@ -145,7 +150,7 @@ static bool mesh_errors(const struct contact_tally *tally, enum contact_measure 
         return false;
     limit_errors(tally, measure, model, contact_tally_level, out);
     add_floors(tally, measure, model, false, out);
-    add_yielded(tally, measure, model, out);
+    add_unknown(tally, measure, model, out);
     return true;
 }
 
@@ -171,6 +176,8 @@ static bool model_errors(const struct contact_tally *tally, enum contact_measure
     for (size_t k = 0; k < values_of(tally, measure); k++)
         take_limit(contact_tally_model(tally, measure, model, k), &out[k]);
     add_floors(tally, measure, model, true, out);
+    if (measure_row(measure)->by == BY_SLIDING)
+        add_unknown(tally, measure, contact_case_complete(tally->one_case), out);
     return true;
 }
 

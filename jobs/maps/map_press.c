@@ -183,14 +183,15 @@ static void ask_friction(struct contact_case *one_case, const struct map_press *
                          const struct press_block *asked) {
     one_case->friction = asked->friction;
     one_case->slip_pressing = asked->pressing;
+    one_case->slip_angle = asked->angle;
     if (asked->slide != NULL) {
         one_case->slide = asked->slide;
         one_case->slide_count = asked->slide_count;
         one_case->slide_steps = asked->slide_steps;
         contact_quantities_ask(one_case, SLIDING_MEASURE);
+        contact_quantities_ask(one_case, SLIDING_EDGES_MEASURE);
         return;
     }
-    one_case->slip_angle = asked->angle;
     one_case->slip_measured = press->boundary != PRESS_OPEN && !grid_is_profile(&press->grid);
     one_case->unloads = asked->hardness > 0;
     contact_quantities_ask(one_case, FRICTION_MEASURE);

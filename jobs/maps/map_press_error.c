@@ -18,7 +18,7 @@ bool map_press_applies(size_t count, const struct press_series *series, size_t m
                        enum error_source source) {
     const struct contact_model *model = series[m].block.model;
     bool complete = true;
-    if (value == MEASURE_EDGES_UNKNOWN ||
+    if (value == MEASURE_EDGES_UNKNOWN || value == SLIDING_STICK_UNKNOWN ||
         (value >= MEASURE_PAIRED && value != PRESS_PEAK && value != PRESS_APPROACH))
         return false;
     for (size_t a = 0; CONTACT_MODELS[a] != NULL; a++)
@@ -244,13 +244,15 @@ static double floor_of(const struct errors *errors, size_t m, size_t value) {
 }
 
 /* Returns what the points do not know of a value whatever the coarser ones say: where edges are
- * that the law does not hold of, and how high the summit is between the points. */
+ * that the law does not hold of, as of what sticks, and how high the summit is between the points.
+ */
 static double unknown_of(const struct errors *errors, const struct press_row *row, size_t value) {
     bool by_edges =
         value == MEASURE_EDGES || value == MEASURE_EDGES_STRETCHED || value == MEASURE_PERIMETER;
-    return by_edges                  ? row->value[MEASURE_EDGES_UNKNOWN]
-           : value == PRESS_APPROACH ? errors->press->summit_unknown / errors->press->height
-                                     : 0;
+    return by_edges                          ? row->value[MEASURE_EDGES_UNKNOWN]
+           : value == SLIDING_STICK_BY_EDGES ? row->value[SLIDING_STICK_UNKNOWN]
+           : value == PRESS_APPROACH         ? errors->press->summit_unknown / errors->press->height
+                                             : 0;
 }
 
 static void points_error(const struct errors *errors, size_t m) {

@@ -52,6 +52,9 @@ struct slip {
     double *z;
     double *tractions, *u, *residual; /* fields * n each; u belongs to the tractions */
     double *reference;                /* as that of a point */
+    double *begun;                    /* the same at the end of pressing */
+    double *over;                     /* n: a result */
+    bool *sticks;                     /* n: likewise */
     struct slip_point kept;
     double pressure, shear[2], flat[2]; /* of the last step */
     double start;             /* the flat's displacement at the end of pressing, along the load */
@@ -92,6 +95,8 @@ static int arrays_create(struct slip *s, struct error *err) {
                         {&s->u, fields * n},
                         {&s->residual, fields * n},
                         {&s->reference, (fields - 1) * n},
+                        {&s->begun, (fields - 1) * n},
+                        {&s->over, n},
                         {&s->kept.tractions, fields * n},
                         {&s->kept.reference, (fields - 1) * n},
                         {&s->kept.direction[0], n},
@@ -102,7 +107,8 @@ static int arrays_create(struct slip *s, struct error *err) {
             return error_memory(err, arrays[a].count * sizeof(double), "partial slip");
     }
     s->kept.node = array_create(n, 1);
-    return s->kept.node != NULL ? 0 : error_memory(err, n, "partial slip");
+    s->sticks = array_create(n, sizeof *s->sticks);
+    return s->kept.node != NULL && s->sticks != NULL ? 0 : error_memory(err, 2 * n, "partial slip");
 }
 
 int slip_create(struct slip **out, const struct grid *grid, const struct slip_options *options,
@@ -139,12 +145,15 @@ void slip_destroy(struct slip **slip) {
                               gone->u,
                               gone->residual,
                               gone->reference,
+                              gone->begun,
+                              gone->over,
                               gone->kept.tractions,
                               gone->kept.reference,
                               gone->kept.direction[0],
                               gone->kept.direction[1]};
     for (size_t a = 0; a < sizeof arrays / sizeof *arrays; a++)
         free(arrays[a]);
+    free(gone->sticks);
     free(gone->kept.node);
     contact_destroy(&gone->contact);
     compliance_destroy(&gone->compliance);
@@ -159,7 +168,7 @@ double slip_bytes(const struct grid *grid) {
     const double fields = grid_is_profile(grid) ? ALONG_Y : FIELDS;
     return slip_sets_bytes(grid) + compliance_bytes(grid, &HALFSPACE) +
            contact_bytes(grid, &HALFSPACE, &pressing) +
-           (sizeof(double) * (4 * fields + 2 * (fields - 1) + 3) + 1) * (double)grid_points(grid);
+           (sizeof(double) * (4 * fields + 3 * (fields - 1) + 4) + 2) * (double)grid_points(grid);
 }
 
 void slip_set_stop(struct slip *slip, int (*stop)(void *context), void *context) {
@@ -541,14 +550,29 @@ static int go(struct slip *s, double pressure, double traction, struct error *er
     return 0;
 }
 
+/* Fills how far nodes are over the flat since the end of pressing, along the load. */
+static void fill_over(struct slip *s) {
+    const size_t n = s->sets.n;
+    for (size_t i = 0; i < n; i++) {
+        double moved[2] = {s->reference[i] - s->begun[i], 0};
+        if (s->sets.fields == FIELDS)
+            moved[1] = s->reference[n + i] - s->begun[n + i];
+        s->over[i] = along_load(s, moved);
+    }
+}
+
 static void fill(struct slip *s, struct slip_state *out) {
     const size_t n = s->sets.n;
     double all = 0, stuck = 0, gaps = 0;
+    fill_over(s);
     *out = (struct slip_state){.pressure = s->pressure,
                                .traction = along_load(s, s->shear),
                                .p = s->tractions,
                                .qx = s->tractions + n,
                                .qy = s->sets.fields == FIELDS ? s->tractions + 2 * n : NULL,
+                               .gap = s->residual,
+                               .over = s->over,
+                               .sticks = s->sticks,
                                .displacement = along_load(s, s->flat) - s->start,
                                .work = s->work,
                                .dissipation = s->dissipation,
@@ -558,6 +582,7 @@ static void fill(struct slip *s, struct slip_state *out) {
                                .violation = s->violation};
     for (size_t i = 0; i < n; i++) {
         bool sticks = out->p[i] > 0 && s->sets.node[i] == NODE_STUCK;
+        s->sticks[i] = sticks;
         out->nodes += out->p[i] > 0 ? 1 : 0;
         out->stuck += sticks ? 1 : 0;
         all += out->p[i];
@@ -620,6 +645,7 @@ int slip_press(struct slip *s, const double *z, double pressure, struct slip_sta
     if (status != 0)
         return status;
     s->start = along_load(s, s->flat);
+    memcpy(s->begun, s->reference, (s->sets.fields - 1) * s->sets.n * sizeof *s->begun);
     s->work = s->dissipation = 0;
     s->pressed = true;
     fill(s, out);

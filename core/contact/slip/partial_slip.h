@@ -12,6 +12,7 @@
 #define RUGO_CORE_CONTACT_SLIP_PARTIAL_SLIP_H
 
 #include "core/surface/grid.h"
+#include <stdbool.h>
 
 struct slip_options {
     double poisson;     /* of the block, in [0, 0.5]; 0.5: no coupling */
@@ -34,12 +35,16 @@ struct slip_state {
     double pressure, traction; /* means; the traction is that along the load */
     const double *p;           /* grid_points */
     const double *qx, *qy;     /* grid_points: tractions on the block; qy of profiles is NULL */
-    size_t nodes, stuck;       /* with p > 0, and those of them that do not slip */
-    double stick_area;         /* stuck over nodes; 0 without contact */
-    double stick_load;         /* pressures of stuck nodes over all */
-    double mean_gap;           /* the grid's length */
-    double displacement;       /* of the flat over the mean plane of the face, along the load, since
-                                  the end of pressing */
+    const double *gap;         /* grid_points */
+    const double *over;      /* grid_points: displacement of the face over the flat, along the load,
+                                since      the end of pressing */
+    const bool *sticks;      /* grid_points */
+    size_t nodes, stuck;     /* with p > 0, and those of them that do not slip */
+    double stick_area;       /* stuck over nodes; 0 without contact */
+    double stick_load;       /* pressures of stuck nodes over all */
+    double mean_gap;         /* the grid's length */
+    double displacement;     /* of the flat over the mean plane of the face, along the load, since
+                                the end of pressing */
     double work;             /* of the traction on it, by area: E* times a length, by trapezoids */
     double dissipation;      /* by slip, likewise */
     size_t sets, iterations; /* of this load; of linear equations */

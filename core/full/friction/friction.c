@@ -27,23 +27,28 @@ struct friction {
     struct full_limit limit;
     double used;           /* counted seconds since friction_press began */
     size_t face, sideways; /* nodes, and directions of the face */
+    size_t axis;           /* of the drag */
     struct full *full;     /* owned, as all below: the contact without friction */
     const struct mesh *mesh;
     struct friction_newton newton;
     struct point kept; /* of the last step that converged */
     struct point held; /* during a jump; empty until the first one */
     bool pressed;
-    bool careful;         /* the face may overhang and jump, as in full.c */
-    size_t nodes_without; /* in contact without friction, as the next: at the last pressure */
-    double gap_without;
+    bool careful;                 /* the face may overhang and jump, as in full.c */
+    struct contact_state without; /* without friction, as the next: at the last pressure */
+    struct friction_face face_without;
     double most; /* pressure that contact without friction reaches where it folds */
     double start_flat, start_sliding, start_far, start_energy; /* at the end of pressing */
-    double *start;    /* [node * sideways + axis]: displacement over the flat then */
-    double *p, *gap;  /* by node of the face: results */
-    double *q, *slip; /* [axis * face + node] */
+    double *start; /* [node * sideways + axis]: displacement over the flat then */
+    double *p, *gap, *opening, *over; /* by node of the face: results */
+    double *q, *slip;                 /* [axis * face + node] */
+    bool *sticks, *touches;           /* by node of the face */
 };
 
-static int options_check(const struct friction_options *friction, struct error *err) {
+static int options_check(const struct grid *grid, const struct friction_options *friction,
+                         struct error *err) {
+    if (friction->along_y && grid_is_profile(grid))
+        return error_set(err, ERROR_INPUT, "a profile is dragged along x alone");
     if (!(friction->coefficient > 0 && isfinite(friction->coefficient)))
         return error_set(err, ERROR_INPUT, "friction = %g; allowed: above 0, finite",
                          friction->coefficient);
@@ -84,12 +89,18 @@ static int arrays_create(struct friction *f, struct error *err) {
                         {&f->p, f->face},
                         {&f->q, f->face * f->sideways},
                         {&f->gap, f->face},
+                        {&f->opening, f->face},
+                        {&f->over, f->face},
                         {&f->slip, f->face * f->sideways}};
     for (size_t a = 0; a < sizeof arrays / sizeof *arrays; a++) {
         *arrays[a].array = array_create(arrays[a].count, sizeof(double));
         if (*arrays[a].array == NULL)
             return error_memory(err, arrays[a].count * sizeof(double), "contact with friction");
     }
+    f->sticks = array_create(f->face, sizeof *f->sticks);
+    f->touches = array_create(f->face, sizeof *f->touches);
+    if (f->sticks == NULL || f->touches == NULL)
+        return error_memory(err, 2 * f->face, "contact with friction");
     return point_create(&f->kept, f, false, err);
 }
 
@@ -97,7 +108,7 @@ int friction_create(struct friction **out, const struct grid *grid, const struct
                     const struct full_options *options, const struct friction_options *friction,
                     struct error *err) {
     *out = NULL;
-    int status = options_check(friction, err);
+    int status = options_check(grid, friction, err);
     if (status != 0)
         return status;
     struct friction *f = array_create(1, sizeof *f);
@@ -106,6 +117,7 @@ int friction_create(struct friction **out, const struct grid *grid, const struct
     *f = (struct friction){.options = *options,
                            .coefficient = friction->coefficient,
                            .press_steps = friction->press_steps,
+                           .axis = friction->along_y ? 1 : 0,
                            .limit = friction->limit};
     struct material material = material_of(block->poisson, options->kinematics);
     status = full_create(&f->full, grid, block, options, err);
@@ -122,6 +134,7 @@ int friction_create(struct friction **out, const struct grid *grid, const struct
     if (status != 0)
         friction_destroy(&f);
     else {
+        f->newton.axis = f->axis;
         f->newton.tolerance = options->tolerance;
         f->newton.max_iterations = options->max_iterations;
     }
@@ -141,6 +154,10 @@ void friction_destroy(struct friction **friction) {
     free(f->q);
     free(f->gap);
     free(f->slip);
+    free(f->opening);
+    free(f->over);
+    free(f->sticks);
+    free(f->touches);
     free(f->start);
     free(f);
     *friction = NULL;
@@ -235,6 +252,34 @@ static void add_works(const struct friction *f, const struct point *from, struct
     to->work = work;
 }
 
+/* Returns the area of nodes over that of the face. Not of the flat grid: with their slopes. */
+static double share_of(const struct friction *f, const double *u, const bool *active) {
+    size_t nodes = 0;
+    for (size_t node = 0; node < f->face; node++)
+        nodes += active[node];
+    const double share = (double)nodes / (double)f->face;
+    if (!f->options.current_areas || nodes == 0)
+        return share;
+    const struct face_tilt tilt = face_measure_tilt(f->mesh, u, active);
+    return share * face_contact_stretch(f->mesh, u, active) * (1 + tilt.contact) / (1 + tilt.face);
+}
+
+static struct friction_face measure_face(const struct friction *f, const double *u,
+                                         const bool *active) {
+    struct friction_face out = {.area = share_of(f, u, active), .open_stretch = 1};
+    size_t nodes = 0;
+    for (size_t node = 0; node < f->face; node++)
+        nodes += active[node];
+    if (!f->options.current_areas || nodes == 0)
+        return out;
+    out.tilt = face_measure_tilt(f->mesh, u, active).face;
+    if (nodes < f->face)
+        out.open_stretch =
+            ((double)f->face - (double)nodes * face_contact_stretch(f->mesh, u, active)) /
+            (double)(f->face - nodes);
+    return out;
+}
+
 /* Presses without friction, for what that is. */
 static int press_full(struct friction *f, double pressure, struct friction_state *out,
                       struct error *err) {
@@ -249,8 +294,9 @@ static int press_full(struct friction *f, double pressure, struct friction_state
         f->most = report.reached;
     if (status != 0)
         return status;
-    f->nodes_without = state.nodes;
-    f->gap_without = state.mean_gap;
+    const struct newton *without = full_newton(f->full);
+    f->without = state;
+    f->face_without = measure_face(f, without->u, without->active);
     return 0;
 }
 
@@ -389,7 +435,8 @@ static void land(void *solver, double done, bool rests) {
 
 static double drive_now(const struct friction *f) {
     const struct drive *drive = f->newton.conditions.drive;
-    return drive->flat * f->kept.flat[0] + drive->shear * f->kept.shear[0];
+    return drive[f->axis].flat * f->kept.flat[f->axis] +
+           drive[f->axis].shear * f->kept.shear[f->axis];
 }
 
 /* In squares of the mesh's unit; of profiles in units. */
@@ -434,7 +481,7 @@ static int follow_steps(struct friction *f, const struct friction_goal *goal,
                          "contact with friction %g under a mean pressure of %g E* and a "
                          "traction of %g E* was followed over %.3g of a step only; the "
                          "next %.2g of it failed",
-                         f->coefficient, f->kept.pressure, f->kept.shear[0] / face_area(f),
+                         f->coefficient, f->kept.pressure, f->kept.shear[f->axis] / face_area(f),
                          steps.reached, steps.failed);
 }
 
@@ -470,7 +517,7 @@ static double far_height(const struct friction *f) {
 static double flat_over_face(const struct friction *f) {
     struct sum sum = {0};
     for (size_t node = 0; node < f->face; node++)
-        sum_add(&sum, f->kept.flat[0] - f->kept.u[along(f, node, 0)]);
+        sum_add(&sum, f->kept.flat[f->axis] - f->kept.u[along(f, node, f->axis)]);
     return sum_value(&sum) / (double)f->face;
 }
 
@@ -484,37 +531,59 @@ static void fill_nodes(struct friction *f, struct friction_state *out) {
         /* As in full_press, callers recognise contact by p > 0. */
         f->p[node] = touches ? fmax(DBL_MIN, force) : 0;
         f->gap[node] = n->gap[node] * f->mesh->unit;
+        f->opening[node] = n->opening[node] * f->mesh->unit;
         for (size_t k = 0; k < f->sideways; k++) {
             double slip = over_flat(f, &f->kept, node, k) - f->start[node * f->sideways + k];
             f->q[k * f->face + node] = touches ? n->force[along(f, node, k)] / f->mesh->across : 0;
             f->slip[k * f->face + node] = touches ? slip * f->mesh->unit : NAN;
+            f->over[node] = k == f->axis ? slip * f->mesh->unit : f->over[node];
         }
+        f->touches[node] = touches;
+        f->sticks[node] = sticks;
         out->nodes += touches;
         out->stuck += sticks;
         sum_add(&all, f->p[node]);
         sum_add(&stuck, sticks ? f->p[node] : 0);
     }
-    out->stick_area = (double)out->stuck / (double)out->nodes;
+    out->face = measure_face(f, n->u, f->touches);
+    out->stick_area = f->options.current_areas ? share_of(f, n->u, f->sticks) / out->face.area
+                                               : (double)out->stuck / (double)out->nodes;
     out->stick_load = sum_value(&stuck) / sum_value(&all);
+}
+
+/* Returns the mean gap, after it has turned the gaps of nodes where they are along the normal; as
+ * full_press. */
+static double measure_gap(struct friction *f) {
+    const struct friction_newton *n = &f->newton;
+    const bool deforms = n->material.kinematics != KINEMATICS_SMALL,
+               normal = f->options.normal_gaps;
+    if (!normal && !f->options.current_areas)
+        return face_mean_gap(f->mesh, deforms ? n->u : NULL, n->gap) * f->mesh->unit;
+    if (normal)
+        face_turn_gaps(f->mesh, n->u, f->touches, f->gap);
+    return f->options.current_areas ? face_mean_gap_current(f->mesh, n->u, f->gap)
+                                    : face_mean_gap(f->mesh, n->u, f->gap);
 }
 
 static void fill_state(struct friction *f, struct friction_state *out) {
     const struct friction_newton *n = &f->newton;
     double by_area = f->mesh->unit / face_area(f);
-    bool deforms = n->material.kinematics != KINEMATICS_SMALL;
     fill_nodes(f, out);
     out->pressure = f->kept.pressure;
-    out->traction = f->kept.shear[0] / face_area(f);
+    out->traction = f->kept.shear[f->axis] / face_area(f);
     out->p = f->p;
     out->q = f->q;
     out->gap = f->gap;
+    out->opening = f->opening;
+    out->over = f->over;
+    out->sticks = f->sticks;
     out->slip = f->slip;
     out->q_across = f->sideways > 1 ? f->q + f->face : NULL;
     out->slip_across = f->sideways > 1 ? f->slip + f->face : NULL;
-    out->gap_without = f->gap_without;
-    out->nodes_without = f->nodes_without;
-    out->mean_gap = face_mean_gap(f->mesh, deforms ? n->u : NULL, n->gap) * f->mesh->unit;
-    out->displacement = (f->kept.flat[0] - f->start_flat) * f->mesh->unit;
+    out->without = &f->without;
+    out->face_without = f->face_without;
+    out->mean_gap = measure_gap(f);
+    out->displacement = (f->kept.flat[f->axis] - f->start_flat) * f->mesh->unit;
     out->sliding = (flat_over_face(f) - f->start_sliding) * f->mesh->unit;
     out->work = f->kept.work * by_area;
     out->dissipation = f->kept.dissipation * by_area;
@@ -602,7 +671,7 @@ int friction_press(struct friction *f, double pressure, struct friction_state *o
         return status;
     f->pressed = true;
     f->kept.work = f->kept.dissipation = 0;
-    f->start_flat = f->kept.flat[0];
+    f->start_flat = f->kept.flat[f->axis];
     f->start_sliding = flat_over_face(f);
     f->start_far = far_height(f);
     f->start_energy = f->newton.energy;

@@ -14,7 +14,7 @@ static const double COMPLEMENTARITY = 1;
 static const double TRUSTED = 0.1, TRUSTED_ONE = 1e-4;
 static const double LINEAR_MOST = 1e-3, LINEAR_PART = 0.1;
 static const double ROUNDINGS = 8, ROUNDING_MOST = 0.01;
-/* A direction that has so much across the first axis. */
+/* A direction that has so much across the axis of the drive. */
 static const double TURNED = 0.1;
 enum { HALVINGS = 8, PATIENCE = 10, RETURNS = 3 };
 /* Of a face that meets itself, as in newton.c. */
@@ -103,9 +103,8 @@ int friction_newton_allow_overhangs(struct friction_newton *n, struct error *err
 }
 
 void friction_newton_drive(struct friction_newton *n, struct drive drive) {
-    n->conditions.drive[0] = drive;
-    for (size_t k = 1; k < SIDEWAYS_MOST; k++)
-        n->conditions.drive[k] = (struct drive){.shear = 1};
+    for (size_t k = 0; k < SIDEWAYS_MOST; k++)
+        n->conditions.drive[k] = k == n->axis ? drive : (struct drive){.shear = 1};
 }
 
 /* The weighted gaps of a profile. */
@@ -189,7 +188,7 @@ static void point(struct friction_newton *n, size_t node, const struct trial *tr
     double *e = n->direction + node * n->sideways;
     double friction = n->conditions.friction * fmax(0, pressing(n, node));
     for (size_t k = 0; k < n->sideways; k++)
-        e[k] = trial->size > 0 ? trial->of[k] / trial->size : k == 0 ? -1 : 0;
+        e[k] = trial->size > 0 ? trial->of[k] / trial->size : k == n->axis ? -1 : 0;
     n->turn[node] = trial->size > friction ? friction / trial->size : 1;
     n->node[node] = e[0] > 0 ? NODE_FORWARD : NODE_BACKWARD;
 }
@@ -261,10 +260,10 @@ static double sliding_share(const struct friction_newton *n, size_t node, size_t
     return n->conditions.friction * n->direction[node * n->sideways + axis];
 }
 
-/* Returns whether a sliding node holds the flat along the first axis, as its direction turns. */
+/* Returns whether a sliding node holds the flat along its axis, as its direction turns. */
 static bool turns(const struct friction_newton *n, size_t node) {
     return face_node_slides(n->node[node]) && n->sideways > 1 &&
-           fabs(n->direction[node * n->sideways + 1]) > TURNED;
+           fabs(n->direction[node * n->sideways + 1 - n->axis]) > TURNED;
 }
 
 /* Where a given shear leaves no node sticking, and none turns, the flat follows the excess of the
@@ -275,7 +274,8 @@ static void fill_sticking(struct friction_newton *n) {
     double shortest = INFINITY;
     size_t held = SIZE_MAX;
     for (size_t node = 0; node < n->mesh->face; node++) {
-        if (n->node[node] == NODE_STICKS || turns(n, node) || n->conditions.drive->flat != 0)
+        if (n->node[node] == NODE_STICKS || turns(n, node) ||
+            n->conditions.drive[n->axis].flat != 0)
             return;
         for (size_t k = 0; n->node[node] != NODE_FREE && k < n->sideways && k < SIDEWAYS_MOST; k++)
             excess.of[k] += sliding_share(n, node, k) * pressing(n, node);
@@ -363,7 +363,7 @@ static double far_mean(const struct friction_newton *n, size_t axis) {
 static double drive_left(const struct friction_newton *n, const struct friction_goal *goal,
                          size_t axis) {
     const struct drive *drive = &n->conditions.drive[axis];
-    return (axis == 0 ? goal->drive : 0) - drive->flat * n->flat[axis] -
+    return (axis == n->axis ? goal->drive : 0) - drive->flat * n->flat[axis] -
            drive->shear * n->shear[axis];
 }
 

@@ -18,7 +18,7 @@
  * the slip is of the node alone, so that its work on the traction is that of the forces.
  *
  * The far side bears the load and the shear evenly; its mean displacement along the face is 0. The
- * flat is driven along the first axis. Across it nothing holds the flat: the shear there is 0.
+ * flat is driven along one axis. Across it nothing holds the flat: the shear there is 0.
  *
  * Equations of profiles are solved by a sparse factorisation (unsymmetric.h), those of surfaces by
  * iterations with the flat block (gmres.h).
@@ -58,6 +58,7 @@ struct friction_newton {
     struct full_limit limit; /* of the next solution */
     size_t unknowns, max_iterations;
     size_t sideways;            /* directions of the face: 1 of profiles, 2 of surfaces */
+    size_t axis;                /* along which the flat is driven: 0, or of surfaces 1 */
     bool evaluated;             /* force, tangent and energy belong to u */
     int (*stop)(void *context); /* called before each iteration, non-zero stops; may be NULL */
     void *context;
@@ -83,7 +84,7 @@ const bool *friction_newton_touching(struct friction_newton *newton);
 /* The loads at the end of the increment. */
 struct friction_goal {
     double pressure; /* mean, above 0 */
-    double drive;    /* value of conditions.drive along the first axis */
+    double drive;    /* value of conditions.drive along the axis */
 };
 /* The course of a solution; as newton_end. */
 struct friction_end {
@@ -101,7 +102,7 @@ int friction_newton_solve(struct friction_newton *newton, const struct friction_
 void friction_newton_measure_gaps(struct friction_newton *newton);
 /* Returns a node's slip along an axis since the beginning of the increment. */
 double friction_newton_slip(const struct friction_newton *newton, size_t node, size_t axis);
-/* Drives the flat along the first axis by this. */
+/* Drives the flat along its axis by this. */
 void friction_newton_drive(struct friction_newton *newton, struct drive drive);
 
 #endif

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { CONTACT_QUANTITIES_MOST = 8 };
+enum { CONTACT_QUANTITIES_MOST = 10 };
 
 struct quantities_asked {
     bool of[CONTACT_QUANTITIES_MOST]; /* in the order of the table */

@@ -16,7 +16,8 @@
     ENTRY(CONDUCTANCE, 1)                                                                          \
     ENTRY(LEAK, 7)                                                                                 \
     ENTRY(HARDNESS, 5)                                                                             \
-    ENTRY(UNLOAD, 3) ENTRY(FRICTION, 8) ENTRY(COUPLING, 3) ENTRY(SLIDING, 6) ENTRY(HELD, 1)
+    ENTRY(UNLOAD, 3)                                                                               \
+    ENTRY(FRICTION, 8) ENTRY(COUPLING, 3) ENTRY(SLIDING, 6) ENTRY(HELD, 1) ENTRY(SLIDING_EDGES, 3)
 
 /* NAME_AT: its position, as in quantities_asked. NAME_MEASURE: the number of its first measure. */
 #define CONTACT_QUANTITY_POSITION(name, count) name##_AT,
@@ -62,7 +63,10 @@ enum {
     SLIDING_STICK_LOAD,
     SLIDING_AREA,
     SLIDING_GAP,
-    SLIDING_DISSIPATION
+    SLIDING_DISSIPATION,
+    SLIDING_STICK_BY_EDGES = SLIDING_EDGES_MEASURE,
+    SLIDING_AREA_BY_EDGES,
+    SLIDING_STICK_UNKNOWN
 };
 
 /* What a quantity is measured on: one grid under one model. */

@@ -51,7 +51,7 @@ static const struct parameter ROWS[] = {
          "coefficient of friction: the block is pressed, and a tangential load then rises to "
          "full slip; what sticks, how far it gives, and what a cycle takes, by the loads "
          "below, to which some are added where they are far apart. With the model full, up to 1, "
-         "at finite strain by how far the flat slides along x"},
+         "at finite strain by how far the flat slides"},
     {.path = "/contact/slip/pressure",
      .type = PARAMETER_NUMBER,
      .minimum = 0,

@@ -1,9 +1,8 @@
 /* Friction at finite strain: blocks of the model full are pressed to one load, and the flat is then
- * dragged along x on a path (core/full/friction). Curves are by how far it has slid over the mean
- * of the face, over the RMS height. A half-space beside it, and those of companions, follow the
- * same path with pressures and tractions coupled: their differences are the errors of other
+ * dragged along x or y on a path (core/full/friction). Curves are by how far it has slid over the
+ * mean of the face, over the RMS height. A half-space beside it, and those of companions, follow
+ * the same path with pressures and tractions coupled: their differences are the errors of other
  * sources. */
-#include "core/contact/slip/partial_slip.h"
 #include "jobs/contact/contact_measure.h"
 #include "jobs/contact/model/model_linear.h"
 #include "jobs/contact/quantity/quantity.h"
@@ -14,7 +13,7 @@
 
 struct quantity_state {
     struct sliding_full *full; /* one of both; owned */
-    struct slip *linear;
+    struct sliding_linear *linear;
 };
 
 /* The tables of curves and of paths: up to so many turning points, so far away. */
@@ -24,7 +23,6 @@ static const double COEFFICIENT_MOST = 1;
 
 #define FRICTION "/contact/friction"
 static const char TO[] = "/contact/slip/to", STEPS[] = "/contact/slip/steps";
-static const char DIRECTION[] = "/contact/slip/direction";
 
 static const struct parameter ROWS[] = {
     {.path = "/contact/slip/to",
@@ -55,13 +53,10 @@ const struct parameter_table SLIDING_PARAMETERS = {"contact", ROWS, sizeof ROWS 
 /* The path is read behind (contact_case_read.c). */
 static bool asked(struct contact_case *one_case, struct values *values) {
     const bool slides = contact_case_slides(one_case);
-    const char *const own[] = {TO, STEPS};
+    static const char *const own[] = {TO, STEPS};
     for (size_t a = 0; a < sizeof own / sizeof *own; a++)
         if (!slides && values_is_given(values, own[a]))
             values_fault(values, own[a], "belongs to " FRICTION " with the model full");
-    if (slides && one_case->slip_angle != 0)
-        values_fault(values, DIRECTION,
-                     "\"y\": the model full drags the flat along x; leave one of them out");
     if (slides && one_case->friction > COEFFICIENT_MOST)
         values_fault(values, FRICTION, "%g; allowed with the model full: (0, %g]",
                      one_case->friction, COEFFICIENT_MOST);
@@ -88,7 +83,7 @@ static double seconds_of(const struct quantity_scene *scene) {
 static void destroy(struct quantity_state **state) {
     if (*state != NULL) {
         sliding_full_destroy(&(*state)->full);
-        slip_destroy(&(*state)->linear);
+        sliding_linear_destroy(&(*state)->linear);
     }
     free(*state);
     *state = NULL;

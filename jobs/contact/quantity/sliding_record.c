@@ -11,11 +11,16 @@ struct sliding_sample sliding_sample_none(void) {
     return out;
 }
 
+/* Returns the number of the measure of a value. */
+static size_t measure_of(size_t value) {
+    return value < SLIDING_BY_NODES ? (size_t)SLIDING_MEASURE + value
+                                    : (size_t)SLIDING_EDGES_MEASURE + value - SLIDING_BY_NODES;
+}
+
 static void put(struct sliding_record *record, const struct sliding_sample *sample, double share) {
     for (size_t a = 0; a < SLIDING_VALUES; a++) {
         double from = record->last.of[a], value = from + share * (sample->of[a] - from);
-        record->values[(SLIDING_MEASURE + a) * record->stride + record->next] =
-            measure_limited(value);
+        record->values[measure_of(a) * record->stride + record->next] = measure_limited(value);
     }
     record->next++;
 }

@@ -14,9 +14,15 @@ enum {
     SAMPLE_AREA,
     SAMPLE_GAP,
     SAMPLE_DISSIPATION,
+    SLIDING_BY_NODES,
+    SAMPLE_STICK_EDGES = SLIDING_BY_NODES, /* from here on those of SLIDING_EDGES */
+    SAMPLE_AREA_EDGES,
+    SAMPLE_STICK_UNKNOWN,
     SLIDING_VALUES
 };
-_Static_assert((int)SLIDING_MEASURE + SAMPLE_DISSIPATION == (int)SLIDING_DISSIPATION,
+_Static_assert((int)SLIDING_MEASURE + SAMPLE_DISSIPATION == (int)SLIDING_DISSIPATION &&
+                   (int)SLIDING_EDGES_MEASURE + SAMPLE_STICK_UNKNOWN - SLIDING_BY_NODES ==
+                       (int)SLIDING_STICK_UNKNOWN,
                "values of a state");
 
 /* One state of a solver. */

@@ -646,10 +646,6 @@ static int order_friction(struct press_order *order, struct error *err) {
     if (friction > SLIDING_FRICTION_MOST)
         return error_set(err, ERROR_INPUT, "--friction %g; allowed with the model full: (0, %g]",
                          friction, SLIDING_FRICTION_MOST);
-    if (options->along_y)
-        return error_set(err, ERROR_INPUT,
-                         "--direction y: the model full drags the flat along x; --transpose "
-                         "exchanges x and y of the map");
     int status =
         press_path_parse(&order->slide, options->slide_to, options->slide_steps, friction, err);
     for (size_t m = 0; m < order->model_count && status == 0; m++) {

@@ -15,10 +15,5 @@ int press_face_check(const struct press_block *blocks, size_t count, struct erro
                          "--%s is of the face as it stands under load, which --kinematics small "
                          "leaves as it was",
                          name);
-    if (blocks->friction > 0)
-        return error_set(err, ERROR_INPUT,
-                         "--%s and --friction: curves by sliding are over the flat grid, of "
-                         "vertical gaps; leave one of them out",
-                         name);
     return 0;
 }

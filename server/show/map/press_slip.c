@@ -21,11 +21,13 @@ static const struct slip_column SLIP_COLUMNS[] = {
 static const struct slip_column SLIDING_COLUMNS[] = {
     {"Q/P", "force", "sliding_force", "", SLIP_SHARE},
     {"stick area", "stick_area", "sliding_stick_area", "", SLIP_SHARE},
+    {"stick edges", "stick_edges", "sliding_stick_area", "edges", SLIP_SHARE},
     {"stick load", "stick_load", "sliding_stick_load", "", SLIP_SHARE},
     {"contact area", "contact_area", "sliding_contact_area", "", SLIP_SHARE},
+    {"contact edges", "contact_edges", "sliding_contact_area", "edges", SLIP_SHARE},
     {"gap", "mean_gap", "sliding_gap", "", SLIP_LENGTH},
     {"work", "dissipation", "sliding_dissipation", "", SLIP_WORK_DONE}};
-enum { SLIP_COLUMNS_MOST = 7 };
+enum { SLIP_COLUMNS_MOST = 8 };
 
 /* Both tables: by the share of the load of full slip, and by how far the flat slides. */
 static const struct slip_table {

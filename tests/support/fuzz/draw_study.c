@@ -378,8 +378,6 @@ static void part_pairs(cJSON *document) {
         {"/contact/slip/to", "/contact/hardness"},
         {"/contact/slip/to", "/surface/grooves/angle"},
         {"/contact/slip/to", "/surface/grooves/cross_angle"},
-        {"/contact/friction", "/contact/areas"},
-        {"/contact/friction", "/contact/gap_direction"},
     };
     for (size_t p = 0; p < sizeof PAIRS / sizeof *PAIRS; p++) {
         char name[NAME_SIZE];

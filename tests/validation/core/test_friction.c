@@ -331,17 +331,22 @@ static void steady_sliding(void **state) {
 }
 
 /* Returns how far works and energy are from balance, over the dissipation, after so many steps. */
-static double imbalance(int steps, size_t press_steps) {
-    struct dragged d = opened(128, 0.3, 0.3, press_steps);
-    roughen(&d, 0.3, 8);
+static double imbalance(double slope, double poisson, int steps, size_t press_steps) {
+    struct dragged d = opened(128, poisson, 0.3, press_steps);
+    roughen(&d, slope, 8);
     begin(&d);
-    press(&d, 0.03);
+    press(&d, 0.1 * slope);
     for (int step = 1; step <= steps; step++)
-        drag(&d, 0.02 * step / steps);
+        drag(&d, slope / 15 * step / steps);
     const struct friction_state *s = &d.state;
     double left = s->work + s->pressing_work - s->dissipation - s->energy;
-    printf("[   INFO   ] %d steps: work %.5g, dissipation %.5g, balance %.2g of it; %.2f sticks\n",
-           steps, s->work, s->dissipation, left / s->dissipation, s->stick_area);
+    printf(
+        "[   INFO   ] slope %.1f, nu %g, %d steps: work %.5g, dissipation %.5g, balance %.2g and "
+        "%.2g of them; %.2f sticks\n",
+        slope, poisson, steps, s->work, s->dissipation, left / s->work, left / s->dissipation,
+        s->stick_area);
+    if (steps >= 20)
+        assert_true(fabs(left) <= 1e-5 * s->work);
     assert_true(s->dissipation > 0 && s->stick_area > 0 && s->stick_area < 1);
     friction_destroy(&d.solver);
     return fabs(left / s->dissipation);
@@ -352,10 +357,14 @@ static double imbalance(int steps, size_t press_steps) {
  * of second order in the step. */
 static void energy(void **state) {
     (void)state;
-    double few = imbalance(5, 0), many = imbalance(20, 0);
-    assert_true(many <= 1e-4);
-    assert_true(many <= few / 4);
-    assert_true(imbalance(20, 3) <= 1e-4);
+    static const struct { double slope, poisson; } FACES[] = {{0.3, 0.3}, {0.5, 0.4999}};
+    for (size_t a = 0; a < sizeof FACES / sizeof *FACES; a++) {
+        double few = imbalance(FACES[a].slope, FACES[a].poisson, 5, 0);
+        double many = imbalance(FACES[a].slope, FACES[a].poisson, 20, 0);
+        assert_true(many <= 1e-4);
+        assert_true(many <= few / 4);
+    }
+    assert_true(imbalance(0.3, 0.3, 20, 3) <= 1e-4);
 }
 
 /* A mirrored face, dragged backward, has the mirrored solution. */
@@ -411,6 +420,53 @@ static void without_friction(void **state) {
     full_destroy(&full);
     friction_destroy(&d.solver);
     friction_destroy(&little.solver);
+}
+
+/* Measures over the face as it stands change nothing of the solution. Before the drag they are
+ * those of contact without friction. The face has about half the slope squared more area, where it
+ * is open; a node there has a gap along its normal that is as much larger. */
+static void face_as_it_stands(void **state) {
+    (void)state;
+    struct dragged d = opened(64, 0.3, 0.5, 0), plain = opened(64, 0.3, 0.5, 0);
+    struct full *full = NULL;
+    struct contact_state without = {.nodes = 0};
+    struct full_report report = {.stretch = NAN};
+    struct error err = {0};
+    roughen(&d, 0.3, 7);
+    memcpy(plain.z, d.z, sizeof d.z);
+    d.options.current_areas = d.options.normal_gaps = true;
+    begin(&d);
+    begin(&plain);
+    press(&d, 0.04);
+    press(&plain, 0.04);
+    if (full_create(&full, &d.grid, &d.block, &d.options, &err) != 0 ||
+        full_begin(full, d.z, &err) != 0 || full_press(full, 0.04, &without, &report, &err) != 0)
+        fail_msg("%s", err.text);
+    double share = (double)without.nodes / 64;
+    double area = share * report.stretch * (1 + report.contact_tilt) / (1 + report.face_tilt);
+    check_relative(d.state.face.area, area, 1e-9);
+    check_relative(d.state.face_without.area, area, 1e-9);
+    check_relative(d.state.face.tilt, report.face_tilt, 1e-9);
+    check_relative(d.state.face.open_stretch, report.open_stretch, 1e-9);
+    check_relative(d.state.mean_gap, without.mean_gap, 1e-9);
+    check_relative(plain.state.face.area, share, 1e-12);
+    assert_true(d.state.face.area < share / (1 + 0.2 * 0.3 * 0.3));
+    assert_true(d.state.mean_gap > plain.state.mean_gap);
+    for (int step = 1; step <= 4; step++) {
+        drag(&d, 0.01 * step);
+        drag(&plain, 0.01 * step);
+    }
+    assert_true(d.state.stuck > 0 && d.state.stuck < d.state.nodes);
+    assert_true(d.state.traction == plain.state.traction);
+    check_close(d.state.stick_area, plain.state.stick_area, 0.05);
+    assert_true(d.state.stick_area != plain.state.stick_area);
+    for (size_t i = 0; i < 64; i++) {
+        assert_true(d.state.q[i] == plain.state.q[i]);
+        assert_true(d.state.p[i] > 0 || d.state.gap[i] >= plain.state.gap[i]);
+    }
+    full_destroy(&full);
+    friction_destroy(&d.solver);
+    friction_destroy(&plain.solver);
 }
 
 /* --- drawn scenes --- */
@@ -501,6 +557,7 @@ int main(void) {
                                        cmocka_unit_test(steady_sliding),
                                        cmocka_unit_test(energy),
                                        cmocka_unit_test(mirror_image),
+                                       cmocka_unit_test(face_as_it_stands),
                                        cmocka_unit_test(without_friction),
                                        cmocka_unit_test(drawn_scenes),
                                        cmocka_unit_test(refusals)};

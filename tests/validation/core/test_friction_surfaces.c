@@ -466,6 +466,44 @@ static void mirror_image(void **state) {
     closed(other);
 }
 
+/* A face whose x and y are exchanged, dragged along y, has the exchanged solution. */
+static void along_y(void **state) {
+    (void)state;
+    enum { N = 16 };
+    struct dragged *one = opened(N, N, 0.2, 0.4, 1), *other = opened(N, N, 0.2, 0.4, 1);
+    const struct friction_state *s = &other->state;
+    roughen(one, false, 8, 0.2, 5);
+    for (size_t i = 0; i < N * N; i++)
+        other->z[i] = one->z[i % N * N + i / N];
+    other->friction.along_y = true;
+    begin(one);
+    begin(other);
+    press(one, 0.02);
+    press(other, 0.02);
+    for (int step = 1; step <= 3; step++) {
+        struct error err = {0};
+        drag(one, 0.01 * step);
+        if (friction_drag(other->solver, 0.01 * step, &other->state, &err) != 0)
+            fail_msg("%s", err.text);
+    }
+    assert_true(one->state.stuck > 0 && one->state.stuck < one->state.nodes);
+    assert_int_equal(s->stuck, one->state.stuck);
+    check_close(s->traction, one->state.traction, 1e-9);
+    check_close(mean_of(N * N, s->q), 0, 1e-9);
+    check_relative(s->dissipation, one->state.dissipation, 1e-5);
+    check_relative(s->sliding, one->state.sliding, 1e-6);
+    for (size_t i = 0; i < N * N; i++) {
+        size_t turned = i % N * N + i / N;
+        check_close(s->p[turned], one->state.p[i], 1e-7);
+        check_close(s->q_across[turned], one->state.q[i], 1e-7);
+        check_close(s->q[turned], one->state.q_across[i], 1e-7);
+        check_close(s->over[turned], one->state.over[i], 1e-7);
+        assert_true(s->sticks[turned] == one->state.sticks[i]);
+    }
+    closed(one);
+    closed(other);
+}
+
 /* Pressed without friction, pressures are those of full_press to the rounding of a force; with a
  * vanishing coefficient they tend to them. */
 static void without_friction(void **state) {
@@ -547,6 +585,7 @@ int main(void) {
                                        cmocka_unit_test(steady_sliding),
                                        cmocka_unit_test(energy),
                                        cmocka_unit_test(mirror_image),
+                                       cmocka_unit_test(along_y),
                                        cmocka_unit_test(without_friction),
                                        cmocka_unit_test(drawn_scenes)};
     return cmocka_run_group_tests(tests, NULL, NULL);
