@@ -7,10 +7,6 @@
 /* As in self_contact.c: distance of a pair in columns, distance to the middle of its patch, width
  * of a bin of the search. */
 static const double REACH = 1, NEAR = 3, BIN = 4;
-/* Pairs are found from a node to patches that lie forward: at positive values of steps along x plus
- * FORWARD times steps along y. This is tan 22.5 degrees, so that flanks along the axes and
- * diagonals of the grid differ. */
-static const double FORWARD = 0.41421356237309503;
 /* As in self_contact.c: sharper bends into the block count as bends the other direction. */
 static const double SHARPEST = 1.1 * M_PI;
 /* Cosine between the normals of a node and a point that meet, at most. */
@@ -313,14 +309,14 @@ static double turning_of(const struct mesh *mesh, const double *u, const struct 
     return turned;
 }
 
-/* Returns whether a patch is across air from a node behind it: from one to the other the face turns
+/* Returns whether a patch is across air from a node: from one to the other the face turns
  * by about half a turn into the block. */
 static bool faces(const struct mesh *mesh, const double *u, size_t node, size_t patch) {
     struct path path = {.node = node};
     fill_steps(mesh, node, patch, path.steps);
     long along = labs(path.steps[0]), back = labs(path.steps[1]);
     path.count = along > back ? along : back;
-    if (path.count < STEPS_LEAST || !((double)path.steps[0] + FORWARD * (double)path.steps[1] > 0))
+    if (path.count < STEPS_LEAST)
         return false;
     double turned = turning_of(mesh, u, &path);
     return turned > M_PI / 2 && turned < 3 * M_PI / 2;

@@ -5,9 +5,8 @@
  *
  *   c(s, t) = sum B_a(s) B_b(t) x_(i+a, j+b),  a, b = -1 to 1,  s, t from 0 to 1
  *
- * and a node meets the nearest point of the nearest patch across air, as in profiles. Of two
- * flanks that meet, the nodes of one meet the other: the one from which the other lies forward,
- * along a fixed direction of the grid. Lips on the flat are not treated apart. */
+ * and a node of either flank meets the nearest point of the nearest patch across air, as in
+ * profiles. Lips on the flat are not treated apart. */
 #ifndef RUGO_CORE_FULL_SELF_CONTACT_SURFACE_H
 #define RUGO_CORE_FULL_SELF_CONTACT_SURFACE_H
 

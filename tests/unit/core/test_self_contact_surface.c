@@ -85,7 +85,7 @@ static double find(struct folded *f) {
     return energy;
 }
 
-/* Both splines are the same curve, and of a profile the nodes before an arc meet it. */
+/* Both splines are the same curve, and nodes of either flank meet the other one. */
 static void even_folds_are_those_of_a_profile(void **state) {
     (void)state;
     struct folded f, profile;
