@@ -297,8 +297,16 @@ int map_characterise(struct map_characterisation *out, const struct height_map *
     if (under_window)
         map_chance_forgo(chance, "none: the map is under a window");
     status = measure(out, &measured, chance, under_window, trusted, extent, err);
-    if (status == 0)
-        status = map_remedies_add(out, &measured, record, err);
+    if (status == 0 && out->certainty.has_errors)
+        status = map_remedies_add(&(struct map_remedied){.areal = &out->areal,
+                                                         .errors = &out->errors,
+                                                         .moment_errors = &out->moment_errors,
+                                                         .functional = &out->functional,
+                                                         .directions = &out->directions,
+                                                         .parameters = &out->parameters,
+                                                         .scales = &out->scales,
+                                                         .spectra = &out->spectra},
+                                  &measured, record, err);
     map_chance_destroy(&chance);
     size_t heights = grid_points(&map->grid) - height_map_holes(map);
     return status == 0 ? measure_quantiles(&out->quantiles, &measured, heights, extent, err)

@@ -54,26 +54,26 @@ static void losses_add_directions(const struct line_losses *lost, struct isotrop
     out->direction_error = fmin(hypot(out->direction_error, lost->slope / (2 * size)), M_PI / 4);
 }
 
-static void lines_add(struct map_characterisation *found, const struct line_losses *lost) {
-    losses_add(lost, &found->areal, &found->errors);
-    losses_add(lost, &found->areal, &found->moment_errors);
-    losses_add_functional(lost, &found->functional);
-    losses_add_directions(lost, &found->directions.fine);
-    losses_add_directions(lost, &found->directions.coarse);
+static void lines_add(const struct map_remedied *found, const struct line_losses *lost) {
+    losses_add(lost, found->areal, found->errors);
+    losses_add(lost, found->areal, found->moment_errors);
+    losses_add_functional(lost, found->functional);
+    losses_add_directions(lost, &found->directions->fine);
+    losses_add_directions(lost, &found->directions->coarse);
     for (int s = 0; s < MAP_STENCILS; s++) {
-        struct map_summits *summits = &found->parameters.summits[s];
+        struct map_summits *summits = &found->parameters->summits[s];
         summits->errors.height_deviation =
             hypot(summits->errors.height_deviation, lost->height / 2 * summits->height_deviation);
     }
-    for (size_t n = 0; n < found->scales.count; n++) {
-        struct map_scale *scale = &found->scales.scale[n];
+    for (size_t n = 0; n < found->scales->count; n++) {
+        struct map_scale *scale = &found->scales->scale[n];
         scale->height_error = hypot(scale->height_error, lost->slope / 2 * scale->found.height);
         scale->slope_error = hypot(scale->slope_error, lost->slope / 2 * scale->found.slope);
         scale->curvature_error =
             hypot(scale->curvature_error, lost->curvature / 2 * scale->found.curvature);
     }
-    if (found->spectra.has_fit && found->spectra.fit.fitted)
-        widen(&found->spectra.fit.rms_height, lost->height / 2);
+    if (found->spectra->has_fit && found->spectra->fit.fitted)
+        widen(&found->spectra->fit.rms_height, lost->height / 2);
 }
 
 static void noise_add(const struct preparation_record *record, struct scalar_errors *out) {
@@ -86,20 +86,18 @@ static void noise_add(const struct preparation_record *record, struct scalar_err
     out->alpha = hypot(out->alpha, 2 * fabs(curvature - 2 * slope));
 }
 
-int map_remedies_add(struct map_characterisation *found, const struct measured_map *map,
+int map_remedies_add(const struct map_remedied *found, const struct measured_map *map,
                      const struct preparation_record *record, struct error *err) {
     struct line_losses lost;
-    if (!found->certainty.has_errors)
-        return 0;
     int status = line_losses_measure(map, record->lines, record->lines_along, &lost, err);
     if (status == 0 && record->lines != SCAN_LINES_NONE)
         lines_add(found, &lost);
     if (status == 0 && record->denoised) {
-        noise_add(record, &found->errors);
-        noise_add(record, &found->moment_errors);
+        noise_add(record, found->errors);
+        noise_add(record, found->moment_errors);
         /* it ends where waves were removed, as far as the fit before knew */
-        found->spectra.fit.short_wavelength.low = (double)NAN;
-        found->spectra.fit.short_wavelength.high = (double)NAN;
+        found->spectra->fit.short_wavelength.low = (double)NAN;
+        found->spectra->fit.short_wavelength.high = (double)NAN;
     }
     return status;
 }
