@@ -86,7 +86,8 @@ static void surfaces_with_friction_iterate_as_estimated(void **state) {
     const struct grid grid = {N, N, 1, 1};
     double z[N * N], square = 0;
     for (size_t i = 0; i < N * N; i++) {
-        double x = 2 * M_PI * (double)(i % N) / N, y = 2 * M_PI * (double)(i / N) / N;
+        const size_t row = i / N;
+        double x = 2 * M_PI * (double)(i % N) / N, y = 2 * M_PI * (double)row / N;
         z[i] = cos(x + 1) + 0.7 * cos(y) + 0.4 * cos(2 * x + y + 2) + 0.3 * cos(x - 2 * y);
     }
     square = (1 + 0.49 + 5 * 0.16 + 5 * 0.09) * 2 * M_PI * M_PI;
