@@ -28,7 +28,7 @@ static uint64_t surfaces(void) {
 }
 
 /* What patches are not, though their surfaces are. */
-enum spoiled { SPOILED_NOT, SPOILED_HALF, SPOILED_GROOVES, SPOILED_SCRATCH };
+enum spoiled { SPOILED_NOT, SPOILED_HALF, SPOILED_SCRATCH };
 
 struct kind {
     const char *name, *surface;
@@ -68,8 +68,6 @@ static struct height_map patch_of(const struct kind *kind, uint64_t realisation)
         *z += kind->noise * rms * noise[point];
         if (kind->spoiled == SPOILED_HALF)
             *z *= y > 0.5 ? 1.6 : 1;
-        if (kind->spoiled == SPOILED_GROOVES)
-            *z += rms * sin(2 * M_PI * 8 * x);
         if (kind->spoiled == SPOILED_SCRATCH && fabs(x - 0.3 - 0.2 * y) < 0.01)
             *z -= 6 * rms;
     }
@@ -210,7 +208,6 @@ static void ensembles(void **state) {
 static void other_classes(void **state) {
     (void)state;
     static const struct kind SPOILED[] = {{"rougher half", SELF_AFFINE, 0, SPOILED_HALF},
-                                          {"grooves", SELF_AFFINE, 0, SPOILED_GROOVES},
                                           {"scratch", SELF_AFFINE, 0, SPOILED_SCRATCH}};
     const size_t maps = every_case() ? 20 : 1;
     size_t found = 0;
