@@ -227,10 +227,10 @@ static void blocks_do_not_matter(void **state) {
 static void a_path_that_ends_has_a_note(void **state) {
     (void)state;
     enum { COUNT = 5 };
-    char *text = in_blocks(
-        STUDY("0.5", "\"model\": \"full\", \"kinematics\": \"small\", \"friction\": 0.9, "
-                     "\"pressures\": {\"values\": [0.2]}"),
-        COUNT, 3, NULL);
+    char *text =
+        in_blocks(STUDY("0.5", "\"model\": \"full\", \"kinematics\": \"small\", \"friction\": 0.9, "
+                               "\"pressures\": {\"values\": [0.2]}"),
+                  COUNT, 3, NULL);
     cJSON *document = cJSON_Parse(text);
     const cJSON *force = curve_of(document, "sliding_force", "", "full");
     const cJSON *note, *notes = json_at(document, "/notes/kept");
