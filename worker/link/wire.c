@@ -63,6 +63,7 @@ cJSON *wire_claim(const struct claim *claim) {
             field_put(value, "sequence", cJSON_CreateBool(!claim->independent_only)));
 }
 
+/* Takes each kind once, however often it is named. */
 static int read_kinds(const cJSON *kinds, const char **out, struct error *err) {
     if (!cJSON_IsArray(kinds) || cJSON_GetArraySize(kinds) > WIRE_KINDS_MOST)
         return field_fault("kinds", "an array of at most 32 names", err);
@@ -71,7 +72,11 @@ static int read_kinds(const cJSON *kinds, const char **out, struct error *err) {
     cJSON_ArrayForEach(kind, kinds) {
         if (!cJSON_IsString(kind))
             return field_fault("kinds", "an array of at most 32 names", err);
-        out[count++] = kind->valuestring;
+        size_t same = 0;
+        while (same < count && strcmp(out[same], kind->valuestring) != 0)
+            same++;
+        out[same] = kind->valuestring;
+        count += same == count;
     }
     out[count] = NULL;
     return 0;

@@ -180,6 +180,19 @@ static void claim_crosses(void **state) {
     cJSON_Delete(value);
 }
 
+static void a_kind_counts_once(void **state) {
+    (void)state;
+    struct wire_claim got;
+    struct error err = {0};
+    cJSON *value = cJSON_Parse("{\"worker\":\"w\",\"host\":\"h\",\"count\":1,"
+                               "\"kinds\":[\"contact\",\"statistics\",\"contact\"]}");
+    assert_non_null(value);
+    assert_int_equal(wire_claim_read(value, &got, &err), 0);
+    assert_string_equal(got.claim.kinds[1], "statistics");
+    assert_null(got.claim.kinds[2]);
+    cJSON_Delete(value);
+}
+
 /* A worker whose program makes results of a kind in another form must get no jobs of it; one that
  * names no form may have any, as workers of older versions. */
 static void kinds_of_other_forms_are_left_out(void **state) {
@@ -427,6 +440,7 @@ int main(void) {
         cmocka_unit_test(malformed_jobs_are_refused),
         cmocka_unit_test(more_jobs_than_room_are_refused),
         cmocka_unit_test(claim_crosses),
+        cmocka_unit_test(a_kind_counts_once),
         cmocka_unit_test(kinds_of_other_forms_are_left_out),
         cmocka_unit_test(names_of_hosts_are_bounded),
         cmocka_unit_test(claims_are_bounded),
