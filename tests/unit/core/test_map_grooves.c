@@ -5,46 +5,15 @@
 #include "core/statistics/grooves/map_grooves.h"
 #include "core/statistics/spectra/spectrum_fit.h"
 #include "core/surface/grooves/grooves.h"
-#include "core/surface/surface.h"
 #include "tests/support/check.h"
 #include "tests/support/effort.h"
+#include "tests/support/random_part.h"
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The random part has H = 0.8, waves of 4 to 32 points and RMS height 1. A map is cut from a cell
- * of twice its sides. */
-enum { SIDE = 128, WHOLE = 2 * SIDE, SEED = 7 };
-
-struct maker {
-    struct generator *generator;
-    double *whole, *z;
-};
-
-static struct maker maker_create(double anisotropy) {
-    const struct grid grid = {WHOLE, WHOLE, WHOLE, WHOLE};
-    const struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
-                                      .hurst = 0.8,
-                                      .wavelength_long = 32,
-                                      .wavelength_rolloff = 32,
-                                      .wavelength_short = 4,
-                                      .anisotropy = anisotropy,
-                                      .lay_angle = 0.4};
-    struct surface_options options = SURFACE_DEFAULTS;
-    struct maker out = {.whole = malloc(WHOLE * WHOLE * sizeof(double)),
-                        .z = malloc(SIDE * SIDE * sizeof(double))};
-    options.amplitudes = AMPLITUDES_RANDOM;
-    assert_true(out.whole != NULL && out.z != NULL);
-    assert_int_equal(generator_create(&out.generator, &spectrum, &grid, &options, NULL), 0);
-    return out;
-}
-
-static void maker_destroy(struct maker *maker) {
-    generator_destroy(&maker->generator);
-    free(maker->whole);
-    free(maker->z);
-}
+enum { SEED = 7 };
 
 static const struct grid GRID = {SIDE, SIDE, SIDE, SIDE};
 

@@ -2,46 +2,11 @@
  * energy and balance, their tangent, the periodic images, and multipliers that take the forces;
  * with friction Coulomb's law, its tangent, and forces that turn with the face. */
 #include "tests/support/check.h"
-
-#include "core/full/self_contact.h"
+#include "tests/support/fold.h"
 #include <stdlib.h>
 #include <string.h>
 
 enum { NODES = 24, FIRST = 8, DEEP = 4, FACE_VALUES = 2 * NODES };
-
-struct folded {
-    struct mesh *mesh;
-    struct tangent *tangent;
-    struct self_contact self;
-    double *u, *force, *change;
-    bool active[NODES];
-};
-
-static void open_fold(struct folded *f) {
-    struct error err = {0};
-    struct grid grid = {.nx = NODES, .ny = 1, .lx = NODES, .ly = 1};
-    struct block block = {.poisson = 0.3, .height = 12, .layer_growth = 1.3};
-    struct material material = material_of(block.poisson, KINEMATICS_HENCKY);
-    *f = (struct folded){0};
-    if (mesh_create(&f->mesh, &grid, &block, INFINITY, &err) != 0 ||
-        tangent_create(&f->tangent, f->mesh, &material, false, &err) != 0 ||
-        self_contact_create(&f->self, f->mesh, &err) != 0)
-        fail_msg("%s", err.text);
-    size_t count = mesh_degrees_of_freedom(f->mesh);
-    f->u = array_create(count, sizeof *f->u);
-    f->force = array_create(count, sizeof *f->force);
-    f->change = array_create(count, sizeof *f->change);
-    assert_true(f->u != NULL && f->force != NULL && f->change != NULL);
-}
-
-static void close_fold(struct folded *f) {
-    self_contact_clear(&f->self);
-    tangent_destroy(&f->tangent);
-    mesh_destroy(&f->mesh);
-    free(f->u);
-    free(f->force);
-    free(f->change);
-}
 
 /* A fold DEEP columns deep, upward (into the block) or downward (a crest), whose flanks lean over
  * and are `width` apart at their narrowest, from node `first` on. */
@@ -57,23 +22,10 @@ static void fold(struct folded *f, size_t first, double width, double up) {
     }
 }
 
-static double find(struct folded *f) {
-    double energy = 0;
-    memset(f->force, 0, mesh_degrees_of_freedom(f->mesh) * sizeof *f->force);
-    self_contact_evaluate(&f->self, false, f->u, f->force, f->tangent);
-    for (size_t c = 0; c < f->self.count; c++) {
-        const struct self_pair *pair = &f->self.pair[c];
-        double stiffness = (pair->force - pair->multiplier) / -pair->gap;
-        if (pair->force > 0)
-            energy += pair->force * pair->force / (2 * stiffness);
-    }
-    return energy;
-}
-
 static void flanks_meet_across_air_alone(void **state) {
     (void)state;
     struct folded f;
-    open_fold(&f);
+    open_fold(&f, NODES, 1, 1.3);
     for (size_t first = FIRST; first < FIRST + NODES; first += 5) {
         fold(&f, first, 0.2, 1);
         self_contact_search(&f.self, f.u, f.active);
@@ -99,7 +51,7 @@ static void flanks_meet_across_air_alone(void **state) {
 static void lips_on_the_flat_meet(void **state) {
     (void)state;
     struct folded f;
-    open_fold(&f);
+    open_fold(&f, NODES, 1, 1.3);
     fold(&f, FIRST, 0.2, 1);
     f.u[2 * FIRST] += 0.68;
     f.u[2 * (FIRST + 2 * DEEP)] -= 0.68;
@@ -122,7 +74,7 @@ static void forces_and_tangent_are_derivatives(void **state) {
     static const double STEP = 1e-5;
     struct folded f;
     double force[FACE_VALUES], plus[FACE_VALUES];
-    open_fold(&f);
+    open_fold(&f, NODES, 1, 1.3);
     fold(&f, FIRST, -0.3, 1);
     self_contact_search(&f.self, f.u, f.active);
     assert_true(find(&f) > 0 && f.tangent->links > 0);
@@ -170,7 +122,7 @@ static void friction_follows_coulomb_and_its_tangent(void **state) {
     static const double STEP = 1e-5, RISES[] = {0.004, -0.1, 0.1};
     struct folded f;
     double plus[FACE_VALUES], stiffness[FACE_VALUES];
-    open_fold(&f);
+    open_fold(&f, NODES, 1, 1.3);
     for (size_t r = 0; r < 3; r++) {
         size_t slide = 0, stick = 0;
         rub(&f, RISES[r]);
@@ -209,7 +161,7 @@ static void forces_turn_with_the_face(void **state) {
     static const double COSINE = 0.8, SINE = 0.6;
     struct folded f;
     double force[FACE_VALUES];
-    open_fold(&f);
+    open_fold(&f, NODES, 1, 1.3);
     rub(&f, 0.1);
     (void)find(&f);
     memcpy(force, f.force, sizeof force);
@@ -233,8 +185,8 @@ static void forces_turn_with_the_face(void **state) {
 static void forces_balance_and_become_multipliers(void **state) {
     (void)state;
     struct folded f, across;
-    open_fold(&f);
-    open_fold(&across);
+    open_fold(&f, NODES, 1, 1.3);
+    open_fold(&across, NODES, 1, 1.3);
     fold(&f, FIRST, -0.3, 1);
     fold(&across, FIRST + 12, -0.3, 1);
     self_contact_search(&f.self, f.u, f.active);

@@ -2,46 +2,11 @@
  * profile, folds along both axes and across the sides of the cell are alike, forces are the
  * gradient of an energy and balance as do their moments, and their tangent is exact. */
 #include "tests/support/check.h"
-
-#include "core/full/self_contact.h"
+#include "tests/support/fold.h"
 #include <stdlib.h>
 #include <string.h>
 
 enum { NODES = 16, ROWS = 8, FACE = NODES * ROWS, DEEP = 3, FIRST = 4 };
-
-struct folded {
-    struct mesh *mesh;
-    struct tangent *tangent;
-    struct self_contact self;
-    double *u, *force, *change;
-    bool active[FACE];
-};
-
-static void open_fold(struct folded *f, size_t nx, size_t ny) {
-    struct error err = {0};
-    struct grid grid = {.nx = nx, .ny = ny, .lx = (double)nx, .ly = (double)ny};
-    struct block block = {.poisson = 0.3, .height = 12, .layer_growth = 2};
-    struct material material = material_of(block.poisson, KINEMATICS_HENCKY);
-    *f = (struct folded){0};
-    if (mesh_create(&f->mesh, &grid, &block, INFINITY, &err) != 0 ||
-        tangent_create(&f->tangent, f->mesh, &material, false, &err) != 0 ||
-        self_contact_create(&f->self, f->mesh, &err) != 0)
-        fail_msg("%s", err.text);
-    size_t count = mesh_degrees_of_freedom(f->mesh);
-    f->u = array_create(count, sizeof *f->u);
-    f->force = array_create(count, sizeof *f->force);
-    f->change = array_create(count, sizeof *f->change);
-    assert_true(f->u != NULL && f->force != NULL && f->change != NULL);
-}
-
-static void close_fold(struct folded *f) {
-    self_contact_clear(&f->self);
-    tangent_destroy(&f->tangent);
-    mesh_destroy(&f->mesh);
-    free(f->u);
-    free(f->force);
-    free(f->change);
-}
 
 /* Displaces the nodes of one line across a fold DEEP columns deep, whose leaning flanks are `width`
  * apart at their narrowest, from node `first` on. `along` and the last component are displaced. */
@@ -71,26 +36,12 @@ static void fold(struct folded *f, size_t first, double width, double uneven, do
     }
 }
 
-/* Computes forces and tangent; returns the energy. */
-static double find(struct folded *f) {
-    double energy = 0;
-    memset(f->force, 0, mesh_degrees_of_freedom(f->mesh) * sizeof *f->force);
-    self_contact_evaluate(&f->self, false, f->u, f->force, f->tangent);
-    for (size_t c = 0; c < f->self.count; c++) {
-        const struct self_pair *pair = &f->self.pair[c];
-        double stiffness = (pair->force - pair->multiplier) / -pair->gap;
-        if (pair->force > 0)
-            energy += pair->force * pair->force / (2 * stiffness);
-    }
-    return energy;
-}
-
 /* Both splines are the same curve, and nodes of either flank meet the other one. */
 static void even_folds_are_those_of_a_profile(void **state) {
     (void)state;
     struct folded f, profile;
-    open_fold(&f, NODES, ROWS);
-    open_fold(&profile, NODES, 1);
+    open_fold(&f, NODES, ROWS, 2);
+    open_fold(&profile, NODES, 1, 2);
     for (size_t first = FIRST; first < FIRST + NODES; first += 5)
         for (int width = -1; width < 2; width += 2) {
             fold(&f, first, 0.2 * width, 0, 1, 0);
@@ -116,7 +67,7 @@ static void even_folds_are_those_of_a_profile(void **state) {
 static void crests_and_graphs_meet_nothing(void **state) {
     (void)state;
     struct folded f;
-    open_fold(&f, NODES, ROWS);
+    open_fold(&f, NODES, ROWS, 2);
     fold(&f, FIRST, 0.2, 0.04, -1, 0);
     self_contact_search(&f.self, f.u, f.active);
     assert_int_equal(f.self.count, 0);
@@ -132,8 +83,8 @@ static void axes_and_sides_are_alike(void **state) {
     (void)state;
     struct folded f, turned;
     double moment[3] = {0}, sum[3] = {0}, most = 0;
-    open_fold(&f, NODES, ROWS);
-    open_fold(&turned, ROWS, NODES);
+    open_fold(&f, NODES, ROWS, 2);
+    open_fold(&turned, ROWS, NODES, 2);
     fold(&f, FIRST, -0.3, 0.1, 1, 0);
     fold(&turned, FIRST + 9, -0.3, 0.1, 1, 1);
     self_contact_search(&f.self, f.u, f.active);
@@ -170,7 +121,7 @@ static void forces_and_tangent_are_derivatives(void **state) {
     enum { VALUES = 3 * FACE };
     struct folded f;
     double force[VALUES], plus[VALUES], stiffness[VALUES];
-    open_fold(&f, NODES, ROWS);
+    open_fold(&f, NODES, ROWS, 2);
     fold(&f, FIRST, -0.3, 0.1, 1, 0);
     self_contact_search(&f.self, f.u, f.active);
     assert_true(find(&f) > 0 && f.tangent->patches > 0);

@@ -3,47 +3,16 @@
  * where harmonics lie within the band of the rest and where no waves of the rest are. */
 #include "core/statistics/grooves/map_grooves.h"
 #include "core/surface/grooves/grooves.h"
-#include "core/surface/surface.h"
 #include "tests/support/check.h"
 #include "tests/support/effort.h"
+#include "tests/support/random_part.h"
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The rest has H = 0.8, waves of 4 to 32 points and RMS height 1. A map is cut from a cell of twice
- * its sides. */
-enum { SIDE = 128, WHOLE = 2 * SIDE, SEED = 21, VALUES = 3 };
+enum { SEED = 21, VALUES = 3 };
 static const char *const NAMES[VALUES] = {"period", "angle", "depth"};
 static const double CROSSED = 0.9, HEIGHTS[] = {0.5, 1, 3};
-
-struct maker {
-    struct generator *generator;
-    double *whole, *z;
-};
-
-static struct maker maker_create(double lay) {
-    const struct grid grid = {WHOLE, WHOLE, WHOLE, WHOLE};
-    const struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
-                                      .hurst = 0.8,
-                                      .wavelength_long = 32,
-                                      .wavelength_rolloff = 32,
-                                      .wavelength_short = 4,
-                                      .anisotropy = lay,
-                                      .lay_angle = 0.4};
-    struct surface_options options = SURFACE_DEFAULTS;
-    struct maker out = {.whole = malloc(WHOLE * WHOLE * sizeof(double)),
-                        .z = malloc(SIDE * SIDE * sizeof(double))};
-    options.amplitudes = AMPLITUDES_RANDOM;
-    assert_true(out.whole != NULL && out.z != NULL);
-    assert_int_equal(generator_create(&out.generator, &spectrum, &grid, &options, NULL), 0);
-    return out;
-}
-
-static void maker_destroy(struct maker *maker) {
-    generator_destroy(&maker->generator);
-    free(maker->whole);
-    free(maker->z);
-}
 
 struct truth {
     enum groove_shape shape;
