@@ -38,13 +38,16 @@ double face_stretch_change(const struct mesh *mesh, const double *u, const doubl
 }
 
 double face_largest_move(const struct mesh *mesh, const double *change) {
-    struct sum sum = {0};
+    const size_t d = (size_t)mesh->dimension;
     double most = 0;
-    for (size_t node = 0; node < mesh->face; node++)
-        sum_add(&sum, change[2 * node]);
-    double mean = sum_value(&sum) / (double)mesh->face;
-    for (size_t node = 0; node < mesh->face; node++)
-        most = fmax(most, fmax(fabs(change[2 * node] - mean), fabs(change[2 * node + 1])));
+    for (size_t axis = 0; axis < d; axis++) {
+        struct sum sum = {0};
+        for (size_t node = 0; node < mesh->face && axis + 1 < d; node++)
+            sum_add(&sum, change[d * node + axis]);
+        double mean = sum_value(&sum) / (double)mesh->face;
+        for (size_t node = 0; node < mesh->face; node++)
+            most = fmax(most, fabs(change[d * node + axis] - mean));
+    }
     return most;
 }
 

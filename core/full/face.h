@@ -17,8 +17,8 @@ double face_contact_stretch(const struct mesh *mesh, const double *u, const bool
 bool face_folds(const struct mesh *mesh, const double *u);
 /* Returns the largest change of the relative area of a cell between two states. */
 double face_stretch_change(const struct mesh *mesh, const double *u, const double *before);
-/* Returns the largest change of a displacement of the face of a profile; along the face, over the
- * mean. */
+/* Returns the largest change of a displacement of the face along an axis; of those along the face,
+ * over the mean. */
 double face_largest_move(const struct mesh *mesh, const double *change);
 /* The largest such change that a step may make: beyond it the face may have folded on its course.
  */
