@@ -346,10 +346,9 @@ double self_contact_depth(struct self_contact *self, const double *u, const bool
         return 0;
     prepare(self, u);
     for (size_t node = 0; node < self->mesh->face; node++) {
-        for (enum self_kind lips = 0; lips < SELF_KINDS; lips++)
-            if (find(self, u, active, lips, node, &pair)) {
+        for (enum self_kind kind = 0; kind < SELF_KINDS; kind++)
+            if (find(self, u, active, kind, node, &pair))
                 deepest = fmax(deepest, -pair.gap);
-            }
     }
     return deepest;
 }

@@ -13,9 +13,8 @@ static const struct option_row OPTIONS[] = {
     ACCESS_ROWS(struct options),
     {"columns", 0, OPTION_TEXT, 0, 0, AT(columns), "LIST", NULL,
      "scalars, such as kappa, and values of curves, such as mean_gap@0.1 or "
-     "contact_area:layered:nodes@0.1, with commas between; .theory, .grid and .law behind one ask "
-     "for "
-     "what stands beside it"},
+     "contact_area:layered:nodes@0.1, with commas between; .theory, .grid, .law and sources of "
+     "errors, as .model, behind one ask for what stands beside it"},
     {"where", 0, OPTION_LIST, 0, 0, AT(where), "NAME=VALUE", NULL,
      "only cases with this value, e.g. hurst=0.8; several with commas between, or given again: any "
      "of one name, all of different names"},

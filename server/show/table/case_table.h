@@ -6,10 +6,9 @@
  * a model, a series, kinematics, a level or a pressure, "contact_area:layered:nodes:8@0.1". Without
  * them it is the first series on the finest level, a column a model.
  *
- * What stands beside a value is a column of its own by a word behind a dot:
- * "summit_density.theory",
- * ".grid" (theory of the grid, of scalars) and ".law" (what the other law of heights gives less).
- */
+ * What stands beside a value is a column of its own by a word behind a dot: ".theory", ".grid"
+ * (theory of the grid, of scalars), ".law" (what the other law of heights gives less), or a source
+ * of errors, ".model", ".cell" (what it leaves of the value, without its bound). */
 #ifndef RUGO_SERVER_SHOW_TABLE_CASE_TABLE_H
 #define RUGO_SERVER_SHOW_TABLE_CASE_TABLE_H
 
