@@ -27,11 +27,6 @@ static const double ROUNDINGS = 8, ROUNDING_MOST = 0.01;
  * active set that do not improve on the best one. RETURNS: active sets met before, after which
  * Newton's method gives up. */
 enum { HALVINGS = 8, PATIENCE = 10, RETURNS = 3 };
-/* Of a face that meets itself: depth of a node in columns that makes a step too long; columns that
- * a step moves a node at most, as what meets across more may pass through unseen; change of its
- * forces over the largest contact force below which they have settled, and rounds until then. */
-static const double DEEPEST = 0.25, LONGEST = 0.5, SETTLED = 1e-7;
-enum { RENEWALS = 60 };
 
 int newton_create(struct newton *out, const struct mesh *mesh, const struct material *material,
                   enum gap_weighting weighting, enum equation_solver solver, struct error *err) {
@@ -323,13 +318,14 @@ static int newton_change(struct newton *n, double off, struct newton_end *end, s
  * element. */
 static int advance(struct newton *n, struct error *err) {
     size_t unknowns = newton_unknowns(n);
-    double length = n->overhangs ? fmin(1, LONGEST / face_largest_move(n->mesh, n->change)) : 1;
+    double length =
+        n->overhangs ? fmin(1, SELF_LONGEST / face_largest_move(n->mesh, n->change)) : 1;
     bool folds = false;
     memcpy(n->before, n->u, unknowns * sizeof *n->before);
     for (int halving = 0; halving < HALVINGS; halving++, length /= 2) {
         for (size_t f = 0; f < unknowns; f++)
             n->u[f] = n->before[f] + length * n->change[f];
-        folds = n->overhangs ? self_contact_depth(&n->self, n->u, n->active) > DEEPEST
+        folds = n->overhangs ? self_contact_depth(&n->self, n->u, n->active) > SELF_DEEPEST
                              : face_folds(n->mesh, n->u);
         if (!folds && newton_evaluate(n))
             return 0;
@@ -408,22 +404,14 @@ static int check_progress(const struct newton *n, struct newton_progress *progre
     return 0;
 }
 
-/* Finds contact of the face with itself anew where it has balanced. *settled: whether its forces
- * had settled, so that nothing but rounding is left when balance is looked at again. */
-static int renew(struct newton *n, double largest, int *renewals, bool *settled,
-                 struct error *err) {
-    size_t before = n->self.count;
-    double left = self_contact_renew(&n->self, n->u, n->active);
-    *settled = left <= fmax(SETTLED, n->tolerance) * largest;
-    if (before == 0 && n->self.count == 0)
-        return 0;
-    if (++*renewals > RENEWALS)
-        return error_set(err, ERROR_NUMERIC,
-                         "contact of the face with itself does not settle: after %d rounds its "
-                         "forces change by %.2g of the largest force",
-                         RENEWALS, left / largest);
-    return newton_evaluate(n) ? 0
-                              : error_set(err, ERROR_NUMERIC, "an element is turned inside out");
+/* Finds contact of the face with itself anew where it has balanced. */
+static int renew(struct newton *n, double largest, struct self_rounds *rounds, struct error *err) {
+    bool met;
+    int status =
+        self_contact_round(&n->self, n->u, n->active, n->tolerance, largest, rounds, &met, err);
+    if (status != 0 || !met || newton_evaluate(n))
+        return status;
+    return error_set(err, ERROR_NUMERIC, "an element is turned inside out");
 }
 
 /* Prepares forces, gaps and the active set. */
@@ -445,8 +433,7 @@ static int begin(struct newton *n, double pressure, struct error *err) {
 int newton_solve(struct newton *n, double pressure, struct newton_end *end, struct error *err) {
     struct set_history history = {0};
     struct newton_progress progress = {.least = INFINITY};
-    bool settled = false;
-    int renewals = 0;
+    struct self_rounds rounds = {0};
     *end = (struct newton_end){0};
     int status = begin(n, pressure, err);
     if (status != 0)
@@ -457,11 +444,11 @@ int newton_solve(struct newton *n, double pressure, struct newton_end *end, stru
         struct round round = assess(n, pressure, first, &history, end);
         bool balanced = !first && round.changes == 0 && round.residual <= round.balanced &&
                         round.inside <= round.closed;
-        if (balanced && (settled || !n->overhangs))
+        if (balanced && (rounds.settled || !n->overhangs))
             return 0;
-        settled = false;
+        rounds.settled = false;
         if (balanced) {
-            status = renew(n, round.largest, &renewals, &settled, err);
+            status = renew(n, round.largest, &rounds, err);
             if (status != 0)
                 return status;
             progress = (struct newton_progress){.least = INFINITY, .begun = end->iterations};

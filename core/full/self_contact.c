@@ -505,6 +505,26 @@ double self_contact_renew(struct self_contact *self, const double *u, const bool
     return change;
 }
 
+/* Change of forces over the largest contact force below which they have settled, and rounds until
+ * then. */
+static const double SETTLED = 1e-7;
+enum { ROUNDS_MOST = 60 };
+
+int self_contact_round(struct self_contact *self, const double *u, const bool *active,
+                       double tolerance, double largest, struct self_rounds *rounds, bool *met,
+                       struct error *err) {
+    size_t before = self->count;
+    double left = self_contact_renew(self, u, active);
+    rounds->settled = left <= fmax(SETTLED, tolerance) * largest;
+    *met = before > 0 || self->count > 0;
+    if (!*met || ++rounds->count <= ROUNDS_MOST)
+        return 0;
+    return error_set(err, ERROR_NUMERIC,
+                     "contact of the face with itself does not settle: after %d rounds its "
+                     "forces change by %.2g of the largest force",
+                     ROUNDS_MOST, left / largest);
+}
+
 void self_contact_settle(struct self_contact *self) {
     for (size_t c = 0; c < self->count; c++) {
         struct self_pair *pair = &self->pair[c];

@@ -43,6 +43,23 @@ void self_contact_evaluate(struct self_contact *self, bool convex, const double 
  * that is left: what gaps under force, and depths, are times STIFFNESS. */
 double self_contact_renew(struct self_contact *self, const double *u, const bool *active);
 
+/* Of a step of Newton's method: depth of a node in columns that makes it too long, and columns that
+ * it moves a node at most, as what meets across more may pass through unseen. */
+#define SELF_DEEPEST 0.25
+#define SELF_LONGEST 0.5
+
+/* Rounds in which multipliers settle. Initialise with {0}. */
+struct self_rounds {
+    int count;
+    bool settled; /* the last one left nothing but rounding of the balance */
+};
+/* Does self_contact_renew where Newton's method has balanced to a tolerance over the largest
+ * contact force. *met: whether there are pairs, or were before, so that forces are to be evaluated
+ * anew. ERROR_NUMERIC after too many rounds. */
+int self_contact_round(struct self_contact *self, const double *u, const bool *active,
+                       double tolerance, double largest, struct self_rounds *rounds, bool *met,
+                       struct error *err);
+
 /* Slip counts from the present points on; and the work that friction has taken since then, by
  * trapezoids. */
 void self_contact_settle(struct self_contact *self);

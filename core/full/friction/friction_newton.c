@@ -17,9 +17,6 @@ static const double ROUNDINGS = 8, ROUNDING_MOST = 0.01;
 /* A direction that has so much across the axis of the drive. */
 static const double TURNED = 0.1;
 enum { HALVINGS = 8, PATIENCE = 10, RETURNS = 3 };
-/* Of a face that meets itself, as in newton.c. */
-static const double DEEPEST = 0.25, LONGEST = 0.5, SETTLED = 1e-7;
-enum { RENEWALS = 60 };
 
 static int arrays_create(struct friction_newton *n, struct error *err) {
     const size_t unknowns = n->unknowns, face = n->mesh->face;
@@ -471,7 +468,8 @@ const bool *friction_newton_touching(struct friction_newton *n) {
  * nor inverts an element. */
 static int advance(struct friction_newton *n, const struct motion *motion, struct error *err) {
     struct motion before;
-    double length = n->overhangs ? fmin(1, LONGEST / face_largest_move(n->mesh, n->change)) : 1;
+    double length =
+        n->overhangs ? fmin(1, SELF_LONGEST / face_largest_move(n->mesh, n->change)) : 1;
     bool folds = false;
     memcpy(before.flat, n->flat, sizeof before.flat);
     memcpy(before.shear, n->shear, sizeof before.shear);
@@ -484,7 +482,7 @@ static int advance(struct friction_newton *n, const struct motion *motion, struc
             n->shear[k] = before.shear[k] + length * motion->shear[k];
         }
         folds = n->overhangs
-                    ? self_contact_depth(&n->self, n->u, friction_newton_touching(n)) > DEEPEST
+                    ? self_contact_depth(&n->self, n->u, friction_newton_touching(n)) > SELF_DEEPEST
                     : face_folds(n->mesh, n->u);
         if (!folds && friction_newton_evaluate(n))
             return 0;
@@ -587,30 +585,22 @@ static int check_progress(const struct friction_newton *n, struct progress *prog
     return 0;
 }
 
-/* As in newton.c. */
-static int renew(struct friction_newton *n, double largest, int *renewals, bool *settled,
+/* Finds contact of the face with itself anew where it has balanced. */
+static int renew(struct friction_newton *n, double largest, struct self_rounds *rounds,
                  struct error *err) {
-    size_t before = n->self.count;
-    double left = self_contact_renew(&n->self, n->u, friction_newton_touching(n));
-    *settled = left <= fmax(SETTLED, n->tolerance) * largest;
-    if (before == 0 && n->self.count == 0)
-        return 0;
-    if (++*renewals > RENEWALS)
-        return error_set(err, ERROR_NUMERIC,
-                         "contact of the face with itself does not settle: after %d rounds its "
-                         "forces change by %.2g of the largest force",
-                         RENEWALS, left / largest);
-    return friction_newton_evaluate(n)
-               ? 0
-               : error_set(err, ERROR_NUMERIC, "an element is turned inside out");
+    bool met;
+    int status = self_contact_round(&n->self, n->u, friction_newton_touching(n), n->tolerance,
+                                    largest, rounds, &met, err);
+    if (status != 0 || !met || friction_newton_evaluate(n))
+        return status;
+    return error_set(err, ERROR_NUMERIC, "an element is turned inside out");
 }
 
 int friction_newton_solve(struct friction_newton *n, const struct friction_goal *goal,
                           struct friction_end *end, struct error *err) {
     struct set_history history = {0};
     struct progress progress = {.least = INFINITY};
-    bool settled = false;
-    int renewals = 0;
+    struct self_rounds rounds = {0};
     *end = (struct friction_end){0};
     double load = goal->pressure * n->mesh->across * (double)n->mesh->face;
     if (force_rounding(n) > ROUNDING_MOST * load)
@@ -629,10 +619,10 @@ int friction_newton_solve(struct friction_newton *n, const struct friction_goal 
         bool balanced = end->iterations > 0 && round.changes == 0 &&
                         round.residual <= round.balanced && round.inside <= round.closed &&
                         round.driven;
-        if (balanced && (settled || !n->overhangs))
+        if (balanced && (rounds.settled || !n->overhangs))
             return 0;
-        settled = false;
-        int status = balanced ? renew(n, round.largest, &renewals, &settled, err) : 0;
+        rounds.settled = false;
+        int status = balanced ? renew(n, round.largest, &rounds, err) : 0;
         if (status != 0)
             return status;
         if (balanced) {
