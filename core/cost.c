@@ -32,8 +32,8 @@ static const double SPECTRA_NS = 10;
  * to 512 x 512 and 1024 x 1024 points and profiles of 4096 and 65536, 2 to 16 a shortest wave. */
 static const double RANDOM_MODE_NS = 30, FIELD_NS = 1, RING_NS = 40;
 /* Relative increase of a surface's time a point with each doubling of the points from 2^20 on
- * (bench_surface). */
-static const double CACHE_SLOPE = 0.4, CACHE_DOUBLINGS = 20;
+ * (bench_surface): of iterations, and of one transform (gaussian-nayak, up to 2^26 points). */
+static const double CACHE_SLOPE = 0.4, FIELD_CACHE_SLOPE = 0.12, CACHE_DOUBLINGS = 20;
 
 /* Returns the number of fast iterations until they stall or reach the tolerance. */
 static double fast_iterations(const struct surface_options *options, const struct grid *grid) {
@@ -80,8 +80,16 @@ double cost_random_amplitudes(const struct grid *grid, size_t mode_x, size_t mod
     return RANDOM_MODE_NS * modes + FIELD_NS * (double)grid_points(grid) + RING_NS * rings;
 }
 
+static double caches(double points, double slope) {
+    return 1 + slope * fmax(0, log2(points) - CACHE_DOUBLINGS);
+}
+
 double cost_caches(double points) {
-    return 1 + CACHE_SLOPE * fmax(0, log2(points) - CACHE_DOUBLINGS);
+    return caches(points, CACHE_SLOPE);
+}
+
+double cost_field_caches(double points) {
+    return caches(points, FIELD_CACHE_SLOPE);
 }
 
 /* Returns the points a side; of a rectangle the geometric mean, which is exact for squares. */

@@ -22,6 +22,8 @@ double cost_spectra(const struct grid *grid);
 double cost_random_amplitudes(const struct grid *grid, size_t mode_x, size_t mode_y);
 /* Returns the factor by which work on this many points slows down beyond the processor's caches. */
 double cost_caches(double points);
+/* ... of surfaces that are made without iterations. */
+double cost_field_caches(double points);
 
 /* CPU seconds of a linear model (core/contact) for a series of loads of one surface, by which
  * companions are planned. Values depend on such a plan: it does not follow what solvers take.
