@@ -187,7 +187,7 @@ int functional_errors_by_law(struct functional_errors *out, const struct map_cha
         return 0;
     const double amplitude =
         sqrt(low_modes_variance(&chance->modes, heights->power[1], heights->count));
-    double z[LAW_HEIGHTS], none[FUNCTIONALS], all[FUNCTIONALS], change[FUNCTIONALS] = {0};
+    double z[LAW_HEIGHTS], none[FUNCTIONALS], all[FUNCTIONALS], square[FUNCTIONALS] = {0};
     for (size_t n = 0; n < LAW_HEIGHTS; n++)
         z[n] = heights->rms * heights_quantile(law, moments, ((double)n + 0.5) / LAW_HEIGHTS);
     int status = tilted_measure(z, 0, 0, none, err);
@@ -198,11 +198,11 @@ int functional_errors_by_law(struct functional_errors *out, const struct map_cha
         status = profile ? tilted_measure(z, size * M_SQRT1_2, 0, tilted, err)
                          : tilted_measure(z, size * cos(turn), size * sin(turn), tilted, err);
         for (size_t v = 0; v < FUNCTIONALS && status == 0; v++)
-            change[v] += (tilted[v] - none[v]) / TILTS;
+            square[v] += pow(tilted[v] - none[v], 2) / TILTS;
     }
     memcpy(all, &out->found, sizeof all);
     for (size_t v = 0; v < FUNCTIONALS && status == 0; v++)
-        all[v] = hypot(all[v], change[v]);
+        all[v] = sqrt(all[v] * all[v] + square[v]);
     memcpy(&out->found, all, sizeof all);
     return status;
 }
