@@ -148,13 +148,18 @@ static int heights_by_law(struct map_characterisation *out, const struct common 
                           struct error *err) {
     const struct height_fit *best = &out->height_fits.list[out->height_fits.best];
     const double before = out->errors.sq;
+    const bool stratified = isfinite(out->functional.plateau.ratio);
     struct map_height_law law;
-    if (!(best->p_value >= LAW_LEVEL) || !map_height_law_find(&law, out))
+    if (!map_height_law_find(&law, out))
         return 0;
-    scalar_errors_by_law(&out->errors, common->map, &law.heights, &law.moments);
-    for (int s = 0; s < MAP_STENCILS; s++)
-        out->parameters.summits[s].errors.height_deviation *= out->errors.sq / before;
-    return out->functional.has_errors
+    if (best->p_value >= LAW_LEVEL) {
+        scalar_errors_by_law(&out->errors, common->map, &law.heights, &law.moments);
+        for (int s = 0; s < MAP_STENCILS; s++)
+            out->parameters.summits[s].errors.height_deviation *= out->errors.sq / before;
+    }
+    /* tilts make the fit itself worse: whatever its level is, its ends are the best that is known
+     */
+    return out->functional.has_errors && !stratified
                ? functional_errors_by_law(&out->functional.errors, common->chance, &law.heights,
                                           &law.moments, grid_is_profile(common->map->grid), err)
                : 0;
