@@ -438,8 +438,8 @@ static void energy(void **state) {
 }
 
 /* Pressures of elements are unknowns of nearly incompressible blocks, with equations that are
- * scaled (gmres.h). When the preconditioner had another scale no step converged. Measured: 17 and 23
- * iterations a step of Newton's. */
+ * scaled (gmres.h). When the preconditioner had another scale no step converged. Measured: 17 and
+ * 23 iterations a step of Newton's. */
 static void rubber(void **state) {
     (void)state;
     static const double SLOPES[] = {0.1, 0.4};
