@@ -233,11 +233,9 @@ static const double FRICTION_PRESSURES = 1.8, FRICTION_BYTES = 2100;
 /* A step has so many iterations of Newton's method and half a factorisation, which takes this part
  * of it. */
 static const double FRICTION_NEWTON = 4, FRICTION_FACTORED = 0.5;
-/* Of surfaces, iterations of a step over those of a load without friction: Newton's, of the linear
- * equations, and of these with pressures as unknowns, by a power of the side over
- * FRICTION_SIDE. Bytes of a degree of freedom, more with pressures. */
+/* Of surfaces, iterations of a step over those of a load without friction: Newton's, and of the
+ * linear equations. Bytes of a degree of freedom, more with pressures. */
 static const double SURFACE_FRICTION_NEWTON = 0.8, SURFACE_FRICTION_LINEAR = 1.4;
-static const double FRICTION_PRESSURE_LINEAR = 4.8, FRICTION_SIDE = 16, FRICTION_SIDE_POWER = 0.6;
 static const double SURFACE_FRICTION_BYTES = 510, SURFACE_PRESSURE_BYTES = 100;
 
 static double newton_iterations(const struct grid *grid, double poisson, bool pressures,
@@ -324,9 +322,7 @@ struct full_size cost_friction_size(const struct grid *grid, const struct full_s
         return out;
     }
     out.newton *= SURFACE_FRICTION_NEWTON;
-    out.linear *= size->pressures ? FRICTION_PRESSURE_LINEAR *
-                                        pow(mean_side(grid) / FRICTION_SIDE, FRICTION_SIDE_POWER)
-                                  : SURFACE_FRICTION_LINEAR;
+    out.linear *= SURFACE_FRICTION_LINEAR;
     return out;
 }
 
