@@ -209,22 +209,38 @@ static const struct full_fit PROFILE_FULL = {400, 55, 2.5, 35, 1e4},
 static const double MEMORY_ROOM = 1.03;
 /* Iterations of the linear equations of a step, over their mean, at most. */
 static const double ITERATIONS_MOST = 3;
+/* Of random faces only those of higher RMS slopes overhang. */
+static const double OVERHANG_SLOPE = 0.7;
 /* Bytes a degree of freedom of a factorisation. */
 static const double FACTOR_BYTES = 900;
 /* Number of transforms of a point that take the time of an iteration of Newton's method on a degree
  * of freedom. */
 static const double PROFILE_TRANSFORMS = 95, SURFACE_TRANSFORMS = 280;
 
-/* Of profiles, nanoseconds a degree of freedom of a step with friction, which rise by this power of
- * their number over FRICTION_FREEDOM, by that of the iterations of a load without friction over
- * FRICTION_LOAD, and with pressures as unknowns by a factor; bytes with those of the factorisation.
+/* Of profiles, with friction: nanoseconds a degree of freedom of an iteration of Newton's method
+ * without its linear equations, of a solution with the factors, and of a factorisation, which rise
+ * by these powers of the degrees of freedom over FRICTION_FREEDOM; bytes with those of the factors.
  */
-static const double FRICTION_NS = 4000, FRICTION_FREEDOM = 4000, FRICTION_POWER = 0.25;
-static const double FRICTION_LOAD = 3, FRICTION_STEEP = 1.3;
-static const double FRICTION_PRESSURES = 1.8, FRICTION_BYTES = 2100;
-/* A step has so many iterations of Newton's method and half a factorisation, which takes this part
- * of it. */
-static const double FRICTION_NEWTON = 4, FRICTION_FACTORED = 0.5;
+static const double FRICTION_NEWTON_NS = 470, FRICTION_SOLVE_NS = 110, FRICTION_FACTOR_NS = 4000;
+static const double FRICTION_FREEDOM = 2000, SOLVE_POWER = 0.45, FACTOR_POWER = 0.25;
+static const double FRICTION_BYTES = 2100;
+/* Of profiles, a step takes NEWTON (w/4)^NEWTON_FINER e^(NEWTON_STEEP s) (n/20)^-NEWTON_SHORT
+ * (p/0.1)^NEWTON_LOAD iterations of Newton's method, with w nodes a shortest wave, s the sum of the
+ * coefficient and h', n steps from a turn to the next and the load p. Each takes SOLVES
+ * e^(SOLVES_STEEP s) solutions. A step takes FACTORED factorisations; with pressures as unknowns
+ * FACTORED_RUBBER (w/4)^FACTORED_FINER e^(FACTORED_STEEP s) h'^FACTORED_SLOPE, and the others a
+ * factor more. */
+static const double STEP_NEWTON = 1.7, NEWTON_FINER = 0.28, NEWTON_STEEP = 0.35, NEWTON_SHORT = 0.2,
+                    NEWTON_LOAD = 0.12, NEWTON_RUBBER = 1.17;
+static const double STEP_SOLVES = 6.8, SOLVES_STEEP = 0.15, SOLVES_RUBBER = 1.28;
+static const double STEP_FACTORED = 0.1, FACTORED_RUBBER = 0.27, FACTORED_FINER = 0.5,
+                    FACTORED_STEEP = 1.27, FACTORED_SLOPE = 0.32;
+static const double WAVE_NODES = 4, LEG_STEPS = 20, USUAL_LOAD = 0.1; /* p/(E* h') */
+/* Where the coefficient times h' is above HARD (p/0.1)^-HARD_LOAD, steps are halved, and faces
+ * may fold and jump: all takes e^(HARDER more) as much, in the mean. Single faces take a tenth to
+ * twice of that. */
+static const double HARD = 0.29, HARDER = 7, HARD_RUBBER = 0.26, HARDER_RUBBER = 11,
+                    HARD_LOAD = 0.4, HARD_MOST = 30;
 /* Of surfaces, iterations of a step over those of a load without friction: Newton's, of the linear
  * equations, and of these with pressures as unknowns, by a power of the side over
  * FRICTION_SIDE. Bytes of a degree of freedom, more with pressures. */
@@ -264,7 +280,8 @@ struct full_size cost_full_size(const struct grid *grid, const struct block *blo
         .degrees_of_freedom = (double)full_degrees_of_freedom(grid, block, options),
         .newton = newton_iterations(grid, block->poisson, pressures, rms_slope),
         .linear = linear_iterations(grid, block->poisson, pressures, rms_slope),
-        .pressures = pressures};
+        .pressures = pressures,
+        .overhangs = rms_slope > OVERHANG_SLOPE && options->kinematics != KINEMATICS_SMALL};
     size.factored = profile && size.linear > FACTORED_ITERATIONS;
     return size;
 }
@@ -303,46 +320,69 @@ double cost_full_contact(const struct grid *grid, const struct full_size *size, 
 double cost_full_bytes(const struct grid *grid, const struct block *block,
                        const struct full_options *options, const struct full_size *size) {
     double most = ITERATIONS_MOST * size->linear;
-    double bytes = MEMORY_ROOM * full_bytes(grid, block, options, most);
-    if (size->factored)
+    double bytes = MEMORY_ROOM * full_bytes(grid, block, options, most, size->overhangs);
+    if (size->factored || (size->overhangs && grid_is_profile(grid)))
         bytes += FACTOR_BYTES * size->degrees_of_freedom;
     return isnan(bytes) ? 0 : bytes;
 }
 
-struct full_size cost_friction_size(const struct grid *grid, const struct full_size *size) {
-    struct full_size out = *size;
-    if (grid_is_profile(grid)) {
-        out.newton = FRICTION_NEWTON;
-        return out;
-    }
-    out.newton *= SURFACE_FRICTION_NEWTON;
-    out.linear *= size->pressures ? FRICTION_PRESSURE_LINEAR *
-                                        pow(mean_side(grid) / FRICTION_SIDE, FRICTION_SIDE_POWER)
-                                  : SURFACE_FRICTION_LINEAR;
+static struct friction_size surface_step(const struct friction_work *of) {
+    const struct full_size *load = of->load;
+    double side = pow(mean_side(of->grid) / FRICTION_SIDE, FRICTION_SIDE_POWER);
+    return (struct friction_size){.newton = SURFACE_FRICTION_NEWTON * load->newton,
+                                  .linear = load->linear * (load->pressures
+                                                                ? FRICTION_PRESSURE_LINEAR * side
+                                                                : SURFACE_FRICTION_LINEAR)};
+}
+
+/* Returns by how much more steps take that are halved. */
+static double hard(const struct friction_work *of) {
+    const bool rubber = of->load->pressures;
+    double least = (rubber ? HARD_RUBBER : HARD) * pow(of->pressure / USUAL_LOAD, -HARD_LOAD);
+    double more = fmax(0, of->coefficient * of->rms_slope - least);
+    return fmin(exp((rubber ? HARDER_RUBBER : HARDER) * more), HARD_MOST);
+}
+
+static struct friction_size profile_step(const struct friction_work *of) {
+    const bool rubber = of->load->pressures;
+    const double steep = of->coefficient + of->rms_slope, finer = of->wave / WAVE_NODES;
+    struct friction_size out = {
+        .newton = STEP_NEWTON * pow(finer, NEWTON_FINER) * exp(NEWTON_STEEP * steep) *
+                  pow(of->leg / LEG_STEPS, -NEWTON_SHORT) *
+                  pow(of->pressure / USUAL_LOAD, NEWTON_LOAD) * (rubber ? NEWTON_RUBBER : 1),
+        .linear = STEP_SOLVES * exp(SOLVES_STEEP * steep) * (rubber ? SOLVES_RUBBER : 1),
+        .factored = STEP_FACTORED};
+    if (rubber)
+        out.factored = FACTORED_RUBBER * pow(finer, FACTORED_FINER) * exp(FACTORED_STEEP * steep) *
+                       pow(of->rms_slope, FACTORED_SLOPE);
+    out.newton *= hard(of);
+    out.factored *= hard(of);
     return out;
 }
 
-double cost_friction_steps(const struct grid *grid, const struct full_size *size, double steps) {
-    if (!grid_is_profile(grid)) {
-        const struct full_size step = cost_friction_size(grid, size);
-        return steps * cost_full_contact(grid, &step, 1);
-    }
-    double slower = pow(size->degrees_of_freedom / FRICTION_FREEDOM, FRICTION_POWER) *
-                    pow(size->newton / FRICTION_LOAD, FRICTION_STEEP) *
-                    (size->pressures ? FRICTION_PRESSURES : 1);
-    return 1e-9 * FRICTION_NS * slower * size->degrees_of_freedom * steps;
+struct friction_size cost_friction_size(const struct friction_work *of) {
+    return grid_is_profile(of->grid) ? profile_step(of) : surface_step(of);
 }
 
-struct full_limit cost_friction_limit(const struct grid *grid, const struct full_size *size,
-                                      double seconds) {
-    if (!grid_is_profile(grid)) {
-        const struct full_size of = cost_friction_size(grid, size);
-        return cost_full_limit(grid, &of, seconds);
+struct full_limit cost_friction_limit(const struct friction_work *of, double seconds) {
+    const double freedom = of->load->degrees_of_freedom, over = freedom / FRICTION_FREEDOM;
+    if (!grid_is_profile(of->grid)) {
+        struct full_size step = *of->load;
+        step.linear = surface_step(of).linear;
+        return cost_full_limit(of->grid, &step, seconds);
     }
-    const double step = cost_friction_steps(grid, size, 1);
-    return (struct full_limit){.seconds = seconds,
-                               .newton = (1 - FRICTION_FACTORED / 2) / FRICTION_NEWTON * step,
-                               .factored = FRICTION_FACTORED * step};
+    return (struct full_limit){
+        .seconds = seconds,
+        .newton = 1e-9 * freedom * FRICTION_NEWTON_NS,
+        .linear = 1e-9 * freedom * FRICTION_SOLVE_NS * pow(over, SOLVE_POWER),
+        .factored = 1e-9 * freedom * FRICTION_FACTOR_NS * pow(over, FACTOR_POWER)};
+}
+
+double cost_friction_steps(const struct friction_work *of, double steps) {
+    const struct friction_size step = cost_friction_size(of);
+    const struct full_limit each = cost_friction_limit(of, 0);
+    return steps * (step.newton * (each.newton + step.linear * each.linear) +
+                    step.factored * each.factored);
 }
 
 double cost_friction_bytes(const struct grid *grid, const struct block *block,
