@@ -62,8 +62,9 @@ struct full_size cost_full_size(const struct grid *grid, const struct block *blo
  * 1.05 of it, and 0.82 to 1.11 of the iterations of Newton's method. */
 double cost_full_contact(const struct grid *grid, const struct full_size *size, double loads);
 /* Returns the number of loads near each other whose work these rising ones take, in E* h': those
- * far from the one before are reached in several steps on steep faces. NULL: all are near. */
-double cost_full_loads(double rms_slope, size_t count, const double *loads);
+ * far from the one before are reached in several steps on steep faces, and faces may jump. */
+double cost_full_loads(const struct grid *grid, const struct full_size *size, double rms_slope,
+                       size_t count, const double *loads);
 /* What iterations on a mesh of this size count of a limit of so many of these seconds. */
 struct full_limit cost_full_limit(const struct grid *grid, const struct full_size *size,
                                   double seconds);
@@ -73,7 +74,7 @@ double cost_full_bytes(const struct grid *grid, const struct block *block,
 struct friction_work {
     const struct grid *grid;      /* borrowed, as the next */
     const struct full_size *load; /* of contact without friction */
-    double coefficient, rms_slope;
+    double coefficient, rms_slope, poisson;
     double pressure; /* p/(E* h') */
     double wave;     /* nodes of a shortest wave */
     double leg;      /* steps from where the flat turns to the next turn */

@@ -53,6 +53,7 @@ static struct friction_work work_of(const struct quantity_scene *scene,
         .load = load,
         .coefficient = one_case->friction,
         .rms_slope = one_case->rms_slope,
+        .poisson = scene->block.poisson,
         .pressure = one_case->loads[one_case->slip_load],
         .wave = (double)scene->grid.nx / (double)one_case->band.x,
         .leg = fmax((double)one_case->slide_steps, STEPS_LEAST),
@@ -293,6 +294,8 @@ double sliding_full_seconds(const struct quantity_scene *scene) {
     const struct friction_work work = work_of(scene, &size);
     const double pressing = one_case->slip_pressing ? PRESS_STEPS : 0;
     const double dragging = cost_friction_steps(&work, steps_expected(scene) + pressing);
-    return cost_full_contact(&scene->grid, &size, 1 + pressing) +
+    const double held = cost_full_loads(&scene->grid, &size, one_case->rms_slope, 1,
+                                        &one_case->loads[one_case->slip_load]);
+    return cost_full_contact(&scene->grid, &size, held + pressing) +
            (one_case->time_limit > 0 ? fmin(dragging, one_case->time_limit) : dragging);
 }

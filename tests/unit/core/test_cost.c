@@ -122,6 +122,7 @@ static void surfaces_with_friction_iterate_as_estimated(void **state) {
                                            .load = &load,
                                            .coefficient = MU,
                                            .rms_slope = SLOPE,
+                                           .poisson = POISSON[a],
                                            .pressure = 0.1,
                                            .wave = 4,
                                            .leg = 16};
