@@ -142,8 +142,8 @@ static const double DIGITS_MORE = 3, DIGITS_WHOLE = 11;
 static const double WITHOUT_TANGENT = 0.76, ON_ELEMENTS = 1.15, ELEMENTS_AREA = 2;
 /* Nanoseconds a point and transform, with the other work of an iteration; SLOPE more with each
  * doubling of the points from DOUBLINGS on. */
-static const double PROFILE_TRANSFORM_NS = 12, SURFACE_TRANSFORM_NS = 9;
-static const double PROFILE_CACHE_SLOPE = 0.12, PROFILE_CACHE_DOUBLINGS = 12;
+static const double PROFILE_TRANSFORM_NS = 5.5, SURFACE_TRANSFORM_NS = 7.5;
+static const double PROFILE_CACHE_SLOPE = 0.15, PROFILE_CACHE_DOUBLINGS = 12;
 static const double SURFACE_CACHE_SLOPE = 0.1, SURFACE_CACHE_DOUBLINGS = 14;
 /* Areas and patches take nanoseconds a point, and of each edge on a grid line; the pressures of a
  * load as many times that. Lines have so many edges for a shortest wave. */
@@ -194,7 +194,13 @@ static const struct newton_fit PROFILE_NEWTON = {1.2, 0.18, 4.5, 0.95},
 static const double GENTLE = 0.3, UPRIGHT = 0.3, PROFILE_WIDE = 10, SURFACE_WIDE = 8;
 /* A load further than FAR/h' from the one before it is approached in steps: of lengths l in E* h',
  * FAR_STEPS (l h' - FAR) more loads' work. */
-static const double FAR = 0.09, FAR_STEPS = 33;
+static const double FAR = 0.11, FAR_STEPS = 33;
+static const double USUAL_LOAD = 0.1; /* p/(E* h') */
+/* Steep faces overhang and jump from a load on: those of slopes above JUMPING (p/0.1)^-JUMPING_LOAD
+ * at loads below 0.1, above JUMPING beyond, take e^(JUMPS more) as much, in the mean. One of
+ * several faces does, with ten times the iterations of the others. */
+static const double JUMPING = 0.9, JUMPING_PRESSURES = 0.6, JUMPING_LOAD = 0.4;
+static const double PROFILE_JUMPS = 4.5, SURFACE_JUMPS = 2.5;
 /* Iterations of the linear equations: LINEAR_LEAST + STEEP h' (1 + h') (0.4 min(B, 10))^0.6
  * (nx/SIDE)^SIDE_POWER, with B = 1/(1 - 2 nu), about the bulk over the shear modulus, and at least
  * 1 for the power. With pressures as unknowns it is LINEAR_PRESSURES, and there are PRESSURE_TENS
@@ -213,26 +219,44 @@ struct full_fit {
 };
 static const struct full_fit PROFILE_FULL = {400, 55, 2.5, 35, 1e4},
                              SURFACE_FULL = {1800, 130, 4, 60, 7e4};
+/* They hold for so many degrees of freedom, and rise by this power of these. */
+static const double PROFILE_FREEDOM = 40000, SURFACE_FREEDOM = 40000, CACHE_POWER = 0.2;
 /* Arrays take so many times their bytes, with what heaps keep between them. */
 static const double MEMORY_ROOM = 1.03;
 /* Iterations of the linear equations of a step, over their mean, at most. */
 static const double ITERATIONS_MOST = 3;
+/* Of random faces only those of higher RMS slopes overhang. */
+static const double OVERHANG_SLOPE = 0.7;
 /* Bytes a degree of freedom of a factorisation. */
 static const double FACTOR_BYTES = 900;
 /* Number of transforms of a point that take the time of an iteration of Newton's method on a degree
  * of freedom. */
 static const double PROFILE_TRANSFORMS = 95, SURFACE_TRANSFORMS = 280;
 
-/* Of profiles, nanoseconds a degree of freedom of a step with friction, which rise by this power of
- * their number over FRICTION_FREEDOM, by that of the iterations of a load without friction over
- * FRICTION_LOAD, and with pressures as unknowns by a factor; bytes with those of the factorisation.
+/* Of profiles, with friction: nanoseconds a degree of freedom of an iteration of Newton's method
+ * without its linear equations, of a solution with the factors, and of a factorisation, which rise
+ * by these powers of the degrees of freedom over FRICTION_FREEDOM; bytes with those of the factors.
  */
-static const double FRICTION_NS = 4000, FRICTION_FREEDOM = 4000, FRICTION_POWER = 0.25;
-static const double FRICTION_LOAD = 3, FRICTION_STEEP = 1.3;
-static const double FRICTION_PRESSURES = 1.8, FRICTION_BYTES = 2100;
-/* A step has so many iterations of Newton's method and half a factorisation, which takes this part
- * of it. */
-static const double FRICTION_NEWTON = 4, FRICTION_FACTORED = 0.5;
+static const double FRICTION_NEWTON_NS = 470, FRICTION_SOLVE_NS = 110, FRICTION_FACTOR_NS = 4000;
+static const double FRICTION_FREEDOM = 2000, SOLVE_POWER = 0.45, FACTOR_POWER = 0.25;
+static const double FRICTION_BYTES = 2100;
+/* Of profiles, a step takes NEWTON (w/4)^NEWTON_FINER e^(NEWTON_STEEP s) (n/20)^-NEWTON_SHORT
+ * (p/0.1)^NEWTON_LOAD iterations of Newton's method, with w nodes a shortest wave, s the sum of the
+ * coefficient and h', n steps from a turn to the next and the load p. Each of them takes
+ * SOLVES e^(SOLVES_STEEP s) solutions, and a step FACTORED factorisations. Rubber, with pressures
+ * as unknowns, takes these parts more, and FACTORED_RUBBER (w/4)^FACTORED_FINER e^(FACTORED_STEEP
+ * s) h'^FACTORED_SLOPE factorisations more, at a bulk modulus of 10^RUBBER_DECADES shear moduli. */
+static const double STEP_NEWTON = 1.7, NEWTON_FINER = 0.28, NEWTON_STEEP = 0.35, NEWTON_SHORT = 0.2,
+                    NEWTON_LOAD = 0.12, NEWTON_RUBBER = 0.17;
+static const double STEP_SOLVES = 6.8, SOLVES_STEEP = 0.15, SOLVES_RUBBER = 0.28;
+static const double STEP_FACTORED = 0.1, FACTORED_RUBBER = 0.24, FACTORED_FINER = 0.5,
+                    FACTORED_STEEP = 1.27, FACTORED_SLOPE = 0.32;
+static const double WAVE_NODES = 4, LEG_STEPS = 20, RUBBER_DECADES = 3.7;
+/* Where the coefficient times h' is above HARD (p/0.1)^-HARD_LOAD, steps are halved, and faces
+ * may fold and jump: all takes e^(HARDER more) as much, in the mean. Single faces take a tenth to
+ * twice of that. */
+static const double HARD = 0.29, HARDER = 7, HARD_RUBBER = 0.26, HARDER_RUBBER = 11,
+                    HARD_LOAD = 0.4, HARD_MOST = 30;
 /* Of surfaces, iterations of a step over those of a load without friction: Newton's, and of the
  * linear equations. Bytes of a degree of freedom, more with pressures. */
 static const double SURFACE_FRICTION_NEWTON = 0.8, SURFACE_FRICTION_LINEAR = 1.4;
@@ -270,83 +294,124 @@ struct full_size cost_full_size(const struct grid *grid, const struct block *blo
         .degrees_of_freedom = (double)full_degrees_of_freedom(grid, block, options),
         .newton = newton_iterations(grid, block->poisson, pressures, rms_slope),
         .linear = linear_iterations(grid, block->poisson, pressures, rms_slope),
-        .pressures = pressures};
+        .pressures = pressures,
+        .overhangs = rms_slope > OVERHANG_SLOPE && options->kinematics != KINEMATICS_SMALL};
     size.factored = profile && size.linear > FACTORED_ITERATIONS;
     return size;
 }
 
-/* Returns the nanoseconds a degree of freedom of an iteration of the linear equations. */
-static double linear_nanoseconds(const struct full_fit *fit, const struct full_size *size) {
-    return fit->linear + fit->each * size->linear + (size->pressures ? fit->pressures : 0);
+/* Returns what iterations take, by so many nanoseconds a degree of freedom: less on small meshes,
+ * which stay in the caches. `linear` is an iteration of the linear equations. */
+static struct full_fit nanoseconds(const struct grid *grid, const struct full_size *size) {
+    struct full_fit out = grid_is_profile(grid) ? PROFILE_FULL : SURFACE_FULL;
+    const double least = grid_is_profile(grid) ? PROFILE_FREEDOM : SURFACE_FREEDOM;
+    const double part = pow(size->degrees_of_freedom / least, CACHE_POWER);
+    out.linear += out.each * size->linear + (size->pressures ? out.pressures : 0);
+    out.newton *= part;
+    out.linear *= part;
+    return out;
 }
 
 struct full_limit cost_full_limit(const struct grid *grid, const struct full_size *size,
                                   double seconds) {
-    const struct full_fit *fit = grid_is_profile(grid) ? &PROFILE_FULL : &SURFACE_FULL;
+    const struct full_fit each = nanoseconds(grid, size);
     const double unit = 1e-9 * size->degrees_of_freedom;
     return (struct full_limit){.seconds = seconds,
-                               .newton = unit * fit->newton,
-                               .linear = unit * linear_nanoseconds(fit, size),
-                               .factored = unit * fit->factored};
+                               .newton = unit * each.newton,
+                               .linear = unit * each.linear,
+                               .factored = unit * each.factored};
 }
 
-double cost_full_loads(double rms_slope, size_t count, const double *loads) {
-    double all = loads != NULL ? 0 : (double)count;
-    for (size_t l = 0; loads != NULL && l < count; l++) {
+/* Returns how much more work a load takes for jumps. */
+static double jumps(const struct grid *grid, const struct full_size *size, double rms_slope,
+                    double load) {
+    double least = (size->pressures ? JUMPING_PRESSURES : JUMPING) *
+                   pow(fmin(1, load / USUAL_LOAD), -JUMPING_LOAD);
+    double rate = grid_is_profile(grid) ? PROFILE_JUMPS : SURFACE_JUMPS;
+    return exp(rate * fmax(0, rms_slope - least));
+}
+
+double cost_full_loads(const struct grid *grid, const struct full_size *size, double rms_slope,
+                       size_t count, const double *loads) {
+    double all = 0;
+    for (size_t l = 0; l < count; l++) {
         double length = loads[l] - (l > 0 ? loads[l - 1] : 0);
-        all += 1 + FAR_STEPS * fmax(0, length * rms_slope - FAR);
+        all += (1 + FAR_STEPS * fmax(0, length * rms_slope - FAR)) *
+               jumps(grid, size, rms_slope, loads[l]);
     }
     return all;
 }
 
 double cost_full_contact(const struct grid *grid, const struct full_size *size, double loads) {
-    const struct full_fit *fit = grid_is_profile(grid) ? &PROFILE_FULL : &SURFACE_FULL;
-    double nanoseconds =
-        size->factored ? fit->factored : fit->newton + linear_nanoseconds(fit, size) * size->linear;
-    return 1e-9 * nanoseconds * size->degrees_of_freedom * size->newton * loads;
+    const struct full_limit each = cost_full_limit(grid, size, 0);
+    double newton = size->factored ? each.factored : each.newton + each.linear * size->linear;
+    return newton * size->newton * loads;
 }
 
 double cost_full_bytes(const struct grid *grid, const struct block *block,
                        const struct full_options *options, const struct full_size *size) {
     double most = ITERATIONS_MOST * size->linear;
-    double bytes = MEMORY_ROOM * full_bytes(grid, block, options, most);
-    if (size->factored)
+    double bytes = MEMORY_ROOM * full_bytes(grid, block, options, most, size->overhangs);
+    if (size->factored || (size->overhangs && grid_is_profile(grid)))
         bytes += FACTOR_BYTES * size->degrees_of_freedom;
     return isnan(bytes) ? 0 : bytes;
 }
 
-struct full_size cost_friction_size(const struct grid *grid, const struct full_size *size) {
-    struct full_size out = *size;
-    if (grid_is_profile(grid)) {
-        out.newton = FRICTION_NEWTON;
-        return out;
-    }
-    out.newton *= SURFACE_FRICTION_NEWTON;
-    out.linear *= SURFACE_FRICTION_LINEAR;
-    return out;
+static struct friction_size surface_step(const struct friction_work *of) {
+    return (struct friction_size){.newton = SURFACE_FRICTION_NEWTON * of->load->newton,
+                                  .linear = SURFACE_FRICTION_LINEAR * of->load->linear};
 }
 
-double cost_friction_steps(const struct grid *grid, const struct full_size *size, double steps) {
-    if (!grid_is_profile(grid)) {
-        const struct full_size step = cost_friction_size(grid, size);
-        return steps * cost_full_contact(grid, &step, 1);
-    }
-    double slower = pow(size->degrees_of_freedom / FRICTION_FREEDOM, FRICTION_POWER) *
-                    pow(size->newton / FRICTION_LOAD, FRICTION_STEEP) *
-                    (size->pressures ? FRICTION_PRESSURES : 1);
-    return 1e-9 * FRICTION_NS * slower * size->degrees_of_freedom * steps;
+/* Returns how far a block is rubber, from 0 to 1. */
+static double rubber_share(const struct friction_work *of) {
+    const double decades = -log10(1 - 2 * of->poisson);
+    return of->load->pressures ? fmin(1, fmax(0, decades - 1) / (RUBBER_DECADES - 1)) : 0;
 }
 
-struct full_limit cost_friction_limit(const struct grid *grid, const struct full_size *size,
-                                      double seconds) {
-    if (!grid_is_profile(grid)) {
-        const struct full_size of = cost_friction_size(grid, size);
-        return cost_full_limit(grid, &of, seconds);
+/* Returns by how much more steps take that are halved. */
+static double hard(const struct friction_work *of, double rubber) {
+    double least =
+        (HARD + rubber * (HARD_RUBBER - HARD)) * pow(of->pressure / USUAL_LOAD, -HARD_LOAD);
+    double more = fmax(0, of->coefficient * of->rms_slope - least);
+    return fmin(exp((HARDER + rubber * (HARDER_RUBBER - HARDER)) * more), HARD_MOST);
+}
+
+static struct friction_size profile_step(const struct friction_work *of) {
+    const double steep = of->coefficient + of->rms_slope, finer = of->wave / WAVE_NODES;
+    const double rubber = rubber_share(of), more = hard(of, rubber);
+    const double factored = pow(finer, FACTORED_FINER) * exp(FACTORED_STEEP * steep) *
+                            pow(of->rms_slope, FACTORED_SLOPE);
+    return (struct friction_size){
+        .newton = STEP_NEWTON * pow(finer, NEWTON_FINER) * exp(NEWTON_STEEP * steep) *
+                  pow(of->leg / LEG_STEPS, -NEWTON_SHORT) *
+                  pow(of->pressure / USUAL_LOAD, NEWTON_LOAD) * (1 + rubber * NEWTON_RUBBER) * more,
+        .linear = STEP_SOLVES * exp(SOLVES_STEEP * steep) * (1 + rubber * SOLVES_RUBBER),
+        .factored = (STEP_FACTORED + rubber * FACTORED_RUBBER * factored) * more};
+}
+
+struct friction_size cost_friction_size(const struct friction_work *of) {
+    return grid_is_profile(of->grid) ? profile_step(of) : surface_step(of);
+}
+
+struct full_limit cost_friction_limit(const struct friction_work *of, double seconds) {
+    const double freedom = of->load->degrees_of_freedom, over = freedom / FRICTION_FREEDOM;
+    if (!grid_is_profile(of->grid)) {
+        struct full_size step = *of->load;
+        step.linear = surface_step(of).linear;
+        return cost_full_limit(of->grid, &step, seconds);
     }
-    const double step = cost_friction_steps(grid, size, 1);
-    return (struct full_limit){.seconds = seconds,
-                               .newton = (1 - FRICTION_FACTORED / 2) / FRICTION_NEWTON * step,
-                               .factored = FRICTION_FACTORED * step};
+    return (struct full_limit){
+        .seconds = seconds,
+        .newton = 1e-9 * freedom * FRICTION_NEWTON_NS,
+        .linear = 1e-9 * freedom * FRICTION_SOLVE_NS * pow(over, SOLVE_POWER),
+        .factored = 1e-9 * freedom * FRICTION_FACTOR_NS * pow(over, FACTOR_POWER)};
+}
+
+double cost_friction_steps(const struct friction_work *of, double steps) {
+    const struct friction_size step = cost_friction_size(of);
+    const struct full_limit each = cost_friction_limit(of, 0);
+    return steps * (step.newton * (each.newton + step.linear * each.linear) +
+                    step.factored * each.factored);
 }
 
 double cost_friction_bytes(const struct grid *grid, const struct block *block,

@@ -50,6 +50,7 @@ struct full_size {
     double linear;             /* iterations of the linear equations in each of these */
     bool factored;             /* linear is so large that the equations are factorised instead */
     bool pressures; /* elements are nearly incompressible: their pressures are unknowns */
+    bool overhangs; /* the face is so steep that it may overhang (core/full/full.h) */
 };
 struct full_size cost_full_size(const struct grid *grid, const struct block *block,
                                 const struct full_options *options, double rms_slope);
@@ -63,27 +64,33 @@ struct full_size cost_full_size(const struct grid *grid, const struct block *blo
  * 1.05 of it, and 0.82 to 1.11 of the iterations of Newton's method. */
 double cost_full_contact(const struct grid *grid, const struct full_size *size, double loads);
 /* Returns the number of loads near each other whose work these rising ones take, in E* h': those
- * far from the one before are reached in several steps on steep faces. NULL: all are near. */
-double cost_full_loads(double rms_slope, size_t count, const double *loads);
+ * far from the one before are reached in several steps on steep faces, and faces may jump. */
+double cost_full_loads(const struct grid *grid, const struct full_size *size, double rms_slope,
+                       size_t count, const double *loads);
 /* What iterations on a mesh of this size count of a limit of so many of these seconds. */
 struct full_limit cost_full_limit(const struct grid *grid, const struct full_size *size,
                                   double seconds);
-/* The same of steps with friction. */
-struct full_limit cost_friction_limit(const struct grid *grid, const struct full_size *size,
-                                      double seconds);
 double cost_full_bytes(const struct grid *grid, const struct block *block,
                        const struct full_options *options, const struct full_size *size);
-/* Returns the iterations of a step with friction, from those of a load without it: of surfaces also
- * those of the linear equations, which are many where pressures are unknowns. */
-struct full_size cost_friction_size(const struct grid *grid, const struct full_size *size);
-/* CPU seconds of steps with friction (core/full/friction), and bytes of their solver. Fitted to
- * studies of profiles of 128 and 256 points, slopes to 0.7, Poisson's ratios of 0 to 0.4999 and
- * coefficients of 0.3 and 0.8, and of surfaces to 32 x 32 points. Ten others, by which the whole
- * was then scaled, took 0.57 to 0.94 of the estimate on a busy machine. With a coefficient of 0.8
- * some steps are halved many times, which took up to four times the estimate at slope 0.4 and a
- * ratio of 0.4999. The memory was 0.93 to 1.02 of it. Profiles steeper than 0.7 jump (full.h):
- * their loads may take ten times the estimate. */
-double cost_friction_steps(const struct grid *grid, const struct full_size *size, double steps);
+/* A flat that is dragged over a face with friction (core/full/friction). */
+struct friction_work {
+    const struct grid *grid;      /* borrowed, as the next */
+    const struct full_size *load; /* of contact without friction */
+    double coefficient, rms_slope, poisson;
+    double pressure; /* p/(E* h') */
+    double wave;     /* nodes of a shortest wave */
+    double leg;      /* steps from where the flat turns to the next turn */
+};
+/* What a step takes. */
+struct friction_size {
+    double newton;   /* iterations of Newton's method */
+    double linear;   /* iterations of the linear equations in each of these */
+    double factored; /* factorisations; none of surfaces */
+};
+struct friction_size cost_friction_size(const struct friction_work *of);
+double cost_friction_steps(const struct friction_work *of, double steps);
+/* As cost_full_limit. */
+struct full_limit cost_friction_limit(const struct friction_work *of, double seconds);
 double cost_friction_bytes(const struct grid *grid, const struct block *block,
                            const struct full_options *options, const struct full_size *size);
 /* Returns the number of Fourier transforms of a point, the unit of contact_state.work, that take as

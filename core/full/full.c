@@ -158,20 +158,23 @@ size_t full_degrees_of_freedom(const struct grid *grid, const struct block *bloc
 }
 
 double full_bytes(const struct grid *grid, const struct block *block,
-                  const struct full_options *options, double iterations) {
+                  const struct full_options *options, double iterations, bool overhangs) {
     struct mesh *mesh = NULL;
     if (mesh_create(&mesh, grid, block, options->transition, NULL) != 0)
         return NAN;
     enum {
         VECTORS = 6,
+        OVERHANG_VECTORS = 3, /* two states, and what drags */
         FACES = 9
     }; /* arrays of newton.h and this file by unknown and by node of the face, and one of areas */
     struct material material = material_of(block->poisson, options->kinematics);
     bool pressures = gmres_needs_pressures(&material);
     double unknowns = (double)mesh_unknowns(mesh, pressures);
+    double vectors = VECTORS + (overhangs ? OVERHANG_VECTORS : 0);
     double bytes =
-        sizeof(double) * (VECTORS * unknowns + FACES * (double)mesh->face + (double)mesh->nodes) +
-        tangent_bytes(mesh, pressures) + gmres_bytes(mesh, &material, iterations) +
+        sizeof(double) * (vectors * unknowns + FACES * (double)mesh->face + (double)mesh->nodes) +
+        tangent_bytes(mesh, pressures) +
+        gmres_bytes(mesh, &material, iterations, overhangs && mesh->dimension == 3) +
         contact_bytes(grid, block, &CONTACT_DEFAULTS) + compliance_bytes(grid, block);
     mesh_destroy(&mesh);
     return bytes;

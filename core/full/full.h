@@ -80,9 +80,10 @@ void full_destroy(struct full **full);
 size_t full_degrees_of_freedom(const struct grid *grid, const struct block *block,
                                const struct full_options *options);
 /* Bytes of a solver that takes this many iterations of the linear equations in each iteration of
- * Newton's method, without a factorisation; NaN where the block cannot be meshed. */
+ * Newton's method, without a factorisation, or of one whose face overhangs; NaN where the block
+ * cannot be meshed. */
 double full_bytes(const struct grid *grid, const struct block *block,
-                  const struct full_options *options, double iterations);
+                  const struct full_options *options, double iterations, bool overhangs);
 
 /* Sets stop, which is called before each iteration of Newton's method. When it returns non-zero,
  * full_press ends with ERROR_STOPPED and leaves the solver as after a load that was not reached.

@@ -133,9 +133,15 @@ int gmres_add_friction(struct gmres *gmres, enum gap_weighting weighting, struct
                : error_memory(err, 2 * values * sizeof *gmres->given, "forces along the face");
 }
 
-int gmres_lengthen(struct gmres *gmres, struct error *err) {
-    double most = LONG_BYTES / (2 * sizeof(double) * (double)gmres->unknowns);
+/* Returns the directions that there is room for when it is lengthened. */
+static size_t long_length(size_t unknowns) {
+    double most = LONG_BYTES / (2 * sizeof(double) * (double)unknowns);
     size_t length = most < HESSENBERG_MOST ? (size_t)most : HESSENBERG_MOST;
+    return length > BASIS ? length : BASIS;
+}
+
+int gmres_lengthen(struct gmres *gmres, struct error *err) {
+    size_t length = long_length(gmres->unknowns);
     return length > gmres->length ? basis_create(gmres, length, err) : 0;
 }
 
@@ -143,12 +149,15 @@ size_t gmres_friction_unknowns(const struct gmres *gmres) {
     return gmres->unknowns + 2 * ((size_t)gmres->mesh->dimension - 1);
 }
 
-double gmres_bytes(const struct mesh *mesh, const struct material *material, double iterations) {
+double gmres_bytes(const struct mesh *mesh, const struct material *material, double iterations,
+                   bool lengthened) {
     enum { VECTORS = 3, FACES = 7, WAVES = 5 };
     bool pressures = gmres_needs_pressures(material);
     double waves = (double)level_waves(&mesh->level[0]);
     double unknowns = (double)mesh_unknowns(mesh, pressures);
-    double vectors = 2 * fmin(iterations, BASIS) + 1 + VECTORS;
+    double directions =
+        lengthened ? (double)long_length(mesh_unknowns(mesh, pressures)) : fmin(iterations, BASIS);
+    double vectors = 2 * directions + 1 + VECTORS;
     return preconditioner_bytes(mesh) + (pressures ? volumetric_bytes(mesh, true) : 0) +
            sizeof(double) * (vectors * unknowns + FACES * (double)mesh->face + WAVES * waves);
 }

@@ -39,8 +39,10 @@ int gmres_add_friction(struct gmres *gmres, enum gap_weighting weighting, struct
 /* Returns the values of x with friction, with those behind. */
 size_t gmres_friction_unknowns(const struct gmres *gmres);
 
-/* Returns the bytes that this many iterations of a linear step touch. */
-double gmres_bytes(const struct mesh *mesh, const struct material *material, double iterations);
+/* Returns the bytes that this many iterations of a linear step touch, or those of all directions
+ * after gmres_lengthen. */
+double gmres_bytes(const struct mesh *mesh, const struct material *material, double iterations,
+                   bool lengthened);
 
 /* Returns whether the pressures of elements must be unknowns of their own, so that the tangent
  * needs its volumetric part: the ratio of Poisson is above 0.45. */

@@ -55,7 +55,7 @@ static int run_loads(const struct bench_run *run, struct error *err) {
             sum.newton, sum.linear, sum.factored, sum.cuts, report.slope,
             (double)state.nodes / (double)points, report.stretch, state.mean_gap, state.stiffness,
             1e-6 * full_bytes(&run->grid, &run->block, &run->options,
-                              (double)sum.linear / (double)sum.newton));
+                              (double)sum.linear / (double)sum.newton, false));
     full_destroy(&full);
     return status;
 }

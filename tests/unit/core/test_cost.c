@@ -119,7 +119,15 @@ static void surfaces_with_friction_iterate_as_estimated(void **state) {
             linear += (double)dragged.linear;
         }
         const struct full_size load = cost_full_size(&grid, &block, &options, SLOPE);
-        check_factor(linear / newton, cost_friction_size(&grid, &load).linear, 1.5);
+        const struct friction_work work = {.grid = &grid,
+                                           .load = &load,
+                                           .coefficient = MU,
+                                           .rms_slope = SLOPE,
+                                           .poisson = POISSON[a],
+                                           .pressure = 0.1,
+                                           .wave = 4,
+                                           .leg = 16};
+        check_factor(linear / newton, cost_friction_size(&work).linear, 1.5);
         friction_destroy(&friction);
     }
 }
