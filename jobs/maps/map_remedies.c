@@ -103,16 +103,16 @@ static double left_of_slope(double wavelength, double length) {
 /* It is the shortest waves that are not known: longer differences have less of them. */
 static void noise_add_scales(const struct lost_waves *lost, double shortest,
                              struct map_scales *scales) {
-    const struct map_scale *first = &scales->scale[0];
-    const double of_first = left_of_slope(shortest, first->found.length);
+    const struct scale *first = &scales->scale[0].found;
     for (size_t n = 0; n < scales->count; n++) {
         struct map_scale *scale = &scales->scale[n];
-        const double left = left_of_slope(shortest, scale->found.length) / of_first;
+        const double left =
+            left_of_slope(shortest, scale->found.length) / left_of_slope(shortest, first->length);
         const double slope =
-            lost->slope * fmin(pow(left * first->found.slope / scale->found.slope, 2), 1);
+            lost->slope * fmin(pow(left * first->slope / scale->found.slope, 2), 1);
         const double curvature =
             lost->curvature *
-            fmin(pow(left * left * first->found.curvature / scale->found.curvature, 2), 1);
+            fmin(pow(left * left * first->curvature / scale->found.curvature, 2), 1);
         scale->height_error = hypot(scale->height_error, scale->found.height * slope);
         scale->slope_error = hypot(scale->slope_error, scale->found.slope * slope);
         scale->curvature_error = hypot(scale->curvature_error, scale->found.curvature * curvature);
