@@ -28,11 +28,11 @@ static double share_at(const struct spectrum_fit *fit, double wave_number) {
  * little noise, as its longest. */
 static double gain(const struct map_law *law, double wave_number) {
     const struct spectrum_fit *fit = &law->fit;
-    const double end = 2 * M_PI / fit->shortest, to = fmin(wave_number, end);
-    const double fall =
-        pow(to / fmax(wave_number, to), (fit->profile ? 1 : 2) + 2 * fit->hurst.value);
+    const double end = 2 * M_PI / fit->shortest,
+                 steep = (fit->profile ? 1 : 2) + 2 * fit->hurst.value;
+    const double fall = wave_number > end ? pow(end / wave_number, steep) : 1;
     const double density =
-        share_at(fit, wave_number) * map_law_density(law, to) * (wave_number > end ? fall : 1);
+        share_at(fit, wave_number) * map_law_density(law, fmin(wave_number, end)) * fall;
     return density > 0 ? sqrt(density / (density + fit->noise)) : 0;
 }
 

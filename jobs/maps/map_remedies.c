@@ -103,16 +103,16 @@ static double left_of_slope(double wavelength, double length) {
 /* It is the shortest waves that are not known: longer differences have less of them. */
 static void noise_add_scales(const struct lost_waves *lost, double shortest,
                              struct map_scales *scales) {
-    const struct map_scale *first = &scales->scale[0];
-    const double of_first = left_of_slope(shortest, first->found.length);
+    const struct scale *first = &scales->scale[0].found;
     for (size_t n = 0; n < scales->count; n++) {
         struct map_scale *scale = &scales->scale[n];
-        const double left = left_of_slope(shortest, scale->found.length) / of_first;
+        const double left =
+            left_of_slope(shortest, scale->found.length) / left_of_slope(shortest, first->length);
         const double slope =
-            lost->slope * fmin(pow(left * first->found.slope / scale->found.slope, 2), 1);
+            lost->slope * fmin(pow(left * first->slope / scale->found.slope, 2), 1);
         const double curvature =
             lost->curvature *
-            fmin(pow(left * left * first->found.curvature / scale->found.curvature, 2), 1);
+            fmin(pow(left * left * first->curvature / scale->found.curvature, 2), 1);
         scale->height_error = hypot(scale->height_error, scale->found.height * slope);
         scale->slope_error = hypot(scale->slope_error, scale->found.slope * slope);
         scale->curvature_error = hypot(scale->curvature_error, scale->found.curvature * curvature);
@@ -147,14 +147,25 @@ static int sides_add(const struct measured_map *map, struct lost_waves *out, str
     return 0;
 }
 
-/* Moments inside leave the sides out. */
+/* Summits are as curved as the surface is, and their density goes with (curvature/slope)^2. */
+static void noise_add_summits(const struct lost_waves *lost, struct map_summits *out) {
+    struct summit_errors *errors = &out->errors;
+    errors->curvature_mean = hypot(errors->curvature_mean, lost->curvature * out->curvature_mean);
+    errors->density =
+        hypot(errors->density, 2 * fabs(lost->curvature - lost->slope) * out->density);
+}
+
+/* Moments inside and refined summits leave the sides out. */
 static int denoised_add(const struct map_remedied *found, const struct measured_map *map,
                         const struct preparation_record *record, struct error *err) {
     struct lost_waves lost = {record->denoised_slope, record->denoised_curvature};
     noise_add(&lost, found->moment_errors);
+    noise_add_summits(&lost, &found->parameters->summits[SUMMITS_REFINED]);
     const int status = sides_add(map, &lost, err);
     noise_add(&lost, found->errors);
     noise_add_scales(&lost, record->denoised_to, found->scales);
+    for (int s = 0; s < SUMMITS_REFINED; s++)
+        noise_add_summits(&lost, &found->parameters->summits[s]);
     /* it ends where waves were removed, as far as the fit before knew */
     found->spectra->fit.short_wavelength.low = (double)NAN;
     found->spectra->fit.short_wavelength.high = (double)NAN;

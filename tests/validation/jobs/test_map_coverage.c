@@ -33,7 +33,6 @@ struct kind {
     struct heights heights;
     double rms_ratio, material_ratio; /* of a plateau; 0: none */
     enum left left;
-    double lowest; /* share of intervals; 0: as usual */
 };
 #define LAW(h, longer, shorter) .hurst = (h), .rolloff = (longer), .shortest = (shorter)
 static const struct kind KINDS[] = {
@@ -53,8 +52,8 @@ static const struct kind KINDS[] = {
     {"noise 5 %, no end", LAW(0.8, 24, 2), .noise = 0.05},
     {"spikes", LAW(0.8, 16, 4), .left = LEFT_SPIKES},
     {"lines", LAW(0.8, 16, 4), .left = LEFT_LINES, .size = 0.1},
-    {"steps 0.2", LAW(0.8, 16, 4), .left = LEFT_STEPS, .size = 0.2, .lowest = 0.8},
-    {"steps 0.5", LAW(0.8, 16, 4), .left = LEFT_STEPS, .size = 0.5, .lowest = 0.8},
+    {"steps 0.2", LAW(0.8, 16, 4), .left = LEFT_STEPS, .size = 0.2},
+    {"steps 0.5", LAW(0.8, 16, 4), .left = LEFT_STEPS, .size = 0.5},
     {"plateau", LAW(0.8, 16, 4), .rms_ratio = 0.25, .material_ratio = 0.8},
     {"Weibull 1", LAW(0.8, 16, 4), .heights = {.type = HEIGHTS_WEIBULL_MIN, .shape = 1}},
     {"Weibull 2", LAW(0.8, 16, 4), .heights = {.type = HEIGHTS_WEIBULL_MIN, .shape = 2}},
@@ -404,7 +403,7 @@ static const double LOWEST = 0.92, HIGHEST = 0.98;
 
 /* Returns whether the share of intervals that hold the truth is within the limits and 4 standard
  * errors. */
-static bool quantity_check(const struct kind *kind, const struct quantity *q, bool prints) {
+static bool quantity_check(const struct quantity *q, bool prints) {
     double inside = 0, of = 0, told = 0, spread = 0, bias = 0, both = 0;
     for (size_t p = 0; p < patch_count; p++) {
         const double truth = q->by_recipe ? q->truth[p] : q->whole / (double)whole_count;
@@ -424,7 +423,6 @@ static bool quantity_check(const struct kind *kind, const struct quantity *q, bo
     const double share = inside / of, scatter = sqrt(spread / both);
     /* the intervals of few patches, of one surface, are many, and alike */
     const double allowed = (every_case() ? 4 : 5) * sqrt(0.95 * 0.05 / of);
-    const double lowest = kind->lowest > 0 ? kind->lowest : LOWEST;
     const bool counts = of >= FEWEST_TOLD * (double)patch_count;
     const bool outside = share < LOWEST || share > HIGHEST;
     if (prints)
@@ -434,7 +432,7 @@ static bool quantity_check(const struct kind *kind, const struct quantity *q, bo
                : outside ? " !"
                          : "  ",
                sqrt(told / both) / scatter, bias / both / scatter);
-    return !counts || (share > lowest - allowed && share < HIGHEST + allowed);
+    return !counts || (share > LOWEST - allowed && share < HIGHEST + allowed);
 }
 
 static void kind_check(const struct kind *kind, uint64_t seed) {
@@ -466,10 +464,10 @@ static void kind_check(const struct kind *kind, uint64_t seed) {
     bool well = true, prints = getenv("RUGO_TABLE") != NULL;
     printf("%s, %zu patches\n", kind->name, patch_count);
     for (size_t q = 0; q < quantity_count; q++)
-        if (!quantity_check(kind, &quantities[q], prints)) {
+        if (!quantity_check(&quantities[q], prints)) {
             well = false;
             if (!prints)
-                quantity_check(kind, &quantities[q], true);
+                quantity_check(&quantities[q], true);
         }
     fflush(stdout);
     assert_true(well);
