@@ -463,12 +463,28 @@ static void hold(const struct gmres *gmres, double *x) {
 }
 
 /* Subtracts the forces of the pressures from x, where the equations are solved for displacements
- * alone. */
+ * alone. Rows that prescribe displacements stay, and those of the far side have one sum. */
 static void eliminate_pressures(struct gmres *gmres, const struct linear_system *system,
                                 double *x) {
-    volumetric_scale(system->tangent->volumetric, 1 / system->tangent->volumetric->row,
-                     x + gmres->degrees_of_freedom, gmres->pressures);
-    volumetric_forces(system->tangent->volumetric, gmres->pressures, -1, x);
+    const struct mesh *mesh = gmres->mesh;
+    const struct volumetric *volumetric = system->tangent->volumetric;
+    size_t d = (size_t)mesh->dimension, far_side = mesh_far_side(mesh);
+    double *forces = gmres->moved, sum = 0;
+    memset(forces, 0, gmres->degrees_of_freedom * sizeof *forces);
+    volumetric_scale(volumetric, 1 / volumetric->row, x + gmres->degrees_of_freedom,
+                     gmres->pressures);
+    volumetric_forces(volumetric, gmres->pressures, -1, forces);
+    for (size_t node = 0; node < mesh->face; node++)
+        if (system->active[node])
+            forces[mesh_vertical(mesh, node)] = 0;
+    for (size_t node = far_side; node < mesh->nodes; node++) {
+        sum += forces[mesh_vertical(mesh, node)];
+        forces[mesh_vertical(mesh, node)] = 0;
+    }
+    forces[mesh_vertical(mesh, far_side)] = sum;
+    for (size_t k = 0; system->pinned && k + 1 < d; k++)
+        forces[far_side * d + k] = 0;
+    add(gmres->degrees_of_freedom, 1, forces, x);
 }
 
 /* Gives the flat block the drag of the equations. */
