@@ -253,7 +253,7 @@ static const double HARD = 0.29, HARDER = 7, HARD_RUBBER = 0.26, HARDER_RUBBER =
  * equations, and of these with pressures as unknowns, by a power of the side over
  * FRICTION_SIDE. Bytes of a degree of freedom, more with pressures. */
 static const double SURFACE_FRICTION_NEWTON = 0.8, SURFACE_FRICTION_LINEAR = 1.4;
-static const double FRICTION_PRESSURE_LINEAR = 5.5, FRICTION_SIDE = 16, FRICTION_SIDE_POWER = 0.6;
+static const double FRICTION_PRESSURE_LINEAR = 4.6, FRICTION_SIDE = 16, FRICTION_SIDE_POWER = 0.6;
 static const double SURFACE_FRICTION_BYTES = 510, SURFACE_PRESSURE_BYTES = 100;
 
 static double newton_iterations(const struct grid *grid, double poisson, bool pressures,
