@@ -92,8 +92,9 @@ struct friction_size cost_friction_size(const struct friction_work *of);
  * 1.14, and 23 others 0.70 to 1.66: slopes of 0.05 to 1, coefficients of 0.1 to 1, Poisson's ratios
  * of 0 to 0.4999, loads of 0.02 to 0.4. That is where coefficient times slope times
  * (load/0.1)^0.4 stays below 0.29. Beyond, steps are halved and faces jump, in some realisations:
- * six profiles of one case took 42 to 1620 iterations. No trial of one of them tells what the
- * others take. Twenty studies took 0.57 to 5.8 of the estimate. */
+ * six profiles of one case took 42 to 1620 iterations. A
+ * trial of one does not show what the others take. Twenty studies took 0.57 to 5.8 of the estimate.
+ */
 double cost_friction_steps(const struct friction_work *of, double steps);
 /* As cost_full_limit. */
 struct full_limit cost_friction_limit(const struct friction_work *of, double seconds);
