@@ -17,10 +17,10 @@ struct conditions {
 };
 
 /* Returns the pointer that a name stands for: "hurst", "surface/hurst" or "/surface/hurst". */
-static const char *find_pointer(const struct case_table *table, const char *name) {
-    for (size_t c = 0; c < table->study.case_count; c++)
-        for (size_t p = 0; p < table->study.cases[c].parameter_count; p++) {
-            const char *pointer = table->study.cases[c].parameters[p].pointer;
+static const char *find_pointer(const struct study_result *study, const char *name) {
+    for (size_t c = 0; c < study->case_count; c++)
+        for (size_t p = 0; p < study->cases[c].parameter_count; p++) {
+            const char *pointer = study->cases[c].parameters[p].pointer;
             if (strcmp(pointer, name) == 0 || strcmp(pointer + 1, name) == 0 ||
                 strcmp(last_name(pointer), name) == 0)
                 return pointer;
@@ -45,25 +45,24 @@ static bool fits(const struct result_parameter *value, const char *wanted) {
 }
 
 /* Names the parameter that is nearest, and what the study sweeps. */
-static int refuse_parameter(const struct case_table *table, const char *name, struct error *err) {
+static int refuse_parameter(const struct study_result *study, const char *name, struct error *err) {
     char names[240] = "", hint[NEAR_HINT_SIZE];
     struct near_name near = {.typed = name};
     const cJSON *swept;
-    cJSON_ArrayForEach(swept, table->study.swept) if (cJSON_IsString(swept)) {
-        plot_near_parameter(&near, table->study.kind, swept->valuestring);
+    cJSON_ArrayForEach(swept, study->swept) if (cJSON_IsString(swept)) {
+        plot_near_parameter(&near, study->kind, swept->valuestring);
         table_words_add(names, sizeof names, last_name(swept->valuestring));
     }
-    for (size_t c = 0; c < table->study.case_count; c++)
-        for (size_t p = 0; p < table->study.cases[c].parameter_count; p++)
-            plot_near_parameter(&near, table->study.kind,
-                                table->study.cases[c].parameters[p].pointer);
+    for (size_t c = 0; c < study->case_count; c++)
+        for (size_t p = 0; p < study->cases[c].parameter_count; p++)
+            plot_near_parameter(&near, study->kind, study->cases[c].parameters[p].pointer);
     return error_set(err, ERROR_INPUT,
                      "where: \"%.60s\" is no parameter of the study's cases%s; it sweeps %s", name,
                      near_name_hint(&near, hint), *names != '\0' ? names : "none");
 }
 
-static int read_condition(struct conditions *all, const struct case_table *table, const char *text,
-                          size_t size, struct error *err) {
+static int read_condition(struct conditions *all, const struct study_result *study,
+                          const char *text, size_t size, struct error *err) {
     char name[TABLE_NAME_SIZE];
     const char *equals = memchr(text, '=', size);
     size_t length = equals != NULL ? (size_t)(equals - text) : 0;
@@ -78,9 +77,9 @@ static int read_condition(struct conditions *all, const struct case_table *table
     struct condition *one = &all->list[all->count++];
     snprintf(name, sizeof name, "%.*s", (int)length, text);
     snprintf(one->value, sizeof one->value, "%.*s", (int)(size - length - 1), equals + 1);
-    one->pointer = find_pointer(table, name);
+    one->pointer = find_pointer(study, name);
     if (one->pointer == NULL)
-        return refuse_parameter(table, name, err);
+        return refuse_parameter(study, name, err);
     return 0;
 }
 
@@ -101,8 +100,8 @@ static bool holds(struct conditions *all, const struct case_result *one) {
 
 /* No case fits: names the values of the first parameter that has no such value, or says that they
  * do not go together. */
-static int refuse(const struct conditions *all, const struct case_table *table, struct error *err) {
-    const struct study_result *study = &table->study;
+static int refuse(const struct conditions *all, const struct study_result *study,
+                  struct error *err) {
     for (size_t n = 0; n < all->count; n++) {
         const struct condition *one = &all->list[n];
         char values[320] = "", text[64], last[64] = "";
@@ -126,32 +125,19 @@ static int refuse(const struct conditions *all, const struct case_table *table, 
     return error_set(err, ERROR_INPUT, "where: no case has all of these values at once");
 }
 
-/* Reads "NAME=VALUE,..." and leaves the rows of the table that fit. */
-static int keep_rows(struct case_table *table, const char *const *where, struct error *err) {
+int case_rows_choose(const struct study_result *study, const char *const *where,
+                     const struct case_result **rows, size_t *count, struct error *err) {
     struct conditions all = {0};
-    size_t kept = 0;
     int status = 0;
+    *count = 0;
     for (; where != NULL && *where != NULL && status == 0; where++)
         for (const char *next = *where; status == 0 && next != NULL;) {
             size_t size = strcspn(next, ",");
-            status = read_condition(&all, table, next, size, err);
+            status = read_condition(&all, study, next, size, err);
             next = next[size] == ',' ? next + size + 1 : NULL;
         }
-    for (size_t r = 0; r < table->row_count && status == 0; r++)
-        if (holds(&all, table->rows[r]))
-            table->rows[kept++] = table->rows[r];
-    if (status == 0 && kept == 0 && all.count > 0)
-        status = refuse(&all, table, err);
-    table->row_count = kept;
-    return status;
-}
-
-int case_rows_fill(struct case_table *table, const char *const *where, struct error *err) {
-    size_t count = table->study.case_count;
-    table->rows = result_room(&table->room, count + 1, sizeof *table->rows);
-    if (table->rows == NULL)
-        return error_memory(err, count * sizeof *table->rows, "rows");
-    for (size_t c = 0; c < count; c++)
-        table->rows[table->row_count++] = &table->study.cases[c];
-    return keep_rows(table, where, err);
+    for (size_t c = 0; c < study->case_count && status == 0; c++)
+        if (holds(&all, &study->cases[c]))
+            rows[(*count)++] = &study->cases[c];
+    return status == 0 && *count == 0 && all.count > 0 ? refuse(&all, study, err) : status;
 }

@@ -2,11 +2,12 @@
 #ifndef RUGO_SERVER_SHOW_TABLE_CASE_ROWS_H
 #define RUGO_SERVER_SHOW_TABLE_CASE_ROWS_H
 
-#include "server/show/table/case_table.h"
+#include "schema/result/result.h"
 
-/* Fills the rows of a table whose study is read: those that fit `where`, lists of NAME=VALUE as in
- * table_request. ERROR_INPUT names a parameter or value that no case has, and those that there
- * are. */
-int case_rows_fill(struct case_table *table, const char *const *where, struct error *err);
+/* Fills rows, with room for all cases, by those that fit `where`, lists of NAME=VALUE as in
+ * table_request (case_table.h). ERROR_INPUT names a parameter or value that no case has, and those
+ * that there are. */
+int case_rows_choose(const struct study_result *study, const char *const *where,
+                     const struct case_result **rows, size_t *count, struct error *err);
 
 #endif

@@ -590,13 +590,21 @@ static int add_usual(struct table_maker *maker, struct error *err) {
 
 /* --- together --- */
 
+static int add_rows(struct case_table *table, const char *const *where, struct error *err) {
+    size_t count = table->study.case_count;
+    table->rows = result_room(&table->room, count + 1, sizeof *table->rows);
+    if (table->rows == NULL)
+        return error_memory(err, count * sizeof *table->rows, "rows");
+    return case_rows_choose(&table->study, where, table->rows, &table->row_count, err);
+}
+
 int case_table_open(struct case_table *out, const struct picture_source *source,
                     const char *const *where, struct error *err) {
     static const struct result_filter SCALARS = {.case_number = -1, .part = {.scalars_only = true}};
     *out = (struct case_table){0};
     int status = source->results(source->context, &SCALARS, &out->study, err);
     if (status == 0)
-        status = case_rows_fill(out, where, err);
+        status = add_rows(out, where, err);
     if (status != 0)
         case_table_clear(out);
     return status;
