@@ -303,6 +303,23 @@ static void elements_take_the_iterations_expected(void **state) {
     }
 }
 
+/* Surfaces that may overhang have room for 120 directions in place of 24. */
+static void overhangs_take_memory(void **state) {
+    (void)state;
+    static const struct grid GRID = {32, 32, 4, 4};
+    static const double SLOPES[] = {0.5, 1};
+    const struct block block = {.poisson = 0.3, .height = 6, .layer_growth = 1.1};
+    const struct full_options options = FULL_DEFAULTS;
+    double bytes[2] = {0}, directions = 0;
+    for (size_t a = 0; a < 2; a++) {
+        const struct full_size size = cost_full_size(&GRID, &block, &options, SLOPES[a]);
+        bytes[a] = cost_full_bytes(&GRID, &block, &options, &size);
+        directions = 2 * (120 - 24) * sizeof(double) * size.degrees_of_freedom;
+        assert_true(size.overhangs == (a == 1));
+    }
+    assert_true(bytes[0] > 0 && bytes[1] > bytes[0] + directions);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(surfaces_with_friction_iterate_as_estimated),
@@ -311,6 +328,7 @@ int main(void) {
         cmocka_unit_test(sizes_do_not_matter_without_a_tolerance),
         cmocka_unit_test(contact_costs_what_it_takes),
         cmocka_unit_test(elements_take_the_iterations_expected),
+        cmocka_unit_test(overhangs_take_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
