@@ -201,6 +201,8 @@ static const double USUAL_LOAD = 0.1; /* p/(E* h') */
  * several faces does, with ten times the iterations of the others. */
 static const double JUMPING = 0.9, JUMPING_PRESSURES = 0.6, JUMPING_LOAD = 0.4;
 static const double PROFILE_JUMPS = 4.5, SURFACE_JUMPS = 2.5;
+/* What is hard takes so many times as much at most. */
+static const double HARD_MOST = 30;
 /* Iterations of the linear equations: LINEAR_LEAST + STEEP h' (1 + h') (0.4 min(B, 10))^0.6
  * (nx/SIDE)^SIDE_POWER, with B = 1/(1 - 2 nu), about the bulk over the shear modulus, and at least
  * 1 for the power. With pressures as unknowns it is LINEAR_PRESSURES, and there are PRESSURE_TENS
@@ -220,7 +222,7 @@ struct full_fit {
 static const struct full_fit PROFILE_FULL = {400, 55, 2.5, 35, 1e4},
                              SURFACE_FULL = {1800, 130, 4, 60, 7e4};
 /* They hold for so many degrees of freedom, and rise by this power of these. */
-static const double PROFILE_FREEDOM = 40000, SURFACE_FREEDOM = 40000, CACHE_POWER = 0.2;
+static const double FULL_FREEDOM = 40000, CACHE_POWER = 0.2;
 /* Arrays take so many times their bytes, with what heaps keep between them. */
 static const double MEMORY_ROOM = 1.03;
 /* Iterations of the linear equations of a step, over their mean, at most. */
@@ -256,7 +258,7 @@ static const double WAVE_NODES = 4, LEG_STEPS = 20, RUBBER_DECADES = 3.7;
  * may fold and jump: all takes e^(HARDER more) as much, in the mean. Single faces take a tenth to
  * twice of that. */
 static const double HARD = 0.29, HARDER = 7, HARD_RUBBER = 0.26, HARDER_RUBBER = 11,
-                    HARD_LOAD = 0.4, HARD_MOST = 30;
+                    HARD_LOAD = 0.4;
 /* Of surfaces, iterations of a step over those of a load without friction: Newton's, and of the
  * linear equations. Bytes of a degree of freedom, more with pressures. */
 static const double SURFACE_FRICTION_NEWTON = 0.8, SURFACE_FRICTION_LINEAR = 1.4;
@@ -304,8 +306,7 @@ struct full_size cost_full_size(const struct grid *grid, const struct block *blo
  * which stay in the caches. `linear` is an iteration of the linear equations. */
 static struct full_fit nanoseconds(const struct grid *grid, const struct full_size *size) {
     struct full_fit out = grid_is_profile(grid) ? PROFILE_FULL : SURFACE_FULL;
-    const double least = grid_is_profile(grid) ? PROFILE_FREEDOM : SURFACE_FREEDOM;
-    const double part = pow(size->degrees_of_freedom / least, CACHE_POWER);
+    const double part = pow(size->degrees_of_freedom / FULL_FREEDOM, CACHE_POWER);
     out.linear += out.each * size->linear + (size->pressures ? out.pressures : 0);
     out.newton *= part;
     out.linear *= part;
@@ -328,7 +329,7 @@ static double jumps(const struct grid *grid, const struct full_size *size, doubl
     double least = (size->pressures ? JUMPING_PRESSURES : JUMPING) *
                    pow(fmin(1, load / USUAL_LOAD), -JUMPING_LOAD);
     double rate = grid_is_profile(grid) ? PROFILE_JUMPS : SURFACE_JUMPS;
-    return exp(rate * fmax(0, rms_slope - least));
+    return fmin(exp(rate * fmax(0, rms_slope - least)), HARD_MOST);
 }
 
 double cost_full_loads(const struct grid *grid, const struct full_size *size, double rms_slope,

@@ -1,33 +1,18 @@
 #include "core/full/newton.h"
 #include "core/full/face.h"
+#include "core/full/rounds.h"
 #include "core/full/set_history.h"
 #include "core/sum.h"
-#include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Stiffness c that weights gaps against forces in the choice of the active set: E* over the mesh's
- * unit. */
-static const double COMPLEMENTARITY = 1;
-/* Contact forces may change the active set once the largest residual over the largest contact force
- * is below TRUSTED; while nodes change one at a time, below TRUSTED_ONE. */
-static const double TRUSTED = 0.1, TRUSTED_ONE = 1e-4;
 /* Residuals at which iterations of the linear equations end: LINEAR_PART times Newton's residual,
  * at most LINEAR_MOST; LINEAR_EXACT with a factorisation; LINEAR_STIFFNESS for newton_compliance,
  * the second where the first is not reached. */
-static const double LINEAR_MOST = 1e-2, LINEAR_PART = 0.1, LINEAR_EXACT = 1e-10;
+static const double LINEAR_MOST = 1e-2, LINEAR_EXACT = 1e-10;
 static const double LINEAR_STIFFNESS[] = {1e-6, 1e-4};
-/* Gaps are sums of heights and displacements. Their rounding error is taken as ROUNDINGS units in
- * the last digit of the highest height. A load is refused when forces by strains of that size
- * exceed ROUNDING_MOST times the load. */
-static const double ROUNDINGS = 8, ROUNDING_MOST = 0.01;
-/* HALVINGS: of a step that folds the face or inverts an element. PATIENCE: rounds with the same
- * active set that do not improve on the best one. RETURNS: active sets met before, after which
- * Newton's method gives up. */
-enum { HALVINGS = 8, PATIENCE = 10, RETURNS = 3 };
-
 int newton_create(struct newton *out, const struct mesh *mesh, const struct material *material,
                   enum gap_weighting weighting, enum equation_solver solver, struct error *err) {
     *out = (struct newton){.mesh = mesh, .material = *material, .solver = solver};
@@ -123,20 +108,16 @@ static double contact_force(const struct newton *n, size_t node) {
 /* Return the rounding error of gaps, which are sums of heights and displacements as large as the
  * highest height, and of the forces that strains of that size cause. */
 static double gap_rounding(const struct newton *n) {
-    return ROUNDINGS * DBL_EPSILON * fabs(n->flat_height);
+    return rounds_gap(fabs(n->flat_height));
 }
 static double force_rounding(const struct newton *n) {
-    double stiffness = 2 * n->material.shear + n->material.local + n->material.mean;
-    return gap_rounding(n) * stiffness * newton_node_area(n);
+    return rounds_force(gap_rounding(n), &n->material, newton_node_area(n));
 }
 
 /* --- the active set --- */
 
 static double largest_force(const struct newton *n) {
-    double most = 0;
-    for (size_t node = 0; node < n->mesh->face; node++)
-        most = fmax(most, fabs(contact_force(n, node)));
-    return most;
+    return rounds_largest_force(n->mesh, n->force);
 }
 
 /* Returns the force by which a node's state (active or not) contradicts its contact force and gap;
@@ -361,7 +342,7 @@ static struct round assess(struct newton *n, double pressure, bool first,
     round.largest = fmax(largest_force(n), pressure * newton_node_area(n));
     round.residual = residual(n, pressure, n->change);
     bool careful = end->cycles > 0;
-    if (!first && round.residual <= (careful ? TRUSTED_ONE : TRUSTED) * round.largest)
+    if (!first && rounds_trust(round.residual, round.largest, careful))
         round.changes = active_update(n, careful);
     if (round.changes > 0) {
         end->changes += round.changes;
@@ -377,22 +358,13 @@ static struct round assess(struct newton *n, double pressure, bool first,
     return round;
 }
 
-/* The best round since the active set changed. */
-struct newton_progress {
-    double least;  /* smallest residual, in the units of the tolerance */
-    size_t rounds; /* rounds since then */
-    size_t begun;  /* iterations before contact of the face with itself was last found */
-};
-
 /* Returns 0 when the iteration may go on from a round whose residual is `off`. */
-static int check_progress(const struct newton *n, struct newton_progress *progress, double off,
+static int check_progress(const struct newton *n, struct round_progress *progress, double off,
                           bool changed, const struct newton_end *end, struct error *err) {
-    bool better = changed || off < progress->least;
-    progress->least = better ? off : progress->least;
-    progress->rounds = better ? 0 : progress->rounds + 1;
+    bool ends = round_progress_ends(progress, off, changed, end->iterations, n->max_iterations);
     if (end->cycles > RETURNS)
         return error_set(err, ERROR_NUMERIC, "the sets of nodes in contact come back");
-    if (end->iterations - progress->begun == n->max_iterations || progress->rounds > PATIENCE)
+    if (ends)
         return error_set(err, ERROR_NUMERIC,
                          "%zu iterations of Newton's left %.2g of the largest force",
                          end->iterations, end->residual);
@@ -432,7 +404,7 @@ static int begin(struct newton *n, double pressure, struct error *err) {
 
 int newton_solve(struct newton *n, double pressure, struct newton_end *end, struct error *err) {
     struct set_history history = {0};
-    struct newton_progress progress = {.least = INFINITY};
+    struct round_progress progress = {.least = INFINITY};
     struct self_rounds rounds = {0};
     *end = (struct newton_end){0};
     int status = begin(n, pressure, err);
@@ -451,7 +423,7 @@ int newton_solve(struct newton *n, double pressure, struct newton_end *end, stru
             status = renew(n, round.largest, &rounds, err);
             if (status != 0)
                 return status;
-            progress = (struct newton_progress){.least = INFINITY, .begun = end->iterations};
+            progress = (struct round_progress){.least = INFINITY, .begun = end->iterations};
             continue;
         }
         double off = fmax(end->residual, round.inside * COMPLEMENTARITY / round.largest);

@@ -18,8 +18,8 @@
 
 enum { CONTACT_SEED = 11 };
 
-/* The document of realisations 0 .. count - 1. */
-static inline cJSON *solve(const char *study, uint64_t count) {
+/* The document of so many realisations from the first one on. */
+static inline cJSON *solve_from(const char *study, uint64_t first, uint64_t count) {
     const struct job_kind *kind = kind_find("contact");
     struct job_runner *runner = NULL;
     struct job_merger *merger = NULL;
@@ -29,7 +29,7 @@ static inline cJSON *solve(const char *study, uint64_t count) {
     assert_non_null(parameters);
     if (runner_create(&runner, kind, parameters, NULL, CONTACT_SEED, 0, &err) != 0 ||
         merger_create(&merger, kind, parameters, &err) != 0 ||
-        runner_run(runner, 0, count, NULL, &result, &err) != 0 ||
+        runner_run(runner, first, count, NULL, &result, &err) != 0 ||
         merger_add(merger, &result, &err) != 0 ||
         merger_tree(merger, NULL, NULL, &document, &err) != 0)
         fail_msg("%s: %s", study, err.text);
@@ -38,6 +38,11 @@ static inline cJSON *solve(const char *study, uint64_t count) {
     merger_destroy(&merger);
     cJSON_Delete(parameters);
     return document;
+}
+
+/* The document of realisations 0 .. count - 1. */
+static inline cJSON *solve(const char *study, uint64_t count) {
+    return solve_from(study, 0, count);
 }
 
 static inline bool text_is(const cJSON *object, const char *key, const char *text) {

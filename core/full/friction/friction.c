@@ -252,31 +252,22 @@ static void add_works(const struct friction *f, const struct point *from, struct
     to->work = work;
 }
 
-/* Returns the area of nodes over that of the face. Not of the flat grid: with their slopes. */
-static double share_of(const struct friction *f, const double *u, const bool *active) {
-    size_t nodes = 0;
-    for (size_t node = 0; node < f->face; node++)
-        nodes += active[node];
-    const double share = (double)nodes / (double)f->face;
-    if (!f->options.current_areas || nodes == 0)
-        return share;
-    const struct face_tilt tilt = face_measure_tilt(f->mesh, u, active);
-    return share * face_contact_stretch(f->mesh, u, active) * (1 + tilt.contact) / (1 + tilt.face);
-}
-
+/* Measures the face around some of its nodes. Areas of the flat grid are counts; others are with
+ * their slopes, over that of the face. */
 static struct friction_face measure_face(const struct friction *f, const double *u,
                                          const bool *active) {
-    struct friction_face out = {.area = share_of(f, u, active), .open_stretch = 1};
     size_t nodes = 0;
     for (size_t node = 0; node < f->face; node++)
         nodes += active[node];
+    struct friction_face out = {.area = (double)nodes / (double)f->face, .open_stretch = 1};
     if (!f->options.current_areas || nodes == 0)
         return out;
-    out.tilt = face_measure_tilt(f->mesh, u, active).face;
+    const struct face_tilt tilt = face_measure_tilt(f->mesh, u, active);
+    const double stretch = face_contact_stretch(f->mesh, u, active);
+    out.area = out.area * stretch * (1 + tilt.contact) / (1 + tilt.face);
+    out.tilt = tilt.face;
     if (nodes < f->face)
-        out.open_stretch =
-            ((double)f->face - (double)nodes * face_contact_stretch(f->mesh, u, active)) /
-            (double)(f->face - nodes);
+        out.open_stretch = ((double)f->face - (double)nodes * stretch) / (double)(f->face - nodes);
     return out;
 }
 
@@ -547,8 +538,9 @@ static void fill_nodes(struct friction *f, struct friction_state *out) {
         sum_add(&stuck, sticks ? f->p[node] : 0);
     }
     out->face = measure_face(f, n->u, f->touches);
-    out->stick_area = f->options.current_areas ? share_of(f, n->u, f->sticks) / out->face.area
-                                               : (double)out->stuck / (double)out->nodes;
+    out->stick_area = f->options.current_areas
+                          ? measure_face(f, n->u, f->sticks).area / out->face.area
+                          : (double)out->stuck / (double)out->nodes;
     out->stick_load = sum_value(&stuck) / sum_value(&all);
 }
 

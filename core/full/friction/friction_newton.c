@@ -1,22 +1,17 @@
 #include "core/full/friction/friction_newton.h"
 #include "core/full/face.h"
+#include "core/full/rounds.h"
 #include "core/full/set_history.h"
 #include "core/sum.h"
-#include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* As in newton.c: stiffness that weights gaps and slips against forces, residuals from which forces
- * may change the sets, and what ends the iteration. */
-static const double COMPLEMENTARITY = 1;
-static const double TRUSTED = 0.1, TRUSTED_ONE = 1e-4;
-static const double LINEAR_MOST = 1e-3, LINEAR_PART = 0.1;
-static const double ROUNDINGS = 8, ROUNDING_MOST = 0.01;
+/* Residuals at which iterations of the linear equations end, at most. */
+static const double LINEAR_MOST = 1e-3;
 /* A direction that has so much across the axis of the drive. */
 static const double TURNED = 0.1;
-enum { HALVINGS = 8, PATIENCE = 10, RETURNS = 3 };
 
 static int arrays_create(struct friction_newton *n, struct error *err) {
     const size_t unknowns = n->unknowns, face = n->mesh->face;
@@ -140,21 +135,12 @@ static double pressing(const struct friction_newton *n, size_t node) {
     return n->force[mesh_vertical(n->mesh, node)];
 }
 
-/* Rounding errors, as in newton.c. */
 static double gap_rounding(const struct friction_newton *n) {
     double flat = fmax(fabs(n->flat[0]), fabs(n->flat[1]));
-    return ROUNDINGS * DBL_EPSILON * fmax(fabs(n->flat_height), flat);
+    return rounds_gap(fmax(fabs(n->flat_height), flat));
 }
 static double force_rounding(const struct friction_newton *n) {
-    return gap_rounding(n) * (2 * n->material.shear + n->material.local + n->material.mean) *
-           n->mesh->across;
-}
-
-static double largest_force(const struct friction_newton *n) {
-    double most = 0;
-    for (size_t node = 0; node < n->mesh->face; node++)
-        most = fmax(most, fabs(pressing(n, node)));
-    return most;
+    return rounds_force(gap_rounding(n), &n->material, n->mesh->across);
 }
 
 /* --- what nodes do --- */
@@ -536,11 +522,11 @@ static struct round assess(struct friction_newton *n, const struct friction_goal
     bool first = end->iterations == 0, careful = end->cycles > 0;
     friction_newton_measure_gaps(n);
     follow_directions(n);
-    round.largest = fmax(largest_force(n), goal->pressure * n->mesh->across);
+    round.largest = fmax(rounds_largest_force(n->mesh, n->force), goal->pressure * n->mesh->across);
     round.balanced = fmax(n->tolerance * round.largest, force_rounding(n));
     round.closed = fmax(n->tolerance * round.largest / COMPLEMENTARITY, gap_rounding(n));
     round.residual = residual(n, goal);
-    if (!first && round.residual <= (careful ? TRUSTED_ONE : TRUSTED) * round.largest)
+    if (!first && rounds_trust(round.residual, round.largest, careful))
         round.changes = update(n, round.balanced, careful);
     if (round.changes > 0) {
         end->changes += round.changes;
@@ -554,25 +540,17 @@ static struct round assess(struct friction_newton *n, const struct friction_goal
     return round;
 }
 
-/* The best round since the sets changed. */
-struct progress {
-    double least; /* residual, in the units of the tolerance */
-    size_t rounds;
-    size_t begun; /* iterations before contact of the face with itself was last found */
-};
-
-static int check_progress(const struct friction_newton *n, struct progress *progress, double off,
-                          const struct round *round, const struct friction_end *end,
+static int check_progress(const struct friction_newton *n, struct round_progress *progress,
+                          double off, const struct round *round, const struct friction_end *end,
                           struct error *err) {
-    bool better = round->changes > 0 || off < progress->least;
-    progress->least = better ? off : progress->least;
-    progress->rounds = better ? 0 : progress->rounds + 1;
+    bool ends =
+        round_progress_ends(progress, off, round->changes > 0, end->iterations, n->max_iterations);
     if (end->cycles > RETURNS)
         return error_set(err, ERROR_NUMERIC,
                          "the sets of nodes that stick and slide come back, %zu times in %zu "
                          "iterations of Newton's; residual %.2g of the largest force",
                          end->cycles, end->iterations, end->residual);
-    if (end->iterations - progress->begun == n->max_iterations || progress->rounds > PATIENCE)
+    if (ends)
         return error_set(err, ERROR_NUMERIC,
                          "%zu iterations of Newton's left %.2g of the largest force, and gaps and "
                          "slips of %.2g columns",
@@ -599,7 +577,7 @@ static int renew(struct friction_newton *n, double largest, struct self_rounds *
 int friction_newton_solve(struct friction_newton *n, const struct friction_goal *goal,
                           struct friction_end *end, struct error *err) {
     struct set_history history = {0};
-    struct progress progress = {.least = INFINITY};
+    struct round_progress progress = {.least = INFINITY};
     struct self_rounds rounds = {0};
     *end = (struct friction_end){0};
     double load = goal->pressure * n->mesh->across * (double)n->mesh->face;
@@ -626,7 +604,7 @@ int friction_newton_solve(struct friction_newton *n, const struct friction_goal 
         if (status != 0)
             return status;
         if (balanced) {
-            progress = (struct progress){.least = INFINITY, .begun = end->iterations};
+            progress = (struct round_progress){.least = INFINITY, .begun = end->iterations};
             continue;
         }
         double off = fmax(end->residual, round.inside * COMPLEMENTARITY / round.largest);

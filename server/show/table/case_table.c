@@ -4,8 +4,9 @@
 #include "schema/result/result.h"
 #include "schema/result/swept.h"
 #include "schema/study/parameter.h"
-#include "server/show/plot/plot_words.h"
+#include "server/show/table/case_rows.h"
 #include "server/show/table/shown_cases.h"
+#include "server/show/table/table_words.h"
 #include "server/show/view.h"
 #include <errno.h>
 #include <math.h>
@@ -13,9 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Numbers that a person writes are those meant, to so much. */
-static const double ROUNDING = 1e-9;
-enum { TABLE_WORDS_MOST = 8, TABLE_NAME_SIZE = 192 };
+enum { TABLE_WORDS_MOST = 8 };
 
 /* A column as it is asked for: "contact_area:layered@0.1". */
 struct table_wish {
@@ -129,7 +128,7 @@ static void sum_errors(struct table_value *value, struct table_column *column) {
     value->error = NAN;
     value->total = total_of(value->value, value->standard_error, value->errors);
     column->has_total = column->has_total || total_half_width(value->value, &value->total) >
-                                                 ROUNDING * fabs(value->value);
+                                                 TABLE_ROUNDING * fabs(value->value);
     for (size_t s = 0; s < ERROR_SOURCES; s++) {
         const struct scalar_error *error = &value->errors[s];
         column->unknown[s] =
@@ -154,23 +153,13 @@ static struct table_value value_of(const struct scalar *scalar, struct table_col
     return value;
 }
 
-/* Appends a name, or once "..." where there is no room for it. */
-static void list_name(char *names, size_t size, const char *name) {
-    size_t used = strlen(names);
-    bool full = used >= 3 && strcmp(names + used - 3, "...") == 0;
-    if (used + strlen(name) + sizeof ", , ..." < size)
-        snprintf(names + used, size - used, "%s%s", used > 0 ? ", " : "", name);
-    else if (!full)
-        snprintf(names + used, size - used, "%s...", used > 0 ? ", " : "");
-}
-
 static int refuse_scalar(const struct case_table *table, const char *name, struct error *err) {
     char names[240] = "", hint[NEAR_HINT_SIZE];
     struct near_name near = {.typed = name};
     for (size_t c = 0; c < table->study.case_count && *names == '\0'; c++)
         for (size_t s = 0; s < table->study.cases[c].scalar_count; s++) {
             const char *scalar = table->study.cases[c].scalars[s].name;
-            list_name(names, sizeof names, scalar);
+            table_words_add(names, sizeof names, scalar);
             near_name_see(&near, scalar);
         }
     return error_set(err, ERROR_INPUT,
@@ -204,21 +193,14 @@ static int add_scalar(struct case_table *table, const char *name, bool optional,
 
 enum { MODELS_MOST = 8, PLACES_TOLD = 320 };
 
-/* Returns whether a number is meant by a text. */
-static bool is_number(double number, const char *text) {
-    char *end;
-    double read = strtod(text, &end);
-    return end != text && *end == '\0' && fabs(read - number) <= ROUNDING * fabs(number);
-}
-
 static bool is_text(const char *own, const char *text) {
     return own != NULL && strcmp(own, text) == 0;
 }
 
 static bool has_word(const struct curve *curve, const char *word) {
     return is_text(curve->model, word) || is_text(curve->series, word) ||
-           is_text(curve->kinematics, word) || is_number(curve->level, word) ||
-           is_number(curve->pressure, word);
+           is_text(curve->kinematics, word) || table_word_is(curve->level, word) ||
+           table_word_is(curve->pressure, word);
 }
 
 static bool is_wished(const struct curve *curve, const struct table_wish *wish) {
@@ -267,7 +249,7 @@ static void find_models(struct models *models, const struct study_result *study,
 /* Returns the number of the point at x; curve->n where there is none. */
 static size_t find_place(const struct curve *curve, double x) {
     size_t k = 0;
-    while (k < curve->n && !(fabs(curve->x[k] - x) <= ROUNDING * fabs(x)))
+    while (k < curve->n && !(fabs(curve->x[k] - x) <= TABLE_ROUNDING * fabs(x)))
         k++;
     return k;
 }
@@ -606,154 +588,6 @@ static int add_usual(struct table_maker *maker, struct error *err) {
     return status;
 }
 
-/* --- rows by the parameters of their cases: "hurst=0.8,shape=1" --- */
-
-enum { CONDITIONS_MOST = 32 };
-
-struct condition {
-    const char *pointer; /* of the cases */
-    char value[TABLE_NAME_SIZE];
-    bool holds; /* of the row that is asked now */
-};
-struct conditions {
-    size_t count;
-    struct condition list[CONDITIONS_MOST];
-};
-
-/* Returns the pointer that a name stands for: "hurst", "surface/hurst" or "/surface/hurst". */
-static const char *find_pointer(const struct case_table *table, const char *name) {
-    for (size_t c = 0; c < table->study.case_count; c++)
-        for (size_t p = 0; p < table->study.cases[c].parameter_count; p++) {
-            const char *pointer = table->study.cases[c].parameters[p].pointer;
-            if (strcmp(pointer, name) == 0 || strcmp(pointer + 1, name) == 0 ||
-                strcmp(last_name(pointer), name) == 0)
-                return pointer;
-        }
-    return NULL;
-}
-
-static void describe(const struct result_parameter *value, char *text, size_t size) {
-    if (value == NULL)
-        snprintf(text, size, "-");
-    else if (value->text != NULL)
-        snprintf(text, size, "%.60s", value->text);
-    else
-        snprintf(text, size, "%.10g", value->number);
-}
-
-static bool fits(const struct result_parameter *value, const char *wanted) {
-    char *end;
-    double number = strtod(wanted, &end);
-    if (value == NULL)
-        return false;
-    if (value->text != NULL)
-        return strcmp(value->text, wanted) == 0;
-    return end != wanted && *end == '\0' &&
-           fabs(value->number - number) <= ROUNDING * fabs(value->number);
-}
-
-/* Names the parameter that is nearest, and what the study sweeps. */
-static int refuse_parameter(const struct case_table *table, const char *name, struct error *err) {
-    char names[240] = "", hint[NEAR_HINT_SIZE];
-    struct near_name near = {.typed = name};
-    const cJSON *swept;
-    cJSON_ArrayForEach(swept, table->study.swept) if (cJSON_IsString(swept)) {
-        plot_near_parameter(&near, table->study.kind, swept->valuestring);
-        list_name(names, sizeof names, last_name(swept->valuestring));
-    }
-    for (size_t c = 0; c < table->study.case_count; c++)
-        for (size_t p = 0; p < table->study.cases[c].parameter_count; p++)
-            plot_near_parameter(&near, table->study.kind,
-                                table->study.cases[c].parameters[p].pointer);
-    return error_set(err, ERROR_INPUT,
-                     "where: \"%.60s\" is no parameter of the study's cases%s; it sweeps %s", name,
-                     near_name_hint(&near, hint), *names != '\0' ? names : "none");
-}
-
-static int read_condition(struct conditions *all, const struct case_table *table, const char *text,
-                          size_t size, struct error *err) {
-    char name[TABLE_NAME_SIZE];
-    const char *equals = memchr(text, '=', size);
-    size_t length = equals != NULL ? (size_t)(equals - text) : 0;
-    int shown = (int)(size > 60 ? 60 : size);
-    if (length == 0 || size >= sizeof name)
-        return error_set(err, ERROR_INPUT,
-                         "where: \"%.*s\" is not NAME=VALUE, as in hurst=0.8; several values are "
-                         "hurst=0.2,hurst=0.8",
-                         shown, text);
-    if (all->count == CONDITIONS_MOST)
-        return error_set(err, ERROR_INPUT, "where: more than %d conditions", CONDITIONS_MOST);
-    struct condition *one = &all->list[all->count++];
-    snprintf(name, sizeof name, "%.*s", (int)length, text);
-    snprintf(one->value, sizeof one->value, "%.*s", (int)(size - length - 1), equals + 1);
-    one->pointer = find_pointer(table, name);
-    if (one->pointer == NULL)
-        return refuse_parameter(table, name, err);
-    return 0;
-}
-
-/* Returns whether, of each parameter that is named, one value fits the case. */
-static bool holds(struct conditions *all, const struct case_result *one) {
-    bool every = true;
-    for (size_t n = 0; n < all->count; n++)
-        all->list[n].holds = fits(result_parameter(one, all->list[n].pointer), all->list[n].value);
-    for (size_t n = 0; n < all->count; n++) {
-        bool any = false;
-        for (size_t m = 0; m < all->count; m++)
-            any = any ||
-                  (all->list[m].holds && strcmp(all->list[m].pointer, all->list[n].pointer) == 0);
-        every = every && any;
-    }
-    return every;
-}
-
-/* No case fits: names the values of the first parameter that has no such value, or says that they
- * do not go together. */
-static int refuse(const struct conditions *all, const struct case_table *table, struct error *err) {
-    const struct study_result *study = &table->study;
-    for (size_t n = 0; n < all->count; n++) {
-        const struct condition *one = &all->list[n];
-        char values[320] = "", text[64], last[64] = "";
-        bool any = false;
-        for (size_t c = 0; c < study->case_count; c++) {
-            const struct result_parameter *value = result_parameter(&study->cases[c], one->pointer);
-            size_t used = strlen(values);
-            any = any || fits(value, one->value);
-            describe(value, text, sizeof text);
-            if (strcmp(text, last) != 0 && strstr(values, text) == NULL)
-                snprintf(values + used, sizeof values - used, "%s%s", used > 0 ? ", " : "", text);
-            snprintf(last, sizeof last, "%s", text);
-        }
-        if (!any)
-            return error_set(err, ERROR_INPUT,
-                             *one->value != '\0'
-                                 ? "where: no case has %s = %.60s; there is %s"
-                                 : "where: %s has no value behind the =%s; there is %s",
-                             one->pointer, one->value, values);
-    }
-    return error_set(err, ERROR_INPUT, "where: no case has all of these values at once");
-}
-
-/* Reads "NAME=VALUE,..." and leaves the rows of the table that fit. */
-static int table_where(struct case_table *table, const char *const *where, struct error *err) {
-    struct conditions all = {0};
-    size_t kept = 0;
-    int status = 0;
-    for (; where != NULL && *where != NULL && status == 0; where++)
-        for (const char *next = *where; status == 0 && next != NULL;) {
-            size_t size = strcspn(next, ",");
-            status = read_condition(&all, table, next, size, err);
-            next = next[size] == ',' ? next + size + 1 : NULL;
-        }
-    for (size_t r = 0; r < table->row_count && status == 0; r++)
-        if (holds(&all, table->rows[r]))
-            table->rows[kept++] = table->rows[r];
-    if (status == 0 && kept == 0 && all.count > 0)
-        status = refuse(&all, table, err);
-    table->row_count = kept;
-    return status;
-}
-
 /* --- together --- */
 
 static int add_rows(struct case_table *table, const char *const *where, struct error *err) {
@@ -761,9 +595,7 @@ static int add_rows(struct case_table *table, const char *const *where, struct e
     table->rows = result_room(&table->room, count + 1, sizeof *table->rows);
     if (table->rows == NULL)
         return error_memory(err, count * sizeof *table->rows, "rows");
-    for (size_t c = 0; c < count; c++)
-        table->rows[table->row_count++] = &table->study.cases[c];
-    return table_where(table, where, err);
+    return case_rows_choose(&table->study, where, table->rows, &table->row_count, err);
 }
 
 int case_table_open(struct case_table *out, const struct picture_source *source,
