@@ -117,13 +117,21 @@ struct squares {
     double of[DEGREES][DEGREES];
 };
 
+/* Adds what a wave puts into the terms. */
+static void power_add(struct squares *out, bool profile, int most, double power,
+                      const double along_x[DEGREES], const double along_y[DEGREES]) {
+    for (int degree = FORM_DEGREE; degree <= most; degree++)
+        for (size_t t = 0; t < terms_of(profile, degree); t++)
+            out->of[degree][t] += power * along_x[(size_t)degree - t] * (profile ? 1 : along_y[t]);
+}
+
 static int expect(const struct grid *grid, const struct long_waves *waves, int most,
                   struct squares *out, struct error *err) {
     const bool profile = grid_is_profile(grid);
-    const double side = profile || grid->lx < grid->ly ? grid->lx : grid->ly;
-    const double along_x = grid->lx / side, along_y = profile ? 1 : grid->ly / side;
-    const size_t nx = (size_t)(STEPS_A_WAVE * WAVES * along_x);
-    const size_t ny = (size_t)(STEPS_A_WAVE * WAVES * along_y);
+    const double side = profile ? grid->lx : fmin(grid->lx, grid->ly);
+    const double ly = profile ? side : grid->ly;
+    const size_t nx = (size_t)(STEPS_A_WAVE * WAVES * grid->lx / side);
+    const size_t ny = (size_t)(STEPS_A_WAVE * WAVES * ly / side);
     double(*share)[DEGREES] = array_create(nx + ny, sizeof *share);
     *out = (struct squares){{{0}}};
     if (share == NULL)
@@ -131,16 +139,12 @@ static int expect(const struct grid *grid, const struct long_waves *waves, int m
     shares_fill(nx, share);
     shares_fill(ny, share + nx);
     const double step_x = 2 * M_PI / grid->lx / STEPS_A_WAVE;
-    const double step_y = profile ? 0 : 2 * M_PI / grid->ly / STEPS_A_WAVE;
+    const double step_y = profile ? 0 : 2 * M_PI / ly / STEPS_A_WAVE;
+    const double cell = 2 * step_x * (profile ? 1 : 2 * step_y); /* both signs */
     for (size_t a = 0; a < nx; a++)
         for (size_t b = 0; b < (profile ? 1 : ny); b++) {
             const double k = hypot(((double)a + 0.5) * step_x, ((double)b + 0.5) * step_y);
-            const double power =
-                2 * step_x * (profile ? 1 : 2 * step_y) * density_at(waves, k); /* both signs */
-            for (int degree = FORM_DEGREE; degree <= most; degree++)
-                for (size_t t = 0; t < terms_of(profile, degree); t++)
-                    out->of[degree][t] +=
-                        power * share[a][(size_t)degree - t] * (profile ? 1 : share[nx + b][t]);
+            power_add(out, profile, most, cell * density_at(waves, k), share[a], share[nx + b]);
         }
     free(share);
     return 0;

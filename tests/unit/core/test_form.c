@@ -8,6 +8,7 @@
 #include "tests/support/check.h"
 #include "tests/support/effort.h"
 #include <stdio.h>
+#include <string.h>
 
 enum { SEED = 62, SIDE = 128, PROFILE = 1024 };
 struct kind {
@@ -60,11 +61,10 @@ static struct grid part_of(const struct kind *kind, uint64_t realisation, double
         generator_run(generator, (struct random_key){SEED, 0, realisation}, whole, NULL, &err) != 0)
         fail_msg("%s", err.text);
     generator_destroy(&generator);
-    const struct grid grid = {n, kind->oblong ? n / 3 : rows, 1,
-                              kind->oblong ? (double)(n / 3) / (double)n : 1};
-    for (size_t j = 0; j < grid.ny; j++)
-        for (size_t i = 0; i < n; i++)
-            (*z)[j * n + i] = whole[j * cell.nx + i];
+    const size_t used = kind->oblong ? n / 3 : rows;
+    const struct grid grid = {n, used, 1, kind->oblong ? (double)used / (double)n : 1};
+    for (size_t j = 0; j < grid.ny && whole != NULL; j++)
+        memcpy(*z + j * n, whole + j * cell.nx, n * sizeof **z);
     free(whole);
     assert_int_equal(detrend(&grid, *z, DETREND_PLANE, &trend, NULL), 0);
     return grid;
