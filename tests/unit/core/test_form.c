@@ -63,7 +63,7 @@ static struct grid part_of(const struct kind *kind, uint64_t realisation, double
     generator_destroy(&generator);
     const size_t used = kind->oblong ? n / 3 : rows;
     const struct grid grid = {n, used, 1, kind->oblong ? (double)used / (double)n : 1};
-    for (size_t j = 0; j < grid.ny && whole != NULL; j++)
+    for (size_t j = 0; j < grid.ny && whole != NULL && *z != NULL; j++)
         memcpy(*z + j * n, whole + j * cell.nx, n * sizeof **z);
     free(whole);
     assert_int_equal(detrend(&grid, *z, DETREND_PLANE, &trend, NULL), 0);
