@@ -10,7 +10,14 @@
 
 static const double LEVEL = 1e-4, LEAST = 1e-9; /* of p-values; of the RMS height, not rounding */
 /* Cells across a map, along a profile; waves a side to which the law is fitted. */
-enum { CELLS = 64, PROFILE_CELLS = 256, LAST = 16, PROFILE_LAST = 64, LEAST_POINTS = 32 };
+enum {
+    CELLS = 64,
+    PROFILE_CELLS = 256,
+    LAST = 16,
+    PROFILE_LAST = 64,
+    LEAST_POINTS = 32,
+    OBLONG = 16
+};
 
 /* --- cells --- */
 
@@ -246,8 +253,9 @@ int map_form_find(struct map_form *out, const struct measured_map *map, struct e
     struct cells cells = {0};
     double whole;
     *out = (struct map_form){none, none, none, none};
-    if (map->boundary != BOUNDARY_OPEN || grid->nx < LEAST_POINTS ||
-        (!grid_is_profile(grid) && grid->ny < LEAST_POINTS))
+    const size_t ny = grid_is_profile(grid) ? grid->nx : grid->ny;
+    const size_t least = grid->nx < ny ? grid->nx : ny, most = grid->nx < ny ? ny : grid->nx;
+    if (map->boundary != BOUNDARY_OPEN || least < LEAST_POINTS || most > OBLONG * least)
         return 0;
     int status = cells_fill(&cells, map, err);
     if (status == 0 && cells_detrend(&cells)) {

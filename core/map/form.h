@@ -12,8 +12,8 @@ struct map_form {
     double share;    /* of the form in the mean square height about a plane */
     double p_value;  /* of a surface without a form */
 };
-/* It is sought in open maps of at least 32 points a side that have a quadratic form. Holes are left
- * out. Memory: two maps of 64 points across. ERROR_MEMORY. */
+/* It is sought in open maps of at least 32 points a side, up to 16 times as long as wide, that have
+ * a quadratic form. Holes are left out. Memory: two maps of 64 points across. ERROR_MEMORY. */
 int map_form_find(struct map_form *out, const struct measured_map *map, struct error *err);
 /* Returns whether a map has one, at a level of 1e-4 (F18.62 has how many do that have none). */
 bool map_form_found(const struct map_form *form);

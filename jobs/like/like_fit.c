@@ -87,7 +87,8 @@ static int measure_parts(struct fit *fit, struct error *err) {
     int status = test_parts(&fit->map, &fit->parts_p_value, err);
     if (status != 0 || isfinite(fit->parts_p_value) || grid->nx < 3)
         return status;
-    const struct grid between = {grid->nx - 1, grid->ny, grid->lx - grid_dx(grid), grid->ly};
+    const double lx = grid->lx - grid_dx(grid);
+    const struct grid between = {grid->nx - 1, grid->ny, lx, fit->profile ? lx : grid->ly};
     double *z = array_create(grid_points(&between), sizeof *z);
     if (z == NULL)
         return error_memory(err, grid_points(&between) * sizeof *z, "differences of a map");
