@@ -1,4 +1,5 @@
 #include "jobs/like/like_case.h"
+#include "core/surface/conditional.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -138,6 +139,7 @@ int like_case_fill(struct like_case *out, struct values *values, const struct su
     out->spacing = spacing;
     read_fitted(out, values);
     out->groove_depth_error = values_number(values, "/surface/like/groove_depth_error");
+    out->noise = values_number(values, "/surface/like/noise");
     check_faces(out, values, surface);
     size_t before = values_fault_count(values);
     int status = read_points(out, values, surface_case_dimension(values) == 1, err);
@@ -186,21 +188,34 @@ void like_patch_destroy(struct like_patch **patch) {
     *patch = NULL;
 }
 
-int like_patch_cut(struct like_patch *patch, const double *z, const double **heights,
-                   struct error *err) {
+static int add_noise(struct like_patch *patch, struct random_key key, struct error *err) {
+    const size_t points = grid_points(&patch->grid);
+    double *noise = array_create(points, sizeof *noise);
+    if (noise == NULL)
+        return error_memory(err, points * sizeof *noise, "noise of a sub-map");
+    conditional_noise(key, points, noise);
+    for (size_t p = 0; p < points; p++)
+        patch->z[p] += patch->like->noise * noise[p];
+    free(noise);
+    return 0;
+}
+
+int like_patch_cut(struct like_patch *patch, struct random_key key, const double *z,
+                   const double **heights, struct error *err) {
     const struct like_case *like = patch->like;
     struct trend trend;
     for (size_t j = 0; j < like->ny; j++)
         for (size_t i = 0; i < like->nx; i++)
             patch->z[j * like->nx + i] = z[(j * patch->of->nx + i) * like->stride];
     *heights = patch->z;
-    return detrend(&patch->grid, patch->z, like->detrend, &trend, err);
+    int status = like->noise > 0 ? add_noise(patch, key, err) : 0;
+    return status == 0 ? detrend(&patch->grid, patch->z, like->detrend, &trend, err) : status;
 }
 
-int like_patch_measure(struct like_patch *patch, const double *z, double out[PATCH_QUANTITY_COUNT],
-                       struct error *err) {
+int like_patch_measure(struct like_patch *patch, struct random_key key, const double *z,
+                       double out[PATCH_QUANTITY_COUNT], struct error *err) {
     const double *heights;
-    int status = like_patch_cut(patch, z, &heights, err);
+    int status = like_patch_cut(patch, key, z, &heights, err);
     if (status != 0)
         return status;
     const struct measured_map map = {&patch->grid, heights, BOUNDARY_OPEN};

@@ -29,9 +29,10 @@ struct like_case {
     size_t map_count; /* of several maps of one surface, of which the first is that above; 0: it is
                          the only one */
     struct like_map maps[JOINT_PATCHES_MOST];
-    double between;                        /* maps: deviation of ln C between them */
-    double groove_depth_error;             /* relative; NaN: the map has no grooves */
-    bool hold;                             /* surfaces hold the map (like_hold.h) */
+    double between;            /* maps: deviation of ln C between them */
+    double groove_depth_error; /* relative; NaN: the map has no grooves */
+    double noise; /* RMS of that of the map, which its surfaces do not have, in lambda_s */
+    bool hold;    /* surfaces hold the map (like_hold.h) */
     bool held[LIKE_HELD_COUNT];            /* given by the study */
     double measured[PATCH_QUANTITY_COUNT]; /* of the map, lengths in lambda_s; NaN: not known */
 };
@@ -50,13 +51,14 @@ struct like_patch;
 int like_patch_create(struct like_patch **out, const struct like_case *like,
                       const struct grid *grid, struct error *err);
 void like_patch_destroy(struct like_patch **patch);
-/* Copies the sub-map at the origin from z and removes its trend: *heights, nx by ny heights, is
- * valid until the next call. */
-int like_patch_cut(struct like_patch *patch, const double *z, const double **heights,
-                   struct error *err);
+/* Copies the sub-map at the origin from z, adds noise as the map has, from the random numbers of
+ * the surface's key, and removes the trend: *heights, nx by ny heights, is valid until the next
+ * call. */
+int like_patch_cut(struct like_patch *patch, struct random_key key, const double *z,
+                   const double **heights, struct error *err);
 /* Measures this sub-map as the map was measured. */
-int like_patch_measure(struct like_patch *patch, const double *z, double out[PATCH_QUANTITY_COUNT],
-                       struct error *err);
+int like_patch_measure(struct like_patch *patch, struct random_key key, const double *z,
+                       double out[PATCH_QUANTITY_COUNT], struct error *err);
 /* Return the peak bytes of this, and its CPU seconds on a 3 GHz core. */
 double like_patch_bytes(const struct like_case *like);
 double like_patch_seconds(const struct like_case *like);

@@ -233,7 +233,7 @@ static int estimate_draw(struct like_draw *draw, struct random_key key, struct e
                          "the points of the map do not hold the waves of the case");
     int status = generator_run(draw->whole, key, draw->cut_z, NULL, err);
     if (status == 0)
-        status = like_patch_cut(draw->patch, draw->cut_z, &heights, err);
+        status = like_patch_cut(draw->patch, key, draw->cut_z, &heights, err);
     if (status != 0)
         return status;
     const struct measured_map map = {&grid, heights, BOUNDARY_OPEN};

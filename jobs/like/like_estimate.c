@@ -104,18 +104,22 @@ static struct like_noise noise_of(const struct fit *fit) {
                                2 * M_PI / law->trusted_to};
 }
 
-static int fit_table(struct fit *fit, struct error *err) {
+/* RMS of independent heights of this density at the points of the map. */
+static double rms_of(const struct like_noise *noise, const struct fit *fit) {
+    const double whole = 2 * M_PI / grid_dx(fit->map->grid); /* of wave numbers, along an axis */
+    return sqrt(noise->density * (fit->profile ? whole : whole * whole));
+}
+
+static int fit_table(struct fit *fit, const struct like_noise *noise, struct error *err) {
     struct like_estimate *out = fit->out;
     double squares[LIKE_MOMENTS] = {pow(out->measured[PATCH_RMS_HEIGHT], 2),
                                     pow(out->measured[PATCH_RMS_SLOPE], 2),
                                     pow(out->measured[PATCH_RMS_CURVATURE], 2)};
     const struct map_spectrum *rings = fit->ellipses != NULL ? fit->ellipses : fit->circles;
-    const struct like_noise noise = noise_of(fit);
-    int status = like_table_measure(&out->table, rings, &noise, err);
+    int status = like_table_measure(&out->table, rings, noise, err);
     if (status == 0)
-        status = like_table_calibrate(&out->table, rings, fit->choices->detrend, &out->cell, &noise,
+        status = like_table_calibrate(&out->table, rings, fit->choices->detrend, &out->cell, noise,
                                       squares, &out->left, err);
-    out->without_noise = noise.density > 0;
     if (status == 0)
         status = check_left(fit, err);
     return status == 0
@@ -187,8 +191,11 @@ int like_estimate_measure(struct like_estimate *out, const struct measured_map *
         status = error_set(err, ERROR_INPUT, "the map is flat");
     if (status == 0)
         status = measure_rings(&fit, err);
+    const struct like_noise noise = status == 0 ? noise_of(&fit) : (struct like_noise){0};
+    if (status == 0 && choices->spectrum != LIKE_SPECTRUM_GIVEN)
+        out->noise = rms_of(&noise, &fit);
     if (status == 0 && choices->spectrum == LIKE_SPECTRUM_TABLE)
-        status = fit_table(&fit, err);
+        status = fit_table(&fit, &noise, err);
     if (status == 0 && choices->spectrum == LIKE_SPECTRUM_FIT)
         status = fit_law(&fit, err);
     if (status == 0 && choices->heights == LIKE_HEIGHTS_QUANTILES)

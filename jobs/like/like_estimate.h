@@ -27,7 +27,7 @@ struct like_estimate {
     struct like_table table;               /* owned; LIKE_SPECTRUM_TABLE, else empty */
     struct spectrum self_affine;           /* LIKE_SPECTRUM_FIT, else empty */
     double rms_slope;                      /* of random surfaces on the cell; 0: not fitted */
-    bool without_noise;                    /* which the map has */
+    double noise; /* RMS of that of the map, which its surfaces do not have; 0: all is theirs */
     struct like_left left;
     enum heights_type distribution; /* LIKE_HEIGHTS_FIT */
     double shape;                   /* of it; NaN: it has none */

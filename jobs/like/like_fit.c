@@ -1,4 +1,5 @@
 #include "jobs/like/like_fit.h"
+#include "core/map/form.h"
 #include "core/statistics/measured_map.h"
 #include "core/statistics/uncertainty/isotropy.h"
 #include "core/statistics/uncertainty/map_chance.h"
@@ -35,6 +36,7 @@ struct fit {
     const struct height_map *maps;
     struct like_joint joint; /* of several */
     double longest;          /* the wave that the study names, over lambda_s; 0: none */
+    struct map_form form;    /* that is left */
     double parts_p_value;    /* of parts of the map that are alike; NaN: not known */
     struct like_grooves grooves;
     double *rest; /* the heights without them, which are fitted, owned; NULL: there are none */
@@ -58,23 +60,44 @@ static int check_map(const struct height_map *map, struct error *err) {
     return 0;
 }
 
-/* Tests whether parts of the map are alike, as those of random surfaces are. */
-static int measure_parts(struct fit *fit, struct error *err) {
+/* Tests whether parts of a map are alike, as those of random surfaces are; NaN: it is too small. */
+static int test_parts(const struct measured_map *map, double *p_value, struct error *err) {
     struct map_chance *chance = NULL;
     struct stationarity stationarity;
     struct cell_differences *differences = array_create(1, sizeof *differences);
     int status = differences != NULL
-                     ? map_chance_create(&chance, &fit->map, err)
+                     ? map_chance_create(&chance, map, err)
                      : error_memory(err, sizeof *differences, "differences of a map");
-    fit->parts_p_value = (double)NAN;
+    *p_value = (double)NAN;
     if (status == 0 && chance->told) {
-        cell_differences_measure(&fit->map, &chance->modes, 1, differences);
-        stationarity_measure(&fit->map, chance->heights, differences, &chance->modes,
-                             chance->correlation, &stationarity);
-        fit->parts_p_value = least_p_value(stationarity.p_value, STATIONARY_DIVISIONS);
+        cell_differences_measure(map, &chance->modes, 1, differences);
+        stationarity_measure(map, chance->heights, differences, &chance->modes, chance->correlation,
+                             &stationarity);
+        *p_value = least_p_value(stationarity.p_value, STATIONARY_DIVISIONS);
     }
     map_chance_destroy(&chance);
     free(differences);
+    return status;
+}
+
+/* Where the map has too few correlation lengths, its differences along x are tested, which have
+ * more. */
+static int measure_parts(struct fit *fit, struct error *err) {
+    const struct grid *grid = fit->map.grid;
+    int status = test_parts(&fit->map, &fit->parts_p_value, err);
+    if (status != 0 || isfinite(fit->parts_p_value) || grid->nx < 3)
+        return status;
+    const double lx = grid->lx - grid_dx(grid);
+    const struct grid between = {grid->nx - 1, grid->ny, lx, fit->profile ? lx : grid->ly};
+    double *z = array_create(grid_points(&between), sizeof *z);
+    if (z == NULL)
+        return error_memory(err, grid_points(&between) * sizeof *z, "differences of a map");
+    for (size_t j = 0; j < grid->ny; j++)
+        for (size_t i = 0; i < between.nx; i++)
+            z[j * between.nx + i] = fit->map.z[j * grid->nx + i + 1] - fit->map.z[j * grid->nx + i];
+    const struct measured_map slopes = {&between, z, BOUNDARY_OPEN};
+    status = test_parts(&slopes, &fit->parts_p_value, err);
+    free(z);
     return status;
 }
 
@@ -233,6 +256,15 @@ static bool put_measured(cJSON *like, const struct fit *fit) {
 static const double PARTS_LEVEL = 0.01;
 static const char *const SQUARES[LIKE_MOMENTS] = {"height", "slope", "curvature"};
 
+enum { FORM_TEXT = 200 };
+static void write_form(const struct fit *fit, char text[FORM_TEXT]) {
+    snprintf(
+        text, FORM_TEXT,
+        "a bow is left in the map (RMS %.3g%s%.10s; p-value %.2g), and its surfaces have none: "
+        "\"detrend\": \"quadratic\" takes it out",
+        fit->form.height, *fit->unit != '\0' ? " " : "", fit->unit, fit->form.p_value);
+}
+
 /* What was done to the map, and to its spectrum, and what is left between it and its surfaces. */
 static bool put_prepared(cJSON *like, const struct fit *fit) {
     enum { SIZE = 4000, NAMED = 1 }; /* per cent */
@@ -241,7 +273,7 @@ static bool put_prepared(cJSON *like, const struct fit *fit) {
     if (text == NULL)
         return false;
     int used = snprintf(text, SIZE, "%s", fit->source->prepared);
-    if (fit->estimate.without_noise && used >= 0 && used < SIZE)
+    if (fit->estimate.noise > 0 && used >= 0 && used < SIZE)
         used += snprintf(text + used, (size_t)(SIZE - used),
                          "%snoise: taken out of the spectrum, with the waves in it",
                          used > 0 ? "; " : "");
@@ -253,9 +285,15 @@ static bool put_prepared(cJSON *like, const struct fit *fit) {
             snprintf(text + used, (size_t)(SIZE - used), "%sRMS %s of the surfaces: %+.3g %% off",
                      used > 0 ? "; " : "", SQUARES[fit->estimate.left.moment], left);
     if (fit->parts_p_value < PARTS_LEVEL && used >= 0 && used < SIZE)
-        snprintf(text + used, (size_t)(SIZE - used),
-                 "%sparts of the map differ (p-value %.2g), and those of its surfaces do not",
-                 used > 0 ? "; " : "", fit->parts_p_value);
+        used +=
+            snprintf(text + used, (size_t)(SIZE - used),
+                     "%sparts of the map differ (p-value %.2g), and those of its surfaces do not",
+                     used > 0 ? "; " : "", fit->parts_p_value);
+    if (map_form_found(&fit->form) && used >= 0 && used < SIZE) {
+        char words[FORM_TEXT];
+        write_form(fit, words);
+        snprintf(text + used, (size_t)(SIZE - used), "%s%s", used > 0 ? "; " : "", words);
+    }
     bool put = field_put_text(like, "prepared", text);
     free(text);
     return put;
@@ -300,6 +338,8 @@ static bool put_marks(cJSON *like, const struct fit *fit) {
                           choice_name(LIKE_SPECTRA, (int)fit->choices.spectrum)) &&
            field_put_text(like, "heights", choice_name(LIKE_HEIGHTS, (int)fit->choices.heights)) &&
            put_uncertainty(like, fit) &&
+           (!(fit->estimate.noise > 0) || fit->source->hold ||
+            field_put(like, "noise", json_number(fit->estimate.noise / fit->wavelength))) &&
            (fit->rest == NULL ||
             field_put(like, "groove_depth_error", json_number(fit->grooves.depth_error))) &&
            (fit->patch == NULL || (cJSON_AddTrueToObject(like, "hold") != NULL &&
@@ -453,6 +493,8 @@ int like_fit_together(cJSON *surface, size_t count, const struct height_map *map
         status = take_grooves(&fit, surface, err);
     if (status == 0)
         status = measure_parts(&fit, err);
+    if (status == 0)
+        status = map_form_find(&fit.form, &fit.map, err);
     if (status != 0) {
         free(fit.rest);
         return status;
@@ -460,6 +502,11 @@ int like_fit_together(cJSON *surface, size_t count, const struct height_map *map
     choose(&fit, surface);
     status = count > 1 ? estimate_together(&fit, err)
                        : like_estimate_measure(&fit.estimate, &fit.map, &fit.choices, err);
+    if (status == ERROR_INPUT && map_form_found(&fit.form)) {
+        char words[FORM_TEXT];
+        write_form(&fit, words);
+        error_context(err, "%s", words);
+    }
     if (status == 0 && !put_all(surface, &fit))
         status = error_memory(err, sizeof fit, "a fitted surface");
     if (status == 0 && fit.rest != NULL)

@@ -170,6 +170,17 @@ static const struct parameter ROWS[] = {
      .example_json = "0.02",
      .help = "a map with grooves, which the study has in /surface/grooves: the standard error of "
              "their depth, over the depth"},
+    {.path = "/surface/like/noise",
+     .type = PARAMETER_NUMBER,
+     .minimum = 0,
+     .maximum = 1e100,
+     .later = true,
+     .default_json = "0",
+     .unit = "lambda_s",
+     .example_json = "0.002",
+     .help = "RMS of the noise of the map, independent from point to point, where it was taken out "
+             "of the spectrum: surfaces have none, and sub-maps that are compared with the map "
+             "have as much"},
     {.path = "/surface/like/others",
      .type = PARAMETER_TEXT,
      .minimum = 1,

@@ -271,7 +271,9 @@ static int measure_common(struct map_characterisation *out, struct common *commo
     }
     out->rest_height = (double)NAN;
     const struct low_modes *modes = map_chance_modes(common->chance);
-    status = under_window ? 0 : map_grooves_find(&out->grooves, map, err);
+    status = map_form_find(&out->form, map, err);
+    if (status == 0 && !under_window)
+        status = map_grooves_find(&out->grooves, map, err);
     if (status == 0 && out->grooves.families > 0)
         return measure_rest(out, map, modes, trusted, common->extent, err);
     return status == 0 ? measure_spectra(out, map, common->spectrum, &out->directions, modes,

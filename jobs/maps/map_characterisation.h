@@ -2,6 +2,7 @@
 #ifndef RUGO_JOBS_MAPS_MAP_CHARACTERISATION_H
 #define RUGO_JOBS_MAPS_MAP_CHARACTERISATION_H
 
+#include "core/map/form.h"
 #include "core/map/preparation.h"
 #include "core/statistics/grooves/map_grooves.h"
 #include "core/statistics/heights/areal.h"
@@ -52,6 +53,7 @@ struct map_characterisation {
     struct map_directions directions;
     struct stationarity stationarity; /* p-values NaN without errors, and no spreads */
     double stationarity_p_value;      /* of all divisions together */
+    struct map_form form;             /* that is left */
     struct map_scales scales;
     struct map_grooves grooves;
     double rest_height;           /* RMS height without them; NaN where there are none */

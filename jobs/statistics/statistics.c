@@ -302,7 +302,8 @@ static int realise(void *workspace, const struct realisation *realisation, void 
                                                   .report = &realisation->report};
     statistics_scalars_measure(work->one_case, &work->moments, &measures, scalars);
     if (work->patch != NULL)
-        status = like_patch_measure(work->patch, realisation->z, scalars + SCALAR_PATCH, err);
+        status = like_patch_measure(work->patch, realisation->key, realisation->z,
+                                    scalars + SCALAR_PATCH, err);
     if (status != 0)
         return status;
     struct statistics_levels *levels = tally;

@@ -21,16 +21,43 @@ struct groove_background {
         *count; /* of each ring: median over MEDIAN, and how many waves; owned by power */
 };
 
-static int by_value(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
+/* Returns number k in rising order of n values, which are moved: those before it are not above it
+ * (Hoare 1961). */
+static double select_value(double *values, size_t n, size_t k) {
+    size_t low = 0, high = n - 1;
+    while (low < high) {
+        const double pivot = values[low + (high - low) / 2];
+        size_t a = low, b = high;
+        for (;;) {
+            while (values[a] < pivot)
+                a++;
+            while (values[b] > pivot)
+                b--;
+            if (a >= b)
+                break;
+            const double kept = values[a];
+            values[a++] = values[b];
+            values[b--] = kept;
+        }
+        if (k <= b)
+            high = b;
+        else
+            low = b + 1;
+    }
+    return values[k];
 }
 
 static double median_of(double *values, size_t n) {
     if (n == 0)
         return 0;
-    qsort(values, n, sizeof *values, by_value);
-    return n % 2 == 1 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
+    const double middle = select_value(values, n, n / 2);
+    double below = middle;
+    if (n % 2 == 0) {
+        below = values[0];
+        for (size_t a = 1; a < n / 2; a++)
+            below = fmax(below, values[a]);
+    }
+    return (below + middle) / 2;
 }
 
 /* Returns which ring a wave of mx, my periods is in, as a real number. */

@@ -20,16 +20,24 @@ static struct groove_lines lines_beyond(const struct groove_lines *lines,
 void groove_family_add(const struct groove_lines *lines, const struct groove_shape_fit *fit,
                        const struct grid *grid, double times, double jump, double *z) {
     const double nx = (double)grid->nx, ny = (double)grid->ny;
-    const bool named = fit->shape != GROOVE_HARMONICS;
+    /* a sine is its first line */
+    const bool named = fit->shape != GROOVE_HARMONICS && fit->shape != GROOVE_SINE;
     const struct groove_lines beyond = named ? lines_beyond(lines, fit, jump) : *lines;
-    for (size_t j = 0; j < grid->ny; j++)
-        for (size_t i = 0; i < grid->nx; i++) {
-            const double x = ((double)i + 0.5) / nx - 0.5, y = ((double)j + 0.5) / ny - 0.5;
-            double height = groove_lines_height(&beyond, x, y);
-            if (named)
-                height += groove_shape_height(fit, lines->mx * x + lines->my * y, jump);
-            z[j * grid->nx + i] += times * height;
+    for (size_t first = 0; first < grid->nx; first += GROOVE_TURNS) {
+        const size_t points = grid->nx - first < GROOVE_TURNS ? grid->nx - first : GROOVE_TURNS;
+        const struct groove_turns turns = groove_turns_of(lines->mx, first, points, grid->nx);
+        for (size_t j = 0; j < grid->ny; j++) {
+            const double y = ((double)j + 0.5) / ny - 0.5;
+            double height[GROOVE_TURNS], *row = z + j * grid->nx + first;
+            groove_lines_heights(&beyond, &turns, y, height);
+            for (size_t p = 0; p < points && named; p++) {
+                const double x = ((double)(first + p) + 0.5) / nx - 0.5;
+                height[p] += groove_shape_height(fit, lines->mx * x + lines->my * y, jump);
+            }
+            for (size_t p = 0; p < points; p++)
+                row[p] += times * height[p];
         }
+    }
 }
 
 /* --- the estimate --- */

@@ -1,4 +1,5 @@
 #include "core/statistics/grooves/groove_lines.h"
+#include "core/vectors.h"
 #include <math.h>
 
 /* --- the wave vector --- */
@@ -119,11 +120,35 @@ void groove_lines_fit(struct groove_lines *out, const struct groove_map *map,
     measure(out, map, background);
 }
 
-double groove_lines_height(const struct groove_lines *lines, double x, double y) {
-    const double phase = 2 * M_PI * (lines->mx * x + lines->my * y);
-    const double complex turn = cos(phase) + sin(phase) * I;
-    double complex sum = 0;
-    for (size_t h = lines->count; h-- > 0;)
-        sum = (sum + lines->coefficient[h]) * turn;
-    return 2 * creal(sum);
+struct groove_turns groove_turns_of(double periods, size_t first, size_t points, size_t n) {
+    struct groove_turns out = {{0}, {0}};
+    for (size_t p = 0; p < points; p++) {
+        const double x = ((double)(first + p) + 0.5) / (double)n - 0.5;
+        out.re[p] = cos(2 * M_PI * periods * x);
+        out.im[p] = sin(2 * M_PI * periods * x);
+    }
+    return out;
+}
+
+/* Horner's scheme at all points at once. */
+WIDE_VECTORS void groove_lines_heights(const struct groove_lines *lines,
+                                       const struct groove_turns *along_x, double y,
+                                       double out[GROOVE_TURNS]) {
+    const double phase = 2 * M_PI * lines->my * y, row_re = cos(phase), row_im = sin(phase);
+    double re[GROOVE_TURNS] = {0}, im[GROOVE_TURNS] = {0};
+    struct groove_turns turns;
+    for (size_t p = 0; p < GROOVE_TURNS; p++) {
+        turns.re[p] = along_x->re[p] * row_re - along_x->im[p] * row_im;
+        turns.im[p] = along_x->re[p] * row_im + along_x->im[p] * row_re;
+    }
+    for (size_t h = lines->count; h-- > 0;) {
+        const double line_re = creal(lines->coefficient[h]), line_im = cimag(lines->coefficient[h]);
+        for (size_t p = 0; p < GROOVE_TURNS; p++) {
+            const double a = re[p] + line_re, b = im[p] + line_im;
+            re[p] = a * turns.re[p] - b * turns.im[p];
+            im[p] = a * turns.im[p] + b * turns.re[p];
+        }
+    }
+    for (size_t p = 0; p < GROOVE_TURNS; p++)
+        out[p] = 2 * re[p];
 }

@@ -26,7 +26,15 @@ void groove_refine(const struct groove_map *map, double *mx, double *my);
  * likeliest. */
 void groove_lines_fit(struct groove_lines *out, const struct groove_map *map,
                       const struct groove_background *background, double mx, double my);
-/* Returns the height of all lines at a point, x and y from the middle in sides. */
-double groove_lines_height(const struct groove_lines *lines, double x, double y);
+/* exp(2 pi i m x) at points of a row side by side; 0 behind them. */
+enum { GROOVE_TURNS = 64 };
+struct groove_turns {
+    double re[GROOVE_TURNS], im[GROOVE_TURNS];
+};
+/* periods: m, along a row of n points; x: from its middle, in sides. */
+struct groove_turns groove_turns_of(double periods, size_t first, size_t points, size_t n);
+/* Fills the heights of the lines at these points; y: from the middle, in sides. */
+void groove_lines_heights(const struct groove_lines *lines, const struct groove_turns *along_x,
+                          double y, double out[GROOVE_TURNS]);
 
 #endif

@@ -105,7 +105,8 @@ void groove_shape_find(struct groove_shape_fit *out, const struct groove_lines *
     for (int s = 0; s <= GROOVE_HARMONICS; s++) {
         const bool reversed = s == GROOVE_HARMONICS;
         trial[s] = shape_fit(lines, reversed ? GROOVE_SAW : (enum groove_shape)s, reversed);
-        best = trial[s].deviance < trial[best].deviance ? s : best;
+        /* by one line all are alike, and a sine is taken */
+        best = lines->count > 1 && trial[s].deviance < trial[best].deviance ? s : best;
     }
     out->reversed = best == GROOVE_HARMONICS;
     out->shape = out->reversed ? GROOVE_SAW : (enum groove_shape)best;

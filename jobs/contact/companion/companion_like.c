@@ -86,7 +86,7 @@ static int like_solve(void *workspace, const struct contact_surface *surface,
     const struct like *like = workspace;
     const struct contact_case *one_case = tally->one_case;
     const double *piece;
-    int status = like_patch_cut(like->patch, surface->z, &piece, err);
+    int status = like_patch_cut(like->patch, surface->key, surface->z, &piece, err);
     if (status != 0)
         return status;
     mirror(&one_case->like, piece, like->z);

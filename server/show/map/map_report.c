@@ -260,6 +260,13 @@ static void add_stationarity(struct named_values *out, const struct map_characte
         add_spreads(out, GROUPS[d], AREAS[d], s->spread[d], s->p_value[d]);
 }
 
+static void add_form(struct named_values *out, const struct map_form *form) {
+    named_values_add_length(out, "form", "rms_height", form->height, 1);
+    named_values_add_length(out, "form", "expected", form->expected, 1);
+    named_values_add(out, "form", "share", form->share);
+    named_values_add(out, "form", "p_value", form->p_value);
+}
+
 /* What the map has without noise, and without what an instrument does not transmit: of the law from
  * the longest to the shortest wavelength that is trusted. */
 static void add_trusted(struct named_values *out, const struct spectrum_fit *fit,
@@ -504,6 +511,8 @@ int map_report_fill(struct named_values *out, const struct map_characterisation 
     if (!profile)
         add_isotropy(out, &found->directions);
     add_stationarity(out, found);
+    if (isfinite(found->form.p_value))
+        add_form(out, &found->form);
     groove_report_values(out, found);
     if (found->spectra.has_fit)
         add_fit(out, "spectrum_fit", &found->spectra.fit);

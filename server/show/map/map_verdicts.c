@@ -199,6 +199,17 @@ static void judge_parts(struct verdicts *verdicts, const struct named_values *fo
             p_value);
 }
 
+static void judge_form(struct verdicts *verdicts, const struct map_figure *figure) {
+    const struct map_form *form = &figure->measured->form;
+    const struct figure_units units = figure_units_of(figure);
+    const char *gap = *units.z_name != '\0' ? " " : "";
+    if (map_form_found(form))
+        say(verdicts,
+            "Form: a bow is left, RMS %.3g%s%s (%.3g %% of the mean square height; p-value %.2g). "
+            "--detrend quadratic takes it out.",
+            form->height / units.z, gap, units.z_name, 100 * form->share, form->p_value);
+}
+
 static void judge_grooves(struct verdicts *verdicts, const struct map_figure *figure) {
     const struct map_grooves *grooves = &figure->measured->grooves;
     const struct figure_units units = figure_units_of(figure);
@@ -231,6 +242,7 @@ static void judge_artefacts(struct verdicts *verdicts, const struct map_figure *
 size_t map_verdicts_list(char out[VERDICTS_MOST][VERDICT_SIZE], const struct map_figure *figure) {
     struct verdicts verdicts = {out, 0};
     judge_errors(&verdicts, figure->found);
+    judge_form(&verdicts, figure);
     judge_grooves(&verdicts, figure);
     judge_law(&verdicts, figure->found);
     judge_short_waves(&verdicts, figure);

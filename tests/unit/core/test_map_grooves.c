@@ -176,6 +176,21 @@ static void the_rest_has_its_law(void **state) {
     maker_destroy(&maker);
 }
 
+/* Of periods so short that the points hold one line all shapes are alike, and a sine is taken. */
+static void short_ones_are_sines(void **state) {
+    (void)state;
+    struct maker maker = maker_create(1);
+    for (uint64_t r = 0; r < 4; r++) {
+        const struct truth truth = {GROOVE_SINE, 2.7, 0, 0.3, 0.1};
+        make(&maker, r, 1);
+        add(maker.z, &truth);
+        const struct map_grooves grooves = find(maker.z, BOUNDARY_OPEN);
+        assert_int_equal(grooves.families, 1);
+        assert_int_equal(grooves.family[0].fit.shape, GROOVE_SINE);
+    }
+    maker_destroy(&maker);
+}
+
 /* Grooves along the scan lines, every 2.7 of them, are none of these; offsets are. */
 static void grooves_are_no_offsets(void **state) {
     (void)state;
@@ -231,6 +246,7 @@ int main(void) {
         cmocka_unit_test(random_faces_have_none),
         cmocka_unit_test(crossed_families_are_two),
         cmocka_unit_test(the_rest_has_its_law),
+        cmocka_unit_test(short_ones_are_sines),
         cmocka_unit_test(grooves_are_no_offsets),
         cmocka_unit_test(odd_maps),
     };

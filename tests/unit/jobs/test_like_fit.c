@@ -24,6 +24,7 @@ static const struct like_source SOURCE = {.file = "patch.npy",
                                           .sha256 = DIGEST,
                                           .bytes = 12,
                                           .detrend = DETREND_PLANE};
+enum { NOISE_SEED = 18 };
 static const double SHORTEST = 0.004, SLOPE = 0.2; /* metres, and no unit */
 
 /* A quarter of a self-affine surface of known spectrum and slope, less a plane. */
@@ -276,6 +277,38 @@ static void grooves(void **state) {
     height_map_clear(&map);
 }
 
+/* Sub-maps that are compared with a noisy map have as much noise: here those of a level surface. */
+static void noise_is_in_sub_maps(cJSON *surface, double rms) {
+    const struct random_key keys[] = {{NOISE_SEED, 0, 0}, {NOISE_SEED, 0, 1}};
+    struct like_patch *patch = NULL;
+    struct statistics_case one_case;
+    struct error err = {0};
+    const double *heights;
+    double first = 0, square = 0;
+    cJSON *parameters = cJSON_CreateObject();
+    cJSON_AddItemToObject(parameters, "surface", cJSON_Duplicate(surface, true));
+    assert_int_equal(statistics_case_read(&one_case, parameters, NULL, &err), 0);
+    const struct like_case *like = &one_case.like;
+    const size_t points = like->nx * like->ny;
+    double *level = calloc(grid_points(&one_case.surface.grid), sizeof *level);
+    assert_non_null(level);
+    assert_int_equal(like_patch_create(&patch, like, &one_case.surface.grid, &err), 0);
+    for (size_t k = 0; k < 2; k++) {
+        assert_int_equal(like_patch_cut(patch, keys[k], level, &heights, &err), 0);
+        assert_true(heights[0] != first); /* that of each realisation is its own */
+        first = heights[0];
+    }
+    for (size_t n = 0; n < points; n++)
+        square += heights[n] * heights[n] / (double)points;
+    const double noise = sqrt(square) * number(surface, "/like/wavelength");
+    print_message("noise of sub-maps %.4g, of the map %.4g\n", noise, rms);
+    assert_true(fabs(noise / rms - 1) < 0.05); /* it is fitted, and 1 % by the number of points */
+    like_patch_destroy(&patch);
+    free(level);
+    statistics_case_clear(&one_case);
+    cJSON_Delete(parameters);
+}
+
 /* Noise in a map is not in its surfaces: their slope is that of the map without it. */
 static void noise_stays_out(void **state) {
     (void)state;
@@ -294,6 +327,8 @@ static void noise_stays_out(void **state) {
     double slope = number(noisy, "/rms_slope"), without = number(clean, "/rms_slope");
     print_message("slope %.4f of %.4f\n", slope, without);
     assert_true(fabs(slope / without - 1) < 0.03);
+    noise_is_in_sub_maps(noisy, NOISE * sqrt(square));
+    assert_null(json_at(clean, "/like/noise"));
     assert_non_null(strstr(
         cJSON_GetStringValue(json_at(cJSON_GetObjectItem(noisy, "like"), "/prepared")), "noise"));
     assert_null(strstr(
@@ -301,6 +336,38 @@ static void noise_stays_out(void **state) {
     cJSON_Delete(noisy);
     cJSON_Delete(clean);
     free(white);
+    height_map_clear(&map);
+}
+
+/* Surfaces have no bow: of a map with one as high as its roughness it is said, with the remedy. */
+static void a_bow_is_named(void **state) {
+    (void)state;
+    struct height_map map = patch_of(false, 1.1, 2);
+    const size_t nx = map.grid.nx, points = grid_points(&map.grid);
+    double square = 0;
+    for (size_t n = 0; n < points; n++)
+        square += map.z[n] * map.z[n] / (double)points;
+    for (int bent = 0; bent < 2; bent++) {
+        for (size_t n = 0; n < points && bent; n++) {
+            const double x = 2 * ((double)(n % nx) + 0.5) / (double)nx - 1;
+            map.z[n] += sqrt(5 * square) * (3 * x * x - 1) / 2;
+        }
+        struct like_source source = SOURCE;
+        source.off_stated = true;
+        cJSON *surface = fitted_by("{}", &map, &source);
+        const char *prepared = cJSON_GetStringValue(json_at(surface, "/like/prepared"));
+        print_message("prepared: %s\n", prepared);
+        assert_int_equal(strstr(prepared, "a bow is left in the map") != NULL, bent);
+        assert_int_equal(strstr(prepared, "\"detrend\": \"quadratic\"") != NULL, bent);
+        cJSON_Delete(surface);
+    }
+    cJSON *surface = cJSON_CreateObject();
+    struct error err = {0};
+    assert_int_equal(like_fit(surface, &map, &SOURCE, &err), ERROR_INPUT);
+    print_message("%s\n", err.text);
+    assert_non_null(strstr(err.text, "a bow is left in the map"));
+    assert_non_null(strstr(err.text, "no smooth spectrum"));
+    cJSON_Delete(surface);
     height_map_clear(&map);
 }
 
@@ -453,6 +520,7 @@ int main(void) {
         cmocka_unit_test(laws),
         cmocka_unit_test(grooves),
         cmocka_unit_test(noise_stays_out),
+        cmocka_unit_test(a_bow_is_named),
         cmocka_unit_test(parts_that_differ_are_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
