@@ -32,8 +32,8 @@ static const double SPECTRA_NS = 10;
  * to 512 x 512 and 1024 x 1024 points and profiles of 4096 and 65536, 2 to 16 a shortest wave. */
 static const double RANDOM_MODE_NS = 30, FIELD_NS = 1, RING_NS = 40;
 /* Relative increase of a surface's time a point with each doubling of the points from 2^20 on
- * (bench_surface). */
-static const double CACHE_SLOPE = 0.4, CACHE_DOUBLINGS = 20;
+ * (bench_surface): of iterations, and of one transform (gaussian-nayak, up to 2^26 points). */
+static const double CACHE_SLOPE = 0.4, FIELD_CACHE_SLOPE = 0.12, CACHE_DOUBLINGS = 20;
 
 /* Returns the number of fast iterations until they stall or reach the tolerance. */
 static double fast_iterations(const struct surface_options *options, const struct grid *grid) {
@@ -80,8 +80,16 @@ double cost_random_amplitudes(const struct grid *grid, size_t mode_x, size_t mod
     return RANDOM_MODE_NS * modes + FIELD_NS * (double)grid_points(grid) + RING_NS * rings;
 }
 
+static double caches(double points, double slope) {
+    return 1 + slope * fmax(0, log2(points) - CACHE_DOUBLINGS);
+}
+
 double cost_caches(double points) {
-    return 1 + CACHE_SLOPE * fmax(0, log2(points) - CACHE_DOUBLINGS);
+    return caches(points, CACHE_SLOPE);
+}
+
+double cost_field_caches(double points) {
+    return caches(points, FIELD_CACHE_SLOPE);
 }
 
 /* Returns the points a side; of a rectangle the geometric mean, which is exact for squares. */
@@ -251,11 +259,9 @@ static const double WAVE_NODES = 4, LEG_STEPS = 20, RUBBER_DECADES = 3.7;
  * twice of that. */
 static const double HARD = 0.29, HARDER = 7, HARD_RUBBER = 0.26, HARDER_RUBBER = 11,
                     HARD_LOAD = 0.4;
-/* Of surfaces, iterations of a step over those of a load without friction: Newton's, of the linear
- * equations, and of these with pressures as unknowns, by a power of the side over
- * FRICTION_SIDE. Bytes of a degree of freedom, more with pressures. */
+/* Of surfaces, iterations of a step over those of a load without friction: Newton's, and of the
+ * linear equations. Bytes of a degree of freedom, more with pressures. */
 static const double SURFACE_FRICTION_NEWTON = 0.8, SURFACE_FRICTION_LINEAR = 1.4;
-static const double FRICTION_PRESSURE_LINEAR = 4.6, FRICTION_SIDE = 16, FRICTION_SIDE_POWER = 0.6;
 static const double SURFACE_FRICTION_BYTES = 510, SURFACE_PRESSURE_BYTES = 100;
 
 static double newton_iterations(const struct grid *grid, double poisson, bool pressures,
@@ -328,8 +334,8 @@ static double jumps(const struct grid *grid, const struct full_size *size, doubl
 
 double cost_full_loads(const struct grid *grid, const struct full_size *size, double rms_slope,
                        size_t count, const double *loads) {
-    double all = 0;
-    for (size_t l = 0; l < count; l++) {
+    double all = loads != NULL ? 0 : (double)count;
+    for (size_t l = 0; loads != NULL && l < count; l++) {
         double length = loads[l] - (l > 0 ? loads[l - 1] : 0);
         all += (1 + FAR_STEPS * fmax(0, length * rms_slope - FAR)) *
                jumps(grid, size, rms_slope, loads[l]);
@@ -353,12 +359,8 @@ double cost_full_bytes(const struct grid *grid, const struct block *block,
 }
 
 static struct friction_size surface_step(const struct friction_work *of) {
-    const struct full_size *load = of->load;
-    double side = pow(mean_side(of->grid) / FRICTION_SIDE, FRICTION_SIDE_POWER);
-    return (struct friction_size){.newton = SURFACE_FRICTION_NEWTON * load->newton,
-                                  .linear = load->linear * (load->pressures
-                                                                ? FRICTION_PRESSURE_LINEAR * side
-                                                                : SURFACE_FRICTION_LINEAR)};
+    return (struct friction_size){.newton = SURFACE_FRICTION_NEWTON * of->load->newton,
+                                  .linear = SURFACE_FRICTION_LINEAR * of->load->linear};
 }
 
 /* Returns how far a block is rubber, from 0 to 1. */

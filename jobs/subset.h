@@ -3,6 +3,7 @@
 #ifndef RUGO_JOBS_SUBSET_H
 #define RUGO_JOBS_SUBSET_H
 
+#include "schema/study/study.h"
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -22,11 +23,12 @@ static inline uint64_t subset_ordinal(const struct subset *subset, uint64_t real
     return realisation / (realisation < subset->first ? subset->first_interval : subset->interval);
 }
 
-/* Makes the subset of each interval-th realisation. Among the first 32 at least each eighth is in
- * it, so that small studies have some. */
+/* Makes the subset of each interval-th realisation. Among the first STUDY_EARLY at least each
+ * eighth is in it, so that small studies have some. */
 static inline struct subset subset_each(uint64_t interval) {
-    const uint64_t first = 32, first_interval = 8;
-    return (struct subset){first, interval > first_interval ? first_interval : interval, interval};
+    const uint64_t first_interval = 8;
+    return (struct subset){STUDY_EARLY, interval > first_interval ? first_interval : interval,
+                           interval};
 }
 
 /* Returns the interval at which a solve of so many seconds takes no more than is allowed a

@@ -331,10 +331,6 @@ static int step_to(void *solver, double load, double *change, struct error *err)
     return status;
 }
 
-/* Of surfaces: iterations of Newton's method of a round under drag, the second where the face meets
- * itself, and rounds after one that failed in which its drag is not tried again. */
-enum { ROUND_MOST = 10, ROUND_MOST_MET = 30, DRAG_HELD = 6 };
-
 static int drag(void *solver, double load, double drag, double tolerance, struct dragged *out,
                 struct error *err) {
     const struct loading *loading = solver;
@@ -342,8 +338,7 @@ static int drag(void *solver, double load, double drag, double tolerance, struct
     struct newton *n = &f->newton;
     double usual = n->tolerance;
     size_t most = n->max_iterations;
-    if (f->mesh->dimension == 3)
-        n->max_iterations = n->self.count > 0 ? ROUND_MOST_MET : ROUND_MOST;
+    n->max_iterations = n->self.count > 0 ? ROUND_MOST_MET : ROUND_MOST;
     n->drag = drag;
     n->tolerance = tolerance;
     n->evaluated = false;
@@ -385,15 +380,12 @@ static bool is_used_up(const struct full *f) {
     return f->options.limit.seconds > 0 && f->used > f->options.limit.seconds;
 }
 
-/* Iterations of Newton's method after which a load is given up where the face is careful. */
-enum { NEWTON_MOST = 2500 };
-
 static int check(void *solver, struct error *err) {
     const struct loading *loading = solver;
     if (is_used_up(loading->full))
         return error_set(err, ERROR_NUMERIC, "the time limit of %g s was used up",
                          loading->full->options.limit.seconds);
-    if (loading->full->careful && loading->report->newton > NEWTON_MOST)
+    if (loading->full->careful && loading->report->newton > CAREFUL_NEWTON_MOST)
         return error_set(err, ERROR_NUMERIC, "%zu iterations of Newton's were too few",
                          loading->report->newton);
     return 0;
@@ -402,12 +394,13 @@ static int check(void *solver, struct error *err) {
 static int raise_load(const struct loading *loading, double goal, struct error *err) {
     static const struct load_solver SOLVER = {step_to, check, drag, hold, fall, leave, land};
     struct full *f = loading->full;
+    const bool hasty = f->careful && f->mesh->dimension == 2;
+    f->newton.max_iterations = load_steps_iterations(hasty, f->options.max_iterations);
     struct load_steps steps = {.by = &SOLVER,
                                .solver = (void *)loading,
                                .least_step = f->options.least_step,
                                .tolerance = f->options.tolerance,
-                               .careful = f->careful,
-                               .spared = f->mesh->dimension == 3 ? DRAG_HELD : 0};
+                               .careful = f->careful};
     int status = load_steps_follow(&steps, f->load, goal, err);
     loading->report->cuts += steps.cuts;
     loading->report->jumps += steps.jumps;

@@ -5,22 +5,23 @@
 /* --- jumps --- */
 
 /* Drags of a jump: the first and the largest one, E* times the mesh's unit; factor by which they
- * rise where a round fails, and fall after small changes of the face; rounds. From the largest drag
+ * rise where a round fails, and fall after small changes of the face. From the largest drag
  * over the mean force of a node of DRAG_SMALL on, and after each fall by DRAG_FALL, equilibrium
  * without drag is tried. Rounds balance to DRAG_TOLERANCE, and from DRAG_REST on to the tolerance
  * of a load, at which a drag counts as none. */
 static const double DRAG_FIRST = 0.02, DRAG_MOST = 10, DRAG_RISE = 4, DRAG_FALL = 0.25;
 static const double DRAG_TOLERANCE = 1e-5, DRAG_SMALL = 1e-2, DRAG_REST = 1e-4;
-enum { DRAG_ROUNDS = 200 };
+/* Rounds; and rounds after one that failed in which its drag, and up to twice as much, is not tried
+ * again. */
+enum { DRAG_ROUNDS = 200, DRAG_HELD = 6 };
 
 /* Returns the drag after a round that changed the face by so much, the `since`th after one that
  * failed. */
-static double less_drag(const struct load_steps *s, double drag, double change, double failed,
-                        int since) {
+static double less_drag(double drag, double change, double failed, int since) {
     double less = drag / (8 * change < FACE_CHANGE_MOST   ? DRAG_RISE
                           : 2 * change < FACE_CHANGE_MOST ? 2
                                                           : 1);
-    return since < s->spared ? fmax(less, 2 * failed) : less;
+    return since < DRAG_HELD ? fmax(less, 2 * failed) : less;
 }
 
 /* The rounds of a jump: implicit steps of motion against drag, whose end is at rest. */
@@ -45,7 +46,7 @@ static int drag_rounds(const struct load_steps *s, double load, struct error *er
         s->by->hold(s->solver);
         if (exact && force <= s->tolerance)
             return 0;
-        drag = less_drag(s, drag, now.change, failed, ++since);
+        drag = less_drag(drag, now.change, failed, ++since);
         if (force > DRAG_SMALL || force > tried * DRAG_FALL)
             continue;
         status = s->by->drag(s->solver, load, 0, s->tolerance, &now, err);

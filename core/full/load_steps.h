@@ -10,6 +10,15 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+/* Iterations of Newton's method after which a careful load is given up; and of a round under drag,
+ * the second where the face meets itself, and of a careful step, since it was last found to meet
+ * itself or not. Failures would take most of the iterations, up to 80 each: what converges seldom
+ * takes more than these. */
+enum { CAREFUL_NEWTON_MOST = 5000, ROUND_MOST = 10, ROUND_MOST_MET = 30, CAREFUL_STEP_MOST = 30 };
+static inline size_t load_steps_iterations(bool careful, size_t usual) {
+    return careful && usual > CAREFUL_STEP_MOST ? CAREFUL_STEP_MOST : usual;
+}
+
 /* What a solution under drag came to. */
 struct dragged {
     double change; /* largest of the area of a cell since the state held; a jump is refused */
@@ -42,9 +51,6 @@ struct load_steps {
     double least_step; /* smallest step over the whole change; smaller ones fail */
     double tolerance;  /* the solver's */
     bool careful;      /* small steps from the first one on, and jumps */
-    /* So many rounds after one that failed its drag, and up to twice as much, is not tried again,
-     * where failures take most of the iterations. */
-    int spared;
     /* Results: */
     double reached;     /* the last load */
     double failed;      /* step that failed */

@@ -6,11 +6,34 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Returns the relative standard error behind a 95 % interval; 0 where that is open. */
+static double error_of(const struct interval *interval) {
+    static const double BOTH_SIDES = 2 * 1.960;
+    const double error = (interval->high - interval->low) / (BOTH_SIDES * interval->value);
+    return isfinite(error) ? error : 0;
+}
+
+/* Returns how likely it is that the surface has waves of this number: those before the law's end,
+ * which is known to within its error. */
+static double share_at(const struct spectrum_fit *fit, double wave_number) {
+    static const double GUARD = 1e-9;
+    const double beyond = log(wave_number * fit->shortest / (2 * M_PI));
+    const double error = error_of(&fit->short_wavelength);
+    if (!(error > 0) || !isfinite(beyond))
+        return beyond > GUARD ? 0 : 1;
+    return erfc(beyond / (error * M_SQRT2)) / 2;
+}
+
 /* Returns what a wave number across the lay is multiplied by. Longer waves than the law's have
  * little noise, as its longest. */
 static double gain(const struct map_law *law, double wave_number) {
-    const double density = map_law_density(law, wave_number);
-    return density > 0 ? sqrt(density / (density + law->fit.noise)) : 0;
+    const struct spectrum_fit *fit = &law->fit;
+    const double end = 2 * M_PI / fit->shortest, to = fmin(wave_number, end);
+    const double fall =
+        pow(to / fmax(wave_number, to), (fit->profile ? 1 : 2) + 2 * fit->hurst.value);
+    const double density =
+        share_at(fit, wave_number) * map_law_density(law, to) * (wave_number > end ? fall : 1);
+    return density > 0 ? sqrt(density / (density + fit->noise)) : 0;
 }
 
 /* The cell that repeats: of an open map with its mirror images. */
@@ -55,13 +78,6 @@ static int filter(const struct map_law *law, const struct grid *grid, double *z,
     transform_destroy(&transform);
     free(field);
     return status;
-}
-
-/* Returns the relative standard error behind a 95 % interval; 0 where that is open. */
-static double error_of(const struct interval *interval) {
-    static const double BOTH_SIDES = 2 * 1.960;
-    const double error = (interval->high - interval->low) / (BOTH_SIDES * interval->value);
-    return isfinite(error) ? error : 0;
 }
 
 /* Fills what the noise leaves open of slopes and curvatures: of the law its error where there is as

@@ -8,7 +8,7 @@
 struct denoise_result {
     bool found;      /* noise that governs slopes (spectrum_fit.h); false: z is as it was */
     double noise;    /* its RMS height up to the shortest waves of the points */
-    double shortest; /* wave that is left */
+    double shortest; /* wave of the law */
     double slope_before, slope_after;    /* RMS slopes, by differences */
     double slope_error, curvature_error; /* relative standard errors that this adds (F18.78) */
 };

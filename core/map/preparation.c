@@ -624,6 +624,7 @@ static int denoise(struct preparation_record *record, struct height_map *map, st
     record->denoised = done.found;
     record->denoised_slope = done.slope_error;
     record->denoised_curvature = done.curvature_error;
+    record->denoised_to = done.shortest;
     if (!done.found)
         preparation_note(record, "denoise", "no noise governs the slopes; heights stay");
     else

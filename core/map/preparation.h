@@ -109,8 +109,8 @@ struct preparation_record {
     enum scan_lines lines; /* how scan lines were levelled, and along which axis */
     enum scan_axis lines_along;
     bool denoised; /* noise was taken out, which adds relative standard errors to RMS slope and
-                      curvature */
-    double denoised_slope, denoised_curvature;
+                      curvature, of waves down to a length */
+    double denoised_slope, denoised_curvature, denoised_to;
     struct map_artefacts artefacts; /* of the map as it was scanned; where they are sought */
     size_t count;
     struct preparation_step {

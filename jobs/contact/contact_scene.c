@@ -437,6 +437,7 @@ void contact_case_estimate(const struct contact_case *one_case, struct study_cos
     out->seconds += companions_seconds(one_case);
     out->result_bytes = contact_rows_bytes(one_case);
     out->runs_most = RUNS_MOST;
-    out->case_seconds = case_seconds(one_case) + companions_first_seconds(one_case);
+    out->early_seconds = companions_first_seconds(one_case) / STUDY_EARLY;
+    out->case_seconds = case_seconds(one_case);
     out->relative_error = area_scatter(one_case);
 }

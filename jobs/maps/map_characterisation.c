@@ -144,16 +144,32 @@ struct common {
 /* Heights that a law fits at this level are taken to have its tails. */
 static const double LAW_LEVEL = 0.001;
 
-static void heights_by_law(struct map_characterisation *out, const struct measured_map *map) {
+static int heights_by_law(struct map_characterisation *out, const struct common *common,
+                          struct error *err) {
     const struct height_fit *best = &out->height_fits.list[out->height_fits.best];
+    const double before = out->errors.sq;
+    const bool stratified = isfinite(out->functional.plateau.ratio);
     struct map_height_law law;
-    if (best->p_value >= LAW_LEVEL && map_height_law_find(&law, out))
-        scalar_errors_by_law(&out->errors, map, &law.heights, &law.moments);
+    if (!map_height_law_find(&law, out))
+        return 0;
+    if (best->p_value >= LAW_LEVEL) {
+        scalar_errors_by_law(&out->errors, common->map, &law.heights, &law.moments);
+        for (int s = 0; s < MAP_STENCILS; s++)
+            out->parameters.summits[s].errors.height_deviation *= out->errors.sq / before;
+    }
+    /* tilts make the fit itself worse: whatever its level is, its ends are the best that is known
+     */
+    return out->functional.has_errors && !stratified
+               ? functional_errors_by_law(&out->functional.errors, common->chance, &law.heights,
+                                          &law.moments, grid_is_profile(common->map->grid), err)
+               : 0;
 }
 
-static void measure_chance(struct map_characterisation *out, const struct common *common) {
+static int measure_chance(struct map_characterisation *out, const struct common *common,
+                          struct error *err) {
     const struct measured_map *map = common->map;
     const struct map_chance *chance = common->chance;
+    int status = 0;
     fill_certainty(&out->certainty, chance);
     if (chance->told) {
         scalar_errors_heights(chance->heights, &chance->modes, &out->errors);
@@ -161,7 +177,7 @@ static void measure_chance(struct map_characterisation *out, const struct common
     }
     height_fit_measure(chance->heights, map_chance_modes(chance), &out->height_fits);
     if (chance->told) {
-        heights_by_law(out, map);
+        status = heights_by_law(out, common, err);
         scalar_errors_inside(&out->errors, out->parameters.moments_share, &out->moment_errors);
     }
     if (!grid_is_profile(map->grid))
@@ -171,6 +187,7 @@ static void measure_chance(struct map_characterisation *out, const struct common
         stationarity_measure(map, chance->heights, &common->nearest, &chance->modes,
                              chance->correlation, &out->stationarity);
     out->stationarity_p_value = least_p_value(out->stationarity.p_value, STATIONARY_DIVISIONS);
+    return status;
 }
 
 /* --- all --- */
@@ -245,14 +262,16 @@ static int measure_common(struct map_characterisation *out, struct common *commo
             return status;
     }
     cell_differences_measure(map, &common->chance->modes, 1, &common->nearest);
-    measure_chance(out, common);
+    int status = measure_chance(out, common, err);
+    if (status != 0)
+        return status;
     if (common->extent == MAP_WHOLE) {
         count_heights(&out->histogram, map);
         map_scales_measure(&out->scales, map, common->chance, &common->nearest);
     }
     out->rest_height = (double)NAN;
     const struct low_modes *modes = map_chance_modes(common->chance);
-    int status = under_window ? 0 : map_grooves_find(&out->grooves, map, err);
+    status = under_window ? 0 : map_grooves_find(&out->grooves, map, err);
     if (status == 0 && out->grooves.families > 0)
         return measure_rest(out, map, modes, trusted, common->extent, err);
     return status == 0 ? measure_spectra(out, map, common->spectrum, &out->directions, modes,

@@ -1,6 +1,9 @@
 #include "jobs/maps/map_remedies.h"
 #include "core/map/line_losses.h"
+#include "core/statistics/heights/roughness.h"
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 /* Widens an interval of a positive value by what an error of its logarithm adds to it. */
 static void widen(struct interval *interval, double error) {
@@ -76,8 +79,13 @@ static void lines_add(const struct map_remedied *found, const struct line_losses
         widen(&found->spectra->fit.rms_height, lost->height / 2);
 }
 
-static void noise_add(const struct preparation_record *record, struct scalar_errors *out) {
-    const double slope = record->denoised_slope, curvature = record->denoised_curvature;
+/* Relative errors of RMS slope and curvature. */
+struct lost_waves {
+    double slope, curvature;
+};
+
+static void noise_add(const struct lost_waves *lost, struct scalar_errors *out) {
+    const double slope = lost->slope, curvature = lost->curvature;
     out->slope = hypot(out->slope, slope);
     out->m2 = hypot(out->m2, 2 * slope);
     out->area = hypot(out->area, 2 * slope);
@@ -86,18 +94,80 @@ static void noise_add(const struct preparation_record *record, struct scalar_err
     out->alpha = hypot(out->alpha, 2 * fabs(curvature - 2 * slope));
 }
 
+/* Returns what is left of a wave's slope by differences over a length. */
+static double left_of_slope(double wavelength, double length) {
+    const double phase = M_PI * length / wavelength;
+    return fabs(sin(phase)) / phase;
+}
+
+/* It is the shortest waves that are not known: longer differences have less of them. */
+static void noise_add_scales(const struct lost_waves *lost, double shortest,
+                             struct map_scales *scales) {
+    const struct map_scale *first = &scales->scale[0];
+    const double of_first = left_of_slope(shortest, first->found.length);
+    for (size_t n = 0; n < scales->count; n++) {
+        struct map_scale *scale = &scales->scale[n];
+        const double left = left_of_slope(shortest, scale->found.length) / of_first;
+        const double slope =
+            lost->slope * fmin(pow(left * first->found.slope / scale->found.slope, 2), 1);
+        const double curvature =
+            lost->curvature *
+            fmin(pow(left * left * first->found.curvature / scale->found.curvature, 2), 1);
+        scale->height_error = hypot(scale->height_error, scale->found.height * slope);
+        scale->slope_error = hypot(scale->slope_error, scale->found.slope * slope);
+        scale->curvature_error = hypot(scale->curvature_error, scale->found.curvature * curvature);
+    }
+}
+
+/* Adds what differences next to the sides have less than others: where noise was taken out, waves
+ * go on beyond them as their mirror images. Nothing of maps that repeat. */
+static int sides_add(const struct measured_map *map, struct lost_waves *out, struct error *err) {
+    const bool profile = grid_is_profile(map->grid);
+    struct grid inner = *map->grid;
+    if (map->boundary != BOUNDARY_OPEN)
+        return 0;
+    inner.nx -= 2;
+    inner.lx = (double)inner.nx * grid_dx(map->grid);
+    if (!profile) {
+        inner.ny -= 2;
+        inner.ly = (double)inner.ny * grid_dy(map->grid);
+    }
+    double *z = array_create(grid_points(&inner), sizeof *z);
+    if (z == NULL)
+        return error_memory(err, grid_points(&inner) * sizeof *z, "a map without its sides");
+    for (size_t j = 0; j < inner.ny; j++)
+        memcpy(z + j * inner.nx, map->z + (j + (profile ? 0 : 1)) * map->grid->nx + 1,
+               inner.nx * sizeof *z);
+    struct roughness all, inside;
+    open_roughness_measure(map, &all);
+    open_roughness_measure(&(struct measured_map){&inner, z, BOUNDARY_OPEN}, &inside);
+    free(z);
+    out->slope = hypot(out->slope, inside.rms_slope / all.rms_slope - 1);
+    out->curvature = hypot(out->curvature, inside.rms_curvature / all.rms_curvature - 1);
+    return 0;
+}
+
+/* Moments inside leave the sides out. */
+static int denoised_add(const struct map_remedied *found, const struct measured_map *map,
+                        const struct preparation_record *record, struct error *err) {
+    struct lost_waves lost = {record->denoised_slope, record->denoised_curvature};
+    noise_add(&lost, found->moment_errors);
+    const int status = sides_add(map, &lost, err);
+    noise_add(&lost, found->errors);
+    noise_add_scales(&lost, record->denoised_to, found->scales);
+    /* it ends where waves were removed, as far as the fit before knew */
+    found->spectra->fit.short_wavelength.low = (double)NAN;
+    found->spectra->fit.short_wavelength.high = (double)NAN;
+    return status;
+}
+
 int map_remedies_add(const struct map_remedied *found, const struct measured_map *map,
                      const struct preparation_record *record, struct error *err) {
     struct line_losses lost;
     int status = line_losses_measure(map, record->lines, record->lines_along, &lost, err);
     if (status == 0 && record->lines != SCAN_LINES_NONE)
         lines_add(found, &lost);
-    if (status == 0 && record->denoised) {
-        noise_add(record, found->errors);
-        noise_add(record, found->moment_errors);
-        /* it ends where waves were removed, as far as the fit before knew */
-        found->spectra->fit.short_wavelength.low = (double)NAN;
-        found->spectra->fit.short_wavelength.high = (double)NAN;
-    }
+    if (status == 0 && record->denoised)
+        status = denoised_add(found, map, record, err);
     return status;
 }

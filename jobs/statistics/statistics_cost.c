@@ -45,7 +45,9 @@ static double expected_seconds(const struct statistics_case *one_case) {
     }
     if (!surface_case_band_limited(&one_case->surface))
         nanoseconds += cost_spectra(&one_case->surface.grid) * CHANGES_COST;
-    return 1e-4 + 1e-9 * nanoseconds * cost_caches(points) + statistics_law_seconds(one_case) +
+    double caches = surface_is_iterated(&one_case->surface.options) ? cost_caches(points)
+                                                                    : cost_field_caches(points);
+    return 1e-4 + 1e-9 * nanoseconds * caches + statistics_law_seconds(one_case) +
            like_patch_seconds(&one_case->like);
 }
 
@@ -97,6 +99,7 @@ void statistics_case_estimate(const struct statistics_case *one_case, struct stu
                         6 * summits * sizeof(struct summit) + spectra_bytes(one_case) +
                         PROCESS_BYTES;
     out->seconds = expected_seconds(one_case);
+    out->early_seconds = statistics_law_early_seconds(one_case);
     out->case_seconds =
         expected_case_seconds(one_case, summits) + LIKE_DRAWS * statistics_draws_seconds(one_case);
     /* sum of the bins' errors over their sum: integral sqrt(p) / sqrt(N w), p near normal */

@@ -167,6 +167,15 @@ double statistics_law_seconds(const struct statistics_case *one_case) {
                : 0;
 }
 
+double statistics_law_early_seconds(const struct statistics_case *one_case) {
+    const struct surface_case *surface = &one_case->surface;
+    if (!other_law_applies(surface))
+        return 0;
+    const struct subset due = due_of(surface);
+    return other_law_seconds(surface) *
+           (1.0 / (double)due.first_interval - 1.0 / (double)due.interval);
+}
+
 /* --- pairs of surfaces --- */
 
 /* The changes of each own scalar that is measured again; else NaN. */

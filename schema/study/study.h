@@ -16,7 +16,6 @@ extern const struct choice STUDY_RANDOM[];
 /* Returns the sequence of random numbers (core/random.h) that a case is made of. */
 uint64_t study_sequence(enum study_random random, uint64_t case_number);
 
-/* The cost of a case, estimated before anything ran. */
 /* What a case keeps of its realisations beside its results, as files of `rugo run --out`. */
 struct study_kept {
     const char *path; /* static: of the parameter that names the realisations; NULL: none */
@@ -25,11 +24,17 @@ struct study_kept {
     double bytes;     /* of the files, about */
 };
 
+/* Among so many first realisations more have side solves than later, so that small studies have
+ * some. */
+enum { STUDY_EARLY = 32 };
+
+/* The cost of a case, estimated before anything ran. */
 struct study_cost {
     size_t nx, ny;         /* grid of one realisation (the finest) */
     double memory_bytes;   /* peak of one worker thread; of a kind: without result_bytes */
     double seconds;        /* CPU seconds a realisation on a 3 GHz core */
     double case_seconds;   /* the same of a case besides: merging and publishing it */
+    double early_seconds;  /* the same of each of the first STUDY_EARLY realisations besides */
     double result_bytes;   /* of a realisation in a job's result, where they grow with these */
     double relative_error; /* standard error of the main curve after one realisation, of contact
                             * at the load where it is largest; / sqrt(n) */

@@ -376,12 +376,15 @@ static int drag(void *solver, double done, double drag, double tolerance, struct
     struct friction_newton *n = &f->newton;
     struct friction_goal goal = goal_at(way, done);
     double usual = n->tolerance;
+    size_t most = n->max_iterations;
+    n->max_iterations = n->self.count > 0 ? ROUND_MOST_MET : ROUND_MOST;
     n->drag = drag;
     n->tolerance = tolerance;
     n->evaluated = false;
     settle(f, &f->held);
     int status = solve(way, &goal, &f->held, &out->change, err);
     n->tolerance = usual;
+    n->max_iterations = most;
     out->force = mesh_largest_move(f->mesh, n->u, n->anchor) * drag / goal.pressure;
     if (status == 0)
         add_works(f, &f->held, &f->held);
@@ -439,15 +442,12 @@ static bool is_used_up(const struct friction *f) {
     return f->limit.seconds > 0 && f->used > f->limit.seconds;
 }
 
-/* Iterations of Newton's method after which a step is given up where the face is careful. */
-enum { NEWTON_MOST = 2500 };
-
 static int check(void *solver, struct error *err) {
     const struct following *way = solver;
     if (is_used_up(way->friction))
         return error_set(err, ERROR_NUMERIC, "the time limit of %g s was used up",
                          way->friction->limit.seconds);
-    if (way->friction->careful && way->out->newton > NEWTON_MOST)
+    if (way->friction->careful && way->out->newton > CAREFUL_NEWTON_MOST)
         return error_set(err, ERROR_NUMERIC, "%zu iterations of Newton's were too few",
                          way->out->newton);
     return 0;
@@ -458,6 +458,7 @@ static int follow_steps(struct friction *f, const struct friction_goal *goal,
                         struct friction_state *out, struct error *err) {
     static const struct load_solver SOLVER = {step_to, check, drag, hold, fall, leave, land};
     struct following way = {f, {f->kept.pressure, drive_now(f)}, *goal, out};
+    f->newton.max_iterations = load_steps_iterations(f->careful, f->options.max_iterations);
     struct load_steps steps = {.by = &SOLVER,
                                .solver = &way,
                                .least_step = f->options.least_step,

@@ -303,6 +303,15 @@ static int precondition_factored(struct gmres *gmres, const struct linear_system
     return status;
 }
 
+/* Fills the pressures that r has of elements, and subtracts their forces from moved. */
+static void bear_pressures(struct gmres *gmres, const double *r) {
+    if (gmres->volumetric == NULL)
+        return;
+    volumetric_scale(gmres->volumetric, 1 / gmres->volumetric->row, r + gmres->degrees_of_freedom,
+                     gmres->pressures);
+    volumetric_forces(gmres->volumetric, gmres->pressures, -1, gmres->moved);
+}
+
 /* Fills x with the displacements and pressures of the flat block under r. */
 static void preconditioner_apply_flat(struct gmres *gmres, const bool *active, const double *r,
                                       double *x) {
@@ -315,11 +324,7 @@ static void preconditioner_apply_flat(struct gmres *gmres, const bool *active, c
         if (active[node])
             gmres->moved[vertical] = 0;
     }
-    if (gmres->volumetric != NULL) {
-        volumetric_scale(gmres->volumetric, 1 / gmres->volumetric->row,
-                         r + gmres->degrees_of_freedom, gmres->pressures);
-        volumetric_forces(gmres->volumetric, gmres->pressures, -1, gmres->moved);
-    }
+    bear_pressures(gmres, r);
     for (size_t node = 0; node < mesh->nodes; node++)
         sum += gmres->moved[mesh_vertical(mesh, node)];
     preconditioner_load(gmres->preconditioner, gmres->moved);
@@ -374,8 +379,7 @@ static void precondition_friction(struct gmres *gmres, const struct face_conditi
     for (size_t node = 0; node < face; node++)
         for (size_t k = 0; friction->node[node] != NODE_FREE && k < d; k++)
             gmres->moved[node * d + k] = 0;
-    if (gmres->volumetric != NULL)
-        volumetric_forces(gmres->volumetric, r + gmres->degrees_of_freedom, -1, gmres->moved);
+    bear_pressures(gmres, r);
     for (size_t node = 0; node < mesh->nodes; node++)
         for (size_t k = 0; k < d; k++)
             sum[k] += gmres->moved[node * d + k];
@@ -399,7 +403,7 @@ static void precondition_friction(struct gmres *gmres, const struct face_conditi
         for (size_t k = 0; k < d; k++)
             x[node * d + k] += move[k];
     if (gmres->volumetric != NULL)
-        volumetric_pressures(gmres->volumetric, x, 1, r + gmres->degrees_of_freedom,
+        volumetric_pressures(gmres->volumetric, x, 1, gmres->pressures,
                              x + gmres->degrees_of_freedom);
 }
 

@@ -31,11 +31,11 @@ struct fitted {
 
 static const double NONE = (double)NAN;
 
-/* Returns by how many rings the errors of a lay blur what is sharp at one: twice the root mean
- * square over directions; 0 of circles. */
+/* Returns by how many rings the errors of a lay, twice as large as they are stated, blur what is
+ * sharp at one: twice the root mean square over directions; 0 of circles. */
 static double blur_at(const struct lay *lay, double ring) {
     double turn = lay->ratio - 1 / lay->ratio;
-    return ring * hypot(lay->ratio_error, turn * lay->angle_error) * M_SQRT1_2;
+    return 2 * ring * hypot(lay->ratio_error, turn * lay->angle_error) * M_SQRT1_2;
 }
 
 static void problem_bounds(struct law_problem *problem, const struct spectrum_range *range) {
@@ -51,7 +51,7 @@ static void problem_bounds(struct law_problem *problem, const struct spectrum_ra
     low[LAW_SHORT] = edge > 0 ? log(fmax(edge - 2 - blur, 1)) : 0;
     high[LAW_SHORT] = edge > 0 ? log(edge + 2.5 + blur) : INFINITY;
     if (edge > 0 && blur > 0)
-        law_problem_leave_out(problem, edge - 1 - blur, edge + 1 + blur);
+        law_problem_put_together(problem, edge - 1 - blur, edge + 1 + blur);
     low[LAW_LONG] = log(LAW_FEWEST_WAVES / 2);
     high[LAW_LONG] = log(last / 2);
     low[LAW_BLUR] = log(1e-3 / (last * last));
@@ -125,6 +125,7 @@ static double deviance_scatter(const struct law_problem *problem) {
             variance +=
                 (d == 0 ? 2 : 4) * both * both / (s->covariance[r][0] * s->covariance[r + d][0]);
         }
+    variance += problem->freedom[count] > 0 ? 2 : 0; /* of rings put together */
     return sqrt(variance) / (double)problem->counted;
 }
 
@@ -165,8 +166,9 @@ static int fitted_create(struct fitted *fitted, const struct map_spectrum *spect
                                    : DEEPEST * spectrum->density[range->last];
     if (!(level > 0))
         return 0;
-    int status =
-        law_problem_create(&fitted->problem, spectrum, range->first, range->last, level, err);
+    const double blur = blur_at(&spectrum->lay, (double)range->edge);
+    const size_t last = (size_t)fmin((double)range->last + ceil(blur), (double)spectrum->rings - 1);
+    int status = law_problem_create(&fitted->problem, spectrum, range->first, last, level, err);
     if (status == 0)
         fitted_measure(fitted, range);
     return status;

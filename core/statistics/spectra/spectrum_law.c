@@ -14,7 +14,7 @@ static double logarithm_of(double wave_number) {
 
 int law_problem_create(struct law_problem **out, const struct map_spectrum *spectrum, size_t first,
                        size_t last, double floor, struct error *err) {
-    size_t count = last - first + 1;
+    const size_t count = last - first + 1, rings = count + 1;
     struct law_problem *problem = array_create(1, sizeof *problem);
     if (problem == NULL)
         return error_memory(err, sizeof *problem, "the fit of a spectrum");
@@ -25,18 +25,19 @@ int law_problem_create(struct law_problem **out, const struct map_spectrum *spec
     problem->floor = floor;
     int status = spectrum_leakage_create(&problem->leakage, spectrum, first, last, err);
     if (status == 0) {
-        problem->found = array_create(count, sizeof *problem->found);
-        problem->freedom = array_create(count, sizeof *problem->freedom);
-        problem->expected = array_create(count, sizeof *problem->expected);
-        problem->trial = array_create(count, sizeof *problem->trial);
-        problem->slope = array_create(LAW_PARAMETERS * count, sizeof *problem->slope);
+        problem->found = array_create(rings, sizeof *problem->found);
+        problem->freedom = array_create(rings, sizeof *problem->freedom);
+        problem->share = array_create(rings, sizeof *problem->share);
+        problem->expected = array_create(rings, sizeof *problem->expected);
+        problem->trial = array_create(rings, sizeof *problem->trial);
+        problem->slope = array_create(LAW_PARAMETERS * rings, sizeof *problem->slope);
         problem->density = array_create(problem->leakage->nodes, sizeof *problem->density);
         problem->plain = array_create(problem->leakage->nodes, sizeof *problem->plain);
         problem->logarithm = array_create(problem->leakage->nodes, sizeof *problem->logarithm);
-        if (problem->found == NULL || problem->freedom == NULL || problem->expected == NULL ||
-            problem->trial == NULL || problem->slope == NULL || problem->density == NULL ||
-            problem->plain == NULL || problem->logarithm == NULL)
-            status = error_memory(err, count * sizeof *problem->slope, "the fit of a spectrum");
+        if (problem->found == NULL || problem->freedom == NULL || problem->share == NULL ||
+            problem->expected == NULL || problem->trial == NULL || problem->slope == NULL ||
+            problem->density == NULL || problem->plain == NULL || problem->logarithm == NULL)
+            status = error_memory(err, rings * sizeof *problem->slope, "the fit of a spectrum");
     }
     if (status != 0) {
         law_problem_destroy(&problem);
@@ -45,6 +46,8 @@ int law_problem_create(struct law_problem **out, const struct map_spectrum *spec
     for (size_t r = 0; r < count; r++)
         problem->found[r] = spectrum->density[first + r] + floor;
     memcpy(problem->freedom, spectrum->freedom + first, count * sizeof *problem->freedom);
+    problem->rings = rings;
+    problem->found[count] = 1; /* of no weight yet, as its freedom is 0 */
     problem->counted = count;
     for (size_t a = 0; a < problem->leakage->nodes; a++)
         problem->logarithm[a] = logarithm_of(problem->leakage->node[a]);
@@ -60,6 +63,7 @@ void law_problem_destroy(struct law_problem **problem) {
     spectrum_leakage_destroy(&p->leakage);
     free(p->found);
     free(p->freedom);
+    free(p->share);
     free(p->expected);
     free(p->trial);
     free(p->slope);
@@ -70,14 +74,41 @@ void law_problem_destroy(struct law_problem **problem) {
     *problem = NULL;
 }
 
-void law_problem_leave_out(struct law_problem *problem, double low, double high) {
-    problem->counted = 0;
-    for (size_t r = 0; r < problem->leakage->count; r++) {
-        double ring = (double)(problem->leakage->first + r);
-        if (ring >= low && ring <= high)
-            problem->freedom[r] = 0;
-        problem->counted += problem->freedom[r] > 0 ? 1 : 0;
+/* Fills the degrees of freedom of the mean over the rings that were put together. */
+static void together_count(struct law_problem *p) {
+    const struct map_spectrum *s = p->spectrum;
+    const size_t count = p->leakage->count, first = p->leakage->first;
+    double variance = 0;
+    for (size_t r = 0; r < count; r++)
+        for (size_t d = 0; d < RING_REACH && r + d < count; d++)
+            variance += (d > 0 ? 2 : 1) * p->share[r] * s->density[first + r] * p->share[r + d] *
+                        s->density[first + r + d] * s->covariance[first + r][d];
+    const double mean = p->found[count] - p->floor;
+    p->freedom[count] = variance > 0 ? 2 * mean * mean / variance : 0;
+}
+
+void law_problem_put_together(struct law_problem *problem, double low, double high) {
+    const size_t count = problem->leakage->count;
+    double modes = 0;
+    for (size_t r = 0; r < count; r++) {
+        const double ring = (double)(problem->leakage->first + r);
+        if (!(ring >= low && ring <= high) || !(problem->freedom[r] > 0))
+            continue;
+        problem->freedom[r] = 0;
+        problem->share[r] = problem->dimension == 1 ? 1 : ring;
+        modes += problem->share[r];
     }
+    if (!(modes > 0))
+        return;
+    problem->found[count] = 0;
+    for (size_t r = 0; r < count; r++) {
+        problem->share[r] /= modes;
+        problem->found[count] += problem->share[r] * problem->found[r];
+    }
+    together_count(problem);
+    problem->counted = 0;
+    for (size_t r = 0; r <= count; r++)
+        problem->counted += problem->freedom[r] > 0 ? 1 : 0;
 }
 
 /* Returns the density of a law by the logarithm of a wave number, without regard to its ends and to
@@ -120,14 +151,18 @@ static void expect(struct law_problem *problem, const double *p, double *expecte
         problem->density[a] = share > 0 ? share * problem->plain[a] : 0;
     }
     spectrum_leakage_apply(leakage, problem->density, expected);
-    for (size_t r = 0; r < leakage->count; r++)
+    double *together = &expected[leakage->count];
+    *together = problem->freedom[leakage->count] > 0 ? 0 : 1;
+    for (size_t r = 0; r < leakage->count; r++) {
         expected[r] += noise + problem->floor;
+        *together += problem->share[r] * expected[r];
+    }
 }
 
 static double deviance(const struct law_problem *problem, const double *expected) {
     const double *freedom = problem->freedom;
     double total = 0;
-    for (size_t r = 0; r < problem->leakage->count; r++) {
+    for (size_t r = 0; r < problem->rings; r++) {
         double ratio = problem->found[r] / expected[r];
         total += freedom[r] * (ratio - 1 - log(ratio));
     }
@@ -142,7 +177,7 @@ static double clamp(double value, double low, double high) {
  * upper bound. */
 static void differentiate(struct law_problem *problem, const struct law *law) {
     static const double STEP = 1e-4;
-    size_t count = problem->leakage->count;
+    const size_t count = problem->rings;
     for (size_t a = 0; a < LAW_PARAMETERS; a++) {
         double moved[LAW_PARAMETERS], *slope = problem->slope + a * count;
         if (!law->free[a])
@@ -191,9 +226,9 @@ static void solve(law_matrix factor, double *right) {
 /* Returns how much more likely rings become as a parameter rises. */
 static double gradient_of(const struct law_problem *problem, size_t a) {
     const double *freedom = problem->freedom;
-    const double *slope = problem->slope + a * problem->leakage->count;
+    const double *slope = problem->slope + a * problem->rings;
     double total = 0;
-    for (size_t r = 0; r < problem->leakage->count; r++)
+    for (size_t r = 0; r < problem->rings; r++)
         total += slope[r] * freedom[r] / 2 * (problem->found[r] / problem->expected[r] - 1);
     return total;
 }
@@ -203,7 +238,7 @@ static double gradient_of(const struct law_problem *problem, size_t a) {
 static void inform(const struct law_problem *problem, const bool *held, law_matrix information) {
     static const double TINY = 1e-9;
     const double *freedom = problem->freedom;
-    size_t count = problem->leakage->count;
+    const size_t count = problem->rings;
     for (size_t a = 0; a < LAW_PARAMETERS; a++)
         for (size_t b = 0; b <= a; b++) {
             const double *one = problem->slope + a * count, *other = problem->slope + b * count;
@@ -257,8 +292,7 @@ void law_maximise(struct law_problem *problem, struct law *law) {
     for (int steps = 0; steps < STEPS_MOST && damping < DAMPING_MOST; steps++) {
         double before = law->deviance;
         /* The law is the last one that was tried. */
-        memcpy(problem->expected, problem->trial,
-               problem->leakage->count * sizeof *problem->expected);
+        memcpy(problem->expected, problem->trial, problem->rings * sizeof *problem->expected);
         differentiate(problem, law);
         while (damping < DAMPING_MOST && !step(problem, law, damping))
             damping *= 8;
@@ -268,27 +302,36 @@ void law_maximise(struct law_problem *problem, struct law *law) {
     }
 }
 
-/* Fills the covariance of the gradient: the densities of near rings are correlated, and the floor
- * adds no variance. */
+/* Returns what the relative density of a ring weighs in the gradient along a parameter, by itself
+ * or among those that were put together; the floor adds no variance. */
+static double gradient_weight(const struct law_problem *p, size_t a, size_t r) {
+    const size_t together = p->leakage->count;
+    const double *slope = p->slope + a * p->rings;
+    const double part = p->share[r] * p->expected[r] / p->expected[together];
+    const double weight = slope[r] * p->freedom[r] + part * slope[together] * p->freedom[together];
+    return weight / 2 * (1 - p->floor / p->expected[r]);
+}
+
+/* Fills the covariance of the gradient: the densities of near rings are correlated. */
 static void gradient_covariance(const struct law_problem *problem, const struct law *law,
                                 law_matrix out) {
     const struct map_spectrum *s = problem->spectrum;
-    size_t count = problem->leakage->count, first = problem->leakage->first;
-    for (size_t a = 0; a < LAW_PARAMETERS; a++)
-        for (size_t b = 0; b < LAW_PARAMETERS; b++) {
-            const double *one = problem->slope + a * count, *other = problem->slope + b * count;
-            out[a][b] = 0;
-            for (size_t r = 0; r < count && law->free[a] && law->free[b]; r++)
-                for (size_t d = 0; d < RING_REACH && r + d < count; d++) {
-                    size_t q = r + d;
-                    double both =
-                        d == 0 ? one[r] * other[r] : one[r] * other[q] + one[q] * other[r];
-                    double chance = (1 - problem->floor / problem->expected[r]) *
-                                    (1 - problem->floor / problem->expected[q]);
-                    out[a][b] += both * chance * s->covariance[first + r][d] * problem->freedom[r] *
-                                 problem->freedom[q] / 4;
+    const size_t count = problem->leakage->count, first = problem->leakage->first;
+    memset(out, 0, sizeof(law_matrix));
+    for (size_t r = 0; r < count; r++) {
+        double here[LAW_PARAMETERS];
+        for (size_t a = 0; a < LAW_PARAMETERS; a++)
+            here[a] = law->free[a] ? gradient_weight(problem, a, r) : 0;
+        for (size_t d = 0; d < RING_REACH && r + d < count; d++)
+            for (size_t a = 0; a < LAW_PARAMETERS; a++) {
+                const double there = law->free[a] ? gradient_weight(problem, a, r + d) : 0;
+                for (size_t b = 0; b < LAW_PARAMETERS; b++) {
+                    const double both = here[b] * there * s->covariance[first + r][d];
+                    out[a][b] += both;
+                    out[b][a] += d > 0 ? both : 0;
                 }
-        }
+            }
+    }
 }
 
 bool law_covariance(struct law_problem *problem, const struct law *law, law_matrix likelihood,

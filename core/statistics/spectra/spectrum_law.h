@@ -40,8 +40,10 @@ struct law_problem {
      * which hold leakage alone, do not count. */
     double floor;
     double low[LAW_PARAMETERS], high[LAW_PARAMETERS];
+    size_t rings;               /* those of the leakage, and one more: of rings put together */
     double *found;              /* per ring */
     double *freedom;            /* per ring, as of the spectrum; 0 of one that does not count */
+    double *share;              /* per ring: of its modes among those put together; 0: none */
     size_t counted;             /* rings that do */
     double *expected;           /* per ring */
     double *density;            /* per node */
@@ -54,8 +56,9 @@ struct law_problem {
 int law_problem_create(struct law_problem **out, const struct map_spectrum *spectrum, size_t first,
                        size_t last, double floor, struct error *err);
 void law_problem_destroy(struct law_problem **problem);
-/* Lets rings low to high of the spectrum not count, as those which an error blurs. */
-void law_problem_leave_out(struct law_problem *problem, double low, double high);
+/* Lets rings low to high of the spectrum count by their mean alone, as those which an error blurs.
+ * Once a problem. */
+void law_problem_put_together(struct law_problem *problem, double low, double high);
 
 /* Below so many waves a side a map has no density; a law is taken as constant there. */
 #define LAW_FEWEST_WAVES 0.5

@@ -3,10 +3,16 @@
 #define RUGO_CORE_STATISTICS_SPECTRA_WINDOWED_PSD_H
 
 #include "core/statistics/measured_map.h"
+#include <stdlib.h>
 
 /* Under Hann's window so many waves beside each other count as one, along an axis:
  * 1 + 2 (2/3)^2 + 2 (1/6)^2. */
 #define WINDOWED_ALIKE (35.0 / 18)
+/* Waves this far apart, along an axis, have powers that are alike by these shares. */
+enum { WINDOWED_REACH = 2 };
+static inline double windowed_alike(long apart) {
+    return apart == 0 ? 1 : labs(apart) == 1 ? 4.0 / 9 : labs(apart) == 2 ? 1.0 / 36 : 0;
+}
 /* Returns Hann's window at point i of n; 1 of a single one, as profiles have along their second
  * axis.
  */

@@ -141,3 +141,68 @@ int functional_errors_measure(struct functional_errors *out, const struct measur
     out->plateau.valley_mean *= FEW_VALLEYS / ANY;
     return 0;
 }
+
+/* --- tilts --- */
+
+/* Heights of a law at equal steps of probability, on a lattice of positions. */
+enum { LAW_HEIGHTS = 1024, POSITIONS = 8 };
+/* Sizes of tilts, of equal shares of the distribution of Rayleigh. */
+enum { TILTS = 4 };
+
+/* A tilt of mean square 1 over the positions. */
+static double tilt_at(size_t position) {
+    static const double ROOT_12 = 3.4641016151377544;
+    return ROOT_12 * (((double)position + 0.5) / POSITIONS - 0.5);
+}
+
+/* Fills the parameters of heights of a law from which tilts along both axes are taken. */
+static int tilted_measure(const double law[LAW_HEIGHTS], double along, double across,
+                          double out[FUNCTIONALS], struct error *err) {
+    const struct grid grid = {LAW_HEIGHTS, POSITIONS * POSITIONS, 1, 1};
+    double *z = array_create(grid_points(&grid), sizeof *z);
+    if (z == NULL)
+        return error_memory(err, grid_points(&grid) * sizeof *z, "tilted heights");
+    const struct measured_map map = {&grid, z, BOUNDARY_OPEN};
+    struct material_curve curve;
+    struct functional found;
+    for (size_t position = 0; position < grid.ny; position++)
+        for (size_t n = 0; n < LAW_HEIGHTS; n++)
+            z[position * LAW_HEIGHTS + n] = law[n] + along * tilt_at(position % POSITIONS) +
+                                            across * tilt_at(position / POSITIONS);
+    int status = material_curve_create(&curve, &map, err);
+    free(z);
+    if (status != 0)
+        return status;
+    functional_measure(&curve, &found);
+    material_curve_clear(&curve);
+    memcpy(out, &found, sizeof found);
+    return 0;
+}
+
+int functional_errors_by_law(struct functional_errors *out, const struct map_chance *chance,
+                             const struct heights *law, const struct height_moments *moments,
+                             bool profile, struct error *err) {
+    const struct cell_heights *heights = chance->heights;
+    if (!chance->told || !chance->modes.open || !heights->untilted)
+        return 0;
+    const double amplitude =
+        sqrt(low_modes_variance(&chance->modes, heights->power[1], heights->count));
+    double z[LAW_HEIGHTS], none[FUNCTIONALS], all[FUNCTIONALS], square[FUNCTIONALS] = {0};
+    for (size_t n = 0; n < LAW_HEIGHTS; n++)
+        z[n] = heights->rms * heights_quantile(law, moments, ((double)n + 0.5) / LAW_HEIGHTS);
+    int status = tilted_measure(z, 0, 0, none, err);
+    for (size_t t = 0; t < TILTS && status == 0; t++) {
+        const double size = amplitude * sqrt(-2 * log(1 - ((double)t + 0.5) / TILTS));
+        const double turn = M_PI / 2 * ((double)t + 0.5) / TILTS;
+        double tilted[FUNCTIONALS];
+        status = profile ? tilted_measure(z, size * M_SQRT1_2, 0, tilted, err)
+                         : tilted_measure(z, size * cos(turn), size * sin(turn), tilted, err);
+        for (size_t v = 0; v < FUNCTIONALS && status == 0; v++)
+            square[v] += pow(tilted[v] - none[v], 2) / TILTS;
+    }
+    memcpy(all, &out->found, sizeof all);
+    for (size_t v = 0; v < FUNCTIONALS && status == 0; v++)
+        all[v] = sqrt(all[v] * all[v] + square[v]);
+    memcpy(&out->found, all, sizeof all);
+    return status;
+}

@@ -6,6 +6,7 @@
 #include "core/statistics/heights/functional.h"
 #include "core/statistics/heights/plateau.h"
 #include "core/statistics/uncertainty/map_chance.h"
+#include "core/surface/heights.h"
 
 /* A standard error in the place of each parameter; NaN where none is known. */
 struct functional_errors {
@@ -18,5 +19,11 @@ struct functional_errors {
 int functional_errors_measure(struct functional_errors *out, const struct measured_map *map,
                               const struct material_curve *curve, const struct map_chance *chance,
                               struct error *err);
+/* Heights that end at a bound end less sharply where a trend was taken out, as that holds tilts of
+ * the surface itself. Adds what such tilts change in the parameters of the distribution that fits
+ * the heights (F18.52). law: standardised by `moments`. ERROR_MEMORY. */
+int functional_errors_by_law(struct functional_errors *out, const struct map_chance *chance,
+                             const struct heights *law, const struct height_moments *moments,
+                             bool profile, struct error *err);
 
 #endif

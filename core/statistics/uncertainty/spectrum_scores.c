@@ -56,7 +56,7 @@ static void heights_fill(struct scores *s) {
 static double change_at(const struct scores *s, size_t change, size_t r) {
     const struct law_problem *p = s->problem;
     const double ring = (double)(p->leakage->first + r);
-    const double governed = p->slope[LAW_AMPLITUDE * p->leakage->count + r];
+    const double governed = p->slope[LAW_AMPLITUDE * p->rings + r];
     if (s->law->free[LAW_SHORT] && ring > exp(s->law->p[LAW_SHORT]) - SPECTRUM_BLURRED)
         return 0;
     return governed * (change == 0 ? 1 : log(ring) - p->reference_logarithm);

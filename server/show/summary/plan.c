@@ -8,9 +8,10 @@
 
 double plan_case_seconds(const struct study_case *one) {
     uint64_t expected[TARGET_PARTS_MOST];
-    double seconds = one->component_count > 0 ? target_expect(one, expected)
-                                              : one->cost.seconds * (double)one->realisations;
-    return seconds + one->cost.case_seconds;
+    double count = (double)one->realisations;
+    double seconds =
+        one->component_count > 0 ? target_expect(one, expected) : one->cost.seconds * count;
+    return seconds + one->cost.early_seconds * fmin(count, STUDY_EARLY) + one->cost.case_seconds;
 }
 
 double plan_case_error(const struct study_case *one) {

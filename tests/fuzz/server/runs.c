@@ -50,7 +50,8 @@ static double seconds_of(const struct study *study) {
         uint64_t numbers[TARGET_PARTS_MOST];
         seconds += one->component_count > 0
                        ? target_expect(one, numbers)
-                       : (double)one->realisations * one->cost.seconds + one->cost.case_seconds;
+                       : (double)one->realisations * (one->cost.seconds + one->cost.early_seconds) +
+                             one->cost.case_seconds;
     }
     return seconds;
 }

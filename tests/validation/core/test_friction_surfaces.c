@@ -181,7 +181,7 @@ static void ridges_are_profiles(void **state) {
         double poisson;
         enum gap_weighting weighting;
         size_t steps;
-    } CASES[] = {{0.3, GAP_DUAL, 0}, {0, GAP_STANDARD, 2}, {0.499, GAP_DUAL, 0}};
+    } CASES[] = {{0.3, GAP_DUAL, 0}, {0, GAP_STANDARD, 2}, {0.4999, GAP_DUAL, 0}};
     for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
         enum { NX = 32, NY = 4 };
         struct dragged *profile = opened(NX, 1, CASES[c].poisson, 0.4, CASES[c].steps);
@@ -191,7 +191,7 @@ static void ridges_are_profiles(void **state) {
         for (size_t a = 0; a < 2; a++) {
             both[a]->options.transition = INFINITY;
             both[a]->block.weighting = CASES[c].weighting;
-            roughen(both[a], true, 8, CASES[c].poisson > 0.4 ? 0.05 : 0.2, 11);
+            roughen(both[a], true, 8, 0.2, 11);
             begin(both[a]);
             press(both[a], 0.02);
             for (int step = 1; step <= 4; step++)
@@ -203,7 +203,7 @@ static void ridges_are_profiles(void **state) {
             apart = fmax(apart, fabs(one->q[i % NX] - other->q[i]));
             apart = fmax(apart, fabs(other->q_across[i]));
         }
-        printf("[   INFO   ] nu = %.3f, pressed in %zu steps: apart %.2g of the pressure; %.2f "
+        printf("[   INFO   ] nu = %.4f, pressed in %zu steps: apart %.2g of the pressure; %.2f "
                "sticks, Q/P %.4f\n",
                CASES[c].poisson, CASES[c].steps, apart / one->pressure, one->stick_area,
                one->traction / one->pressure);
@@ -437,6 +437,31 @@ static void energy(void **state) {
     assert_true(imbalance(6, 1) <= 1e-3);
 }
 
+/* Pressures of elements are unknowns of nearly incompressible blocks, with equations that are
+ * scaled (gmres.h). When the preconditioner had another scale no step converged. Measured: 17 and
+ * 23 iterations a step of Newton's. */
+static void rubber(void **state) {
+    (void)state;
+    static const double SLOPES[] = {0.1, 0.4};
+    for (size_t a = 0; a < 2; a++) {
+        struct dragged *d = opened(16, 16, 0.4999, 0.4, 0);
+        size_t newton = 0, linear = 0;
+        roughen(d, false, 8, SLOPES[a], 12);
+        begin(d);
+        press(d, 0.1 * SLOPES[a]);
+        for (int step = 1; step <= 4; step++) {
+            drag(d, 0.03 * SLOPES[a] * step);
+            newton += d->state.newton;
+            linear += d->state.linear;
+        }
+        printf("[   INFO   ] slope %.1f: %.1f iterations a step of Newton's, %.2f sticks\n",
+               SLOPES[a], (double)linear / (double)newton, d->state.stick_area);
+        assert_true(d->state.stick_area > 0 && d->state.stick_area < 1);
+        assert_true(linear < 35 * newton);
+        closed(d);
+    }
+}
+
 /* A face that is mirrored along x and y, dragged backward, has the mirrored solution. */
 static void mirror_image(void **state) {
     (void)state;
@@ -540,7 +565,8 @@ static void without_friction(void **state) {
 /* Returns 0, or the status of the step that failed, whose message must hold numbers. */
 static int draw_scene(uint64_t *seed) {
     double coefficient = drawn(seed) < 0.1 ? 1 : 0.001 + 0.999 * drawn(seed);
-    double poisson = 0.45 * drawn(seed), slope = 0.5 * drawn(seed);
+    double kind = drawn(seed), poisson = kind < 0.7 ? 0.64 * kind : 0.4999;
+    double slope = 0.5 * drawn(seed);
     size_t steps = drawn(seed) < 0.5 ? 0 : (size_t)(1 + 4 * drawn(seed));
     struct dragged *d = opened(16, drawn(seed) < 0.3 ? 12 : 16, poisson, coefficient, steps);
     struct error err = {0};
@@ -584,6 +610,7 @@ int main(void) {
                                        cmocka_unit_test(flat_face),
                                        cmocka_unit_test(steady_sliding),
                                        cmocka_unit_test(energy),
+                                       cmocka_unit_test(rubber),
                                        cmocka_unit_test(mirror_image),
                                        cmocka_unit_test(along_y),
                                        cmocka_unit_test(without_friction),

@@ -1,7 +1,8 @@
 /* Protects: what one patch determines of the functional parameters of the endless surface that it
- * is a part of. Over patches cut out of larger surfaces with random amplitudes, Gaussian ones and
- * stratified faces, the 95 % intervals hold the true values as often as they say (FORMULAS.md,
- * F18.61). RUGO_EFFORT=20 makes 320 patches of each kind. */
+ * is a part of. Over patches cut out of larger surfaces with random amplitudes, Gaussian ones,
+ * stratified faces and exponential heights, which end at a bound, the 95 % intervals hold the true
+ * values as often as they say (FORMULAS.md, F18.61, F18.52). RUGO_EFFORT=20 makes 320 patches of
+ * each kind. */
 #include "core/map/detrend.h"
 #include "core/statistics/uncertainty/functional_errors.h"
 #include "core/surface/plateau_face.h"
@@ -21,6 +22,7 @@ struct kind {
     double hurst;
     double rms_ratio, material_ratio; /* of the plateau; 0: none */
     enum detrend detrend;
+    struct heights heights;
 };
 
 enum { SK, SPK, SVK, SMR1, SMR2, SXP, VMP, VMC, VVC, VVV, SPQ, SVQ, SMQ, SCALARS };
@@ -52,6 +54,12 @@ static void patch_measure(double *z, const struct kind *kind, struct found *out)
     functional_measure(&curve, &found);
     plateau_fit(&curve, &plateau);
     assert_int_equal(functional_errors_measure(&errors, &map, &curve, chance, NULL), 0);
+    if (kind->heights.type != HEIGHTS_GAUSSIAN) {
+        struct height_moments moments;
+        assert_int_equal(heights_moments(&kind->heights, &moments, NULL), 0);
+        assert_int_equal(
+            functional_errors_by_law(&errors, chance, &kind->heights, &moments, false, NULL), 0);
+    }
     take(&found, &plateau, out->value);
     take(&errors.found, &errors.plateau, out->error);
     material_curve_clear(&curve);
@@ -86,7 +94,13 @@ static void truth_find(const struct kind *kind, double offset, double out[SCALAR
         stratified_heights_of(1, stratified ? kind->rms_ratio : 1, stratified ? offset : 40);
     struct functional found;
     assert_non_null(curve.z);
+    struct height_moments moments;
+    assert_int_equal(heights_moments(&kind->heights, &moments, NULL), 0);
     for (size_t q = 0; q < QUANTILES; q++) {
+        if (kind->heights.type != HEIGHTS_GAUSSIAN) {
+            curve.z[q] = heights_quantile(&kind->heights, &moments, ((double)q + 0.5) / QUANTILES);
+            continue;
+        }
         double low = -8 / law.deviation, high = 8 / law.deviation;
         for (int step = 0; step < 60; step++) {
             const double middle = (low + high) / 2;
@@ -109,6 +123,7 @@ static void kind_check(const struct kind *kind, uint64_t seed) {
     struct surface_options options = SURFACE_DEFAULTS;
     double truth[SCALARS];
     options.amplitudes = AMPLITUDES_RANDOM;
+    options.heights = kind->heights;
     struct spectrum spectrum = spectrum_of(kind);
     struct plateau_face plateau = {.spectrum = spectrum_of(kind), .options = options};
     if (kind->rms_ratio > 0) {
@@ -149,10 +164,16 @@ static void kind_check(const struct kind *kind, uint64_t seed) {
 
 static void coverage(void **state) {
     static const struct kind KINDS[] = {
-        {"Gaussian, H = 0.8", 0.8, 0, 0, DETREND_MEAN},
-        {"Gaussian, H = 0.2, less a plane", 0.2, 0, 0, DETREND_PLANE},
-        {"stratified, H = 0.8", 0.8, 0.25, 0.8, DETREND_MEAN},
-        {"stratified, H = 0.2", 0.2, 0.1, 0.6, DETREND_MEAN}};
+        {"Gaussian, H = 0.8", 0.8, 0, 0, DETREND_MEAN, {0}},
+        {"Gaussian, H = 0.2, less a plane", 0.2, 0, 0, DETREND_PLANE, {0}},
+        {"stratified, H = 0.8", 0.8, 0.25, 0.8, DETREND_MEAN, {0}},
+        {"stratified, H = 0.2", 0.2, 0.1, 0.6, DETREND_MEAN, {0}},
+        {"exponential, H = 0.8, less a plane",
+         0.8,
+         0,
+         0,
+         DETREND_PLANE,
+         {.type = HEIGHTS_WEIBULL_MIN, .shape = 1}}};
     const uint64_t seed = seed_or(3);
     (void)state;
     for (size_t k = 0; k < sizeof KINDS / sizeof *KINDS; k++)

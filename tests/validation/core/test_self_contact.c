@@ -1,8 +1,8 @@
 /* Protects steep faces of full: a symmetric groove that closes is one flank against a rigid plane,
  * which is solved here by itself; a rough profile of slope 1 that buckles and overhangs has values
  * beyond, and its flanks do not pass through each other; another that is dragged with friction
- * closes works and energy to second order in the step, folds and all; and a surface that is alike
- * in all rows closes as the profile does. */
+ * closes works and energy to second order in the step, folds and all; a surface that is alike
+ * in all rows closes as the profile does; and a limit of time ends what a jump takes. */
 #include "tests/support/check.h"
 
 #include "core/full/face.h"
@@ -186,22 +186,26 @@ static void a_groove_closes_on_its_plane(void **state) {
     assert_true(fabs(off[0]) < 0.05 && fabs(off[1]) < 0.02 && fabs(off[1]) < fabs(off[0]));
 }
 
-/* A profile of RMS slope 1 with eight shortest waves. */
-enum { ROUGH_NODES = 128 };
-static void draw_rough(const struct grid *grid, uint64_t seed, double *z) {
+static void draw(const struct grid *grid, double shortest, double slope, uint64_t seed, double *z) {
     struct spectrum spectrum = {.type = SPECTRUM_SELF_AFFINE,
                                 .hurst = 0.8,
                                 .wavelength_long = 0.5,
                                 .wavelength_rolloff = 0.5,
-                                .wavelength_short = 1.0 / 16,
+                                .wavelength_short = shortest,
                                 .scale = SCALE_RMS_SLOPE,
-                                .scale_value = 1};
+                                .scale_value = slope};
     struct generator *generator = NULL;
     struct error err = {0};
     if (generator_create(&generator, &spectrum, grid, &SURFACE_DEFAULTS, &err) != 0 ||
         generator_run(generator, (struct random_key){.seed = seed}, z, NULL, &err) != 0)
         fail_msg("%s", err.text);
     generator_destroy(&generator);
+}
+
+/* A profile of RMS slope 1 with eight shortest waves. */
+enum { ROUGH_NODES = 128 };
+static void draw_rough(const struct grid *grid, uint64_t seed, double *z) {
+    draw(grid, 1.0 / 16, 1, seed, z);
 }
 
 static void open_rough(struct pressed *p, uint64_t seed) {
@@ -361,6 +365,64 @@ static void a_surface_alike_in_all_rows_is_a_profile(void **state) {
     check_relative(report[1].stretch, report[0].stretch, 1e-8);
 }
 
+/* Iterations of Newton's method, and whether a face has been dragged from its last load. */
+struct watched {
+    const struct full *full;
+    size_t iterations;
+    bool jumps, stops;
+};
+
+static int watch(void *context) {
+    struct watched *watched = context;
+    watched->jumps = watched->jumps || full_newton(watched->full)->drag > 0;
+    watched->iterations++;
+    return watched->stops && watched->jumps;
+}
+
+/* A steep surface that buckles, pressed within so many iterations. */
+static int press_surface(double most, struct watched *watched, struct full_report *report,
+                         struct error *err) {
+    enum { NODES = 12 };
+    struct grid grid = {NODES, NODES, 1, 1};
+    struct block block = {.model = MODEL_LAYERED,
+                          .poisson = 0.3,
+                          .height = 1,
+                          .layer_growth = 1.3,
+                          .weighting = GAP_DUAL};
+    struct full_options options = FULL_DEFAULTS;
+    struct full *full = NULL;
+    struct contact_state state;
+    double z[NODES * NODES];
+    options.limit = (struct full_limit){.seconds = most, .newton = 1};
+    draw(&grid, 0.33, 2, 8, z);
+    if (full_create(&full, &grid, &block, &options, err) != 0 || full_begin(full, z, err) != 0)
+        fail_msg("%s", err->text);
+    watched->full = full;
+    full_set_stop(full, watch, watched);
+    int status = full_press(full, 0.3, &state, report, err);
+    full_destroy(&full);
+    return status;
+}
+
+/* A limit that is used up in the rounds of a jump ends them at once, with its note. */
+static void a_limit_ends_the_rounds_of_a_surface(void **state) {
+    (void)state;
+    struct error err = {0};
+    struct full_report report;
+    struct watched first = {.stops = true}, limited = {.stops = false};
+    assert_int_equal(press_surface(0, &first, &report, &err), ERROR_STOPPED);
+    assert_true(first.jumps);
+    size_t before = report.newton;
+    err = (struct error){0};
+    assert_int_equal(press_surface((double)before + 1.5, &limited, &report, &err), ERROR_NUMERIC);
+    print_message("%zu iterations to the first round, %zu with the rounds: %s\n", before,
+                  report.newton, err.text);
+    assert_true(limited.jumps && report.newton > before + 1 && report.newton < before + 10);
+    assert_true(report.reached > 0 && report.reached < 0.3);
+    assert_non_null(strstr(err.text, "mean pressure of 0.3 E* was reached up to"));
+    assert_non_null(strstr(err.text, "time limit"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_groove_closes_on_its_plane),
@@ -368,6 +430,7 @@ int main(void) {
         cmocka_unit_test(flanks_do_not_pass_through_each_other),
         cmocka_unit_test(works_close_where_the_face_folds),
         cmocka_unit_test(a_surface_alike_in_all_rows_is_a_profile),
+        cmocka_unit_test(a_limit_ends_the_rounds_of_a_surface),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

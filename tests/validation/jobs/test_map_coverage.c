@@ -32,9 +32,6 @@ struct kind {
     double size;                   /* of what was left: of offsets and steps, in RMS heights */
     struct heights heights;
     double rms_ratio, material_ratio; /* of a plateau; 0: none */
-    /* Heights end at a bound, which a plane that was taken out blurs: parameters of the lower end
-     * of the material ratio curve do not count. */
-    bool bounded;
     enum left left;
     double lowest; /* share of intervals; 0: as usual */
 };
@@ -59,8 +56,7 @@ static const struct kind KINDS[] = {
     {"steps 0.2", LAW(0.8, 16, 4), .left = LEFT_STEPS, .size = 0.2, .lowest = 0.8},
     {"steps 0.5", LAW(0.8, 16, 4), .left = LEFT_STEPS, .size = 0.5, .lowest = 0.8},
     {"plateau", LAW(0.8, 16, 4), .rms_ratio = 0.25, .material_ratio = 0.8},
-    {"Weibull 1", LAW(0.8, 16, 4), .heights = {.type = HEIGHTS_WEIBULL_MIN, .shape = 1},
-     .bounded = true},
+    {"Weibull 1", LAW(0.8, 16, 4), .heights = {.type = HEIGHTS_WEIBULL_MIN, .shape = 1}},
     {"Weibull 2", LAW(0.8, 16, 4), .heights = {.type = HEIGHTS_WEIBULL_MIN, .shape = 2}},
     {"log-normal 0.4", LAW(0.8, 16, 4), .heights = {.type = HEIGHTS_LOGNORMAL, .shape = 0.4}},
 };
@@ -406,14 +402,6 @@ static void surfaces_measure(const struct kind *kind, struct generator *generato
 
 static const double LOWEST = 0.92, HIGHEST = 0.98;
 
-static bool rests_on_lower_end(const char *name) {
-    static const char *const THESE[] = {"Sk", "Svk", "Smr1", "Smr2", "Vvv"};
-    bool found = false;
-    for (size_t n = 0; n < sizeof THESE / sizeof *THESE; n++)
-        found = found || strcmp(THESE[n], name) == 0;
-    return found;
-}
-
 /* Returns whether the share of intervals that hold the truth is within the limits and 4 standard
  * errors. */
 static bool quantity_check(const struct kind *kind, const struct quantity *q, bool prints) {
@@ -437,8 +425,7 @@ static bool quantity_check(const struct kind *kind, const struct quantity *q, bo
     /* the intervals of few patches, of one surface, are many, and alike */
     const double allowed = (every_case() ? 4 : 5) * sqrt(0.95 * 0.05 / of);
     const double lowest = kind->lowest > 0 ? kind->lowest : LOWEST;
-    const bool counts =
-        of >= FEWEST_TOLD * (double)patch_count && !(kind->bounded && rests_on_lower_end(q->name));
+    const bool counts = of >= FEWEST_TOLD * (double)patch_count;
     const bool outside = share < LOWEST || share > HIGHEST;
     if (prints)
         printf("  %-18s %5.1f %% of %4.0f%s  error/spread %.2f  bias %+.2f\n", q->name, 100 * share,
