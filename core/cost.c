@@ -334,8 +334,8 @@ static double jumps(const struct grid *grid, const struct full_size *size, doubl
 
 double cost_full_loads(const struct grid *grid, const struct full_size *size, double rms_slope,
                        size_t count, const double *loads) {
-    double all = 0;
-    for (size_t l = 0; l < count; l++) {
+    double all = loads != NULL ? 0 : (double)count;
+    for (size_t l = 0; loads != NULL && l < count; l++) {
         double length = loads[l] - (l > 0 ? loads[l - 1] : 0);
         all += (1 + FAR_STEPS * fmax(0, length * rms_slope - FAR)) *
                jumps(grid, size, rms_slope, loads[l]);

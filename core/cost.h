@@ -65,7 +65,8 @@ struct full_size cost_full_size(const struct grid *grid, const struct block *blo
  * it. */
 double cost_full_contact(const struct grid *grid, const struct full_size *size, double loads);
 /* Returns the number of loads near each other whose work these rising ones take, in E* h': those
- * far from the one before are reached in several steps on steep faces, and faces may jump. */
+ * far from the one before are reached in several steps on steep faces, and faces may jump. NULL:
+ * all are near. */
 double cost_full_loads(const struct grid *grid, const struct full_size *size, double rms_slope,
                        size_t count, const double *loads);
 /* What iterations on a mesh of this size count of a limit of so many of these seconds. */

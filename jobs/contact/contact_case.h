@@ -51,7 +51,8 @@ struct contact_case {
     enum kinematics kinematics;                              /* of strain */
     double transition_depth; /* of columns (mesh.h), unless fine_height has it */
     double fine_height;      /* depth of the columns as wide as those of the face; 0: not given */
-    double rms_slope;        /* of the prescribed spectrum; 0 where no model needs it */
+    double rms_slope;  /* of the prescribed spectrum; 0 where no model needs it, as the next */
+    double rms_height; /* in the grid's unit */
     size_t level_count;
     struct contact_level levels[CONTACT_LEVELS_MOST]; /* rising: the last is the finest */
     struct companion_plan companions[COMPANION_COUNT];

@@ -220,6 +220,7 @@ struct contact_case map_press_case(const struct map_press *press, const struct g
                                .transition_depth = block->transition > 0 ? block->transition
                                                                          : FULL_DEFAULTS.transition,
                                .rms_slope = press->slope,
+                               .rms_height = press->height,
                                .level_count = 1,
                                .levels = {{.grid = *grid, .stride = 1}},
                                .load_count = 1,

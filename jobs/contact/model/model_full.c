@@ -95,6 +95,7 @@ static int check(struct contact_case *one_case, size_t model, struct values *val
             "lower blocks fold over the surface's valleys",
             height, HEIGHT_LEAST);
     one_case->rms_slope = rms_slope;
+    one_case->rms_height = rms_height;
     return 0;
 }
 

@@ -44,6 +44,13 @@ void sliding_full_destroy(struct sliding_full **sliding) {
     *sliding = NULL;
 }
 
+/* Of a case whose loads or waves are not known, as of a map. */
+static const double USUAL_LOAD = 0.1, USUAL_WAVE = 4;
+
+static double held_load(const struct contact_case *one_case) {
+    return one_case->loads != NULL ? one_case->loads[one_case->slip_load] : USUAL_LOAD;
+}
+
 /* What a step takes, of the scene and loads without friction. */
 static struct friction_work work_of(const struct quantity_scene *scene,
                                     const struct full_size *load) {
@@ -54,8 +61,9 @@ static struct friction_work work_of(const struct quantity_scene *scene,
         .coefficient = one_case->friction,
         .rms_slope = one_case->rms_slope,
         .poisson = scene->block.poisson,
-        .pressure = one_case->loads[one_case->slip_load],
-        .wave = (double)scene->grid.nx / (double)one_case->band.x,
+        .pressure = held_load(one_case),
+        .wave =
+            one_case->band.x > 0 ? (double)scene->grid.nx / (double)one_case->band.x : USUAL_WAVE,
         .leg = fmax((double)one_case->slide_steps, STEPS_LEAST),
     };
 }
@@ -272,15 +280,13 @@ static double leg_steps(double span, double points, double shear, double slip) {
 static double steps_expected(const struct quantity_scene *scene) {
     const struct contact_case *one_case = scene->one_case;
     const size_t steps = one_case->slide_steps;
-    const double load = one_case->loads[one_case->slip_load];
-    const double waves = surface_case_mean_side(&one_case->surface);
-    double height, slope, all = 0, legs = 1;
-    if (contact_case_scale(one_case, &height, &slope, NULL) != 0 || isnan(height))
-        return 0;
+    const double load = held_load(one_case), slope = one_case->rms_slope;
+    const double waves = surface_case_mean_side(&one_case->surface); /* 0 where not known */
     const double shear = one_case->friction * load * slope * scene->block.height * 2 /
-                         (1 - scene->block.poisson) / height;
-    const double slip = SLIP * one_case->friction * pow(load / 0.1, SLIP_POWER) *
+                         (1 - scene->block.poisson) / one_case->rms_height;
+    const double slip = SLIP * one_case->friction * pow(load / USUAL_LOAD, SLIP_POWER) *
                         (1 + SLIP_CELL * fmax(0, log2(waves / CELL_WAVES)));
+    double all = 0, legs = 1;
     for (size_t turn = 0; turn + 1 < one_case->slide_count; turn += steps, legs = 2)
         all += leg_steps(fabs(one_case->slide[turn + steps] - one_case->slide[turn]), (double)steps,
                          legs * shear, legs * slip);
@@ -297,8 +303,8 @@ double sliding_full_seconds(const struct quantity_scene *scene) {
     const struct friction_work work = work_of(scene, &size);
     const double pressing = one_case->slip_pressing ? PRESS_STEPS : 0;
     const double dragging = cost_friction_steps(&work, steps_expected(scene) + pressing);
-    const double held = cost_full_loads(&scene->grid, &size, one_case->rms_slope, 1,
-                                        &one_case->loads[one_case->slip_load]);
+    const double load = held_load(one_case);
+    const double held = cost_full_loads(&scene->grid, &size, one_case->rms_slope, 1, &load);
     return cost_full_contact(&scene->grid, &size, held + pressing) +
            (one_case->time_limit > 0 ? fmin(dragging, one_case->time_limit) : dragging);
 }

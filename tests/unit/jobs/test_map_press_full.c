@@ -282,6 +282,14 @@ static void costs_are_estimated(void **state) {
     assert_int_equal((long)cost.nodes, (long)series.mesh.nodes); /* of the mesh itself */
     assert_int_equal(cost.pressed.nx, 128);
     assert_true(cost.seconds > cost.error_seconds && cost.error_seconds > 0);
+    double path[] = {0, 0.5, 1};
+    struct press_block dragged = series.block;
+    dragged.friction = 0.3;
+    dragged.slide = path;
+    dragged.slide_count = 3;
+    dragged.slide_steps = 2;
+    const struct press_cost drag = press_cost_of(&press, &dragged, 1, 64, 1);
+    assert_true(drag.seconds > 2 * cost.seconds && drag.seconds < 1000 * cost.seconds);
     size_t nx = 0, ny = 0;
     struct press_room room = {.bytes = cost.bytes, .seconds = cost.seconds};
     assert_true(press_cost_fits(&cost, &room));
