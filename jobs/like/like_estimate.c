@@ -95,30 +95,25 @@ static int check_left(const struct fit *fit, struct error *err) {
                      SQUARES[left->moment], 100 * left->relative, 100 * MOST);
 }
 
-/* Noise counts where it governs the curvature of the map. */
-static struct like_noise noise_of(const struct fit *fit) {
-    const struct spectrum_fit *law = &fit->out->law;
-    const double share =
-        spectrum_fit_noise_share(law, fit->map->grid, fit->out->measured[PATCH_RMS_CURVATURE]);
-    return (struct like_noise){share > NOISE_SHARE_MOST ? law->noise : 0,
-                               2 * M_PI / law->trusted_to};
+double like_estimate_noise(const struct spectrum_fit *law, const struct grid *grid,
+                           double rms_curvature) {
+    const double whole = 2 * M_PI / grid_dx(grid); /* of wave numbers, along an axis */
+    return spectrum_fit_noise_share(law, grid, rms_curvature) > NOISE_SHARE_MOST
+               ? sqrt(law->noise * (law->profile ? whole : whole * whole))
+               : 0;
 }
 
-/* RMS of independent heights of this density at the points of the map. */
-static double rms_of(const struct like_noise *noise, const struct fit *fit) {
-    const double whole = 2 * M_PI / grid_dx(fit->map->grid); /* of wave numbers, along an axis */
-    return sqrt(noise->density * (fit->profile ? whole : whole * whole));
-}
-
-static int fit_table(struct fit *fit, const struct like_noise *noise, struct error *err) {
+static int fit_table(struct fit *fit, struct error *err) {
     struct like_estimate *out = fit->out;
     double squares[LIKE_MOMENTS] = {pow(out->measured[PATCH_RMS_HEIGHT], 2),
                                     pow(out->measured[PATCH_RMS_SLOPE], 2),
                                     pow(out->measured[PATCH_RMS_CURVATURE], 2)};
     const struct map_spectrum *rings = fit->ellipses != NULL ? fit->ellipses : fit->circles;
-    int status = like_table_measure(&out->table, rings, noise, err);
+    const struct like_noise noise = {out->noise > 0 ? out->law.noise : 0,
+                                     2 * M_PI / out->law.trusted_to};
+    int status = like_table_measure(&out->table, rings, &noise, err);
     if (status == 0)
-        status = like_table_calibrate(&out->table, rings, fit->choices->detrend, &out->cell, noise,
+        status = like_table_calibrate(&out->table, rings, fit->choices->detrend, &out->cell, &noise,
                                       squares, &out->left, err);
     if (status == 0)
         status = check_left(fit, err);
@@ -191,11 +186,10 @@ int like_estimate_measure(struct like_estimate *out, const struct measured_map *
         status = error_set(err, ERROR_INPUT, "the map is flat");
     if (status == 0)
         status = measure_rings(&fit, err);
-    const struct like_noise noise = status == 0 ? noise_of(&fit) : (struct like_noise){0};
     if (status == 0 && choices->spectrum != LIKE_SPECTRUM_GIVEN)
-        out->noise = rms_of(&noise, &fit);
+        out->noise = like_estimate_noise(&out->law, map->grid, out->measured[PATCH_RMS_CURVATURE]);
     if (status == 0 && choices->spectrum == LIKE_SPECTRUM_TABLE)
-        status = fit_table(&fit, &noise, err);
+        status = fit_table(&fit, err);
     if (status == 0 && choices->spectrum == LIKE_SPECTRUM_FIT)
         status = fit_law(&fit, err);
     if (status == 0 && choices->heights == LIKE_HEIGHTS_QUANTILES)

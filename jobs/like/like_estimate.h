@@ -39,6 +39,10 @@ struct like_estimate {
  * values. *out is to be cleared in any case. */
 int like_estimate_measure(struct like_estimate *out, const struct measured_map *map,
                           const struct like_choices *choices, struct error *err);
+/* Returns the RMS of the noise of a map, as the law that fits it has it: 0 where it does not govern
+ * the curvature. */
+double like_estimate_noise(const struct spectrum_fit *law, const struct grid *grid,
+                           double rms_curvature);
 void like_estimate_clear(struct like_estimate *estimate);
 
 #endif

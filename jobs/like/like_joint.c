@@ -203,6 +203,9 @@ int like_joint_measure(struct like_estimate *out, struct like_joint *joint, size
         cell_of_first(maps[0].grid, &out->cell);
     if (status == 0 && choices->heights == LIKE_HEIGHTS_QUANTILES)
         status = heights_fit(&fit, out, err);
+    if (status == 0 && choices->spectrum == LIKE_SPECTRUM_FIT)
+        out->noise =
+            like_estimate_noise(&fit.fits[0], maps[0].grid, out->measured[PATCH_RMS_CURVATURE]);
     joint->between = fit.law.between;
     for (size_t m = 0; m < count && status == 0; m++)
         joint->trusted[m] = (struct spectrum_fit_request){

@@ -309,25 +309,50 @@ static void noise_is_in_sub_maps(cJSON *surface, double rms) {
     cJSON_Delete(parameters);
 }
 
+/* Adds white noise of a share of the RMS height; returns its RMS. */
+static double add_white(struct height_map *map, double share) {
+    const size_t points = grid_points(&map->grid);
+    double *white = calloc(points, sizeof *white), square = 0;
+    assert_non_null(white);
+    random_uniform((struct random_key){3, 0, 0}, STREAM_HEIGHTS, 0, points, white);
+    for (size_t n = 0; n < points; n++)
+        square += map->z[n] * map->z[n] / (double)points;
+    for (size_t n = 0; n < points; n++)
+        map->z[n] += share * sqrt(12 * square) * (white[n] - 0.5); /* a mean square of 1/12 */
+    free(white);
+    return share * sqrt(square);
+}
+
+/* Of several maps the first is compared with sub-maps, which have its noise. */
+static void noise_of_the_first_of_several(void **state) {
+    (void)state;
+    struct height_map maps[2] = {patch(false, 2), patch(false, 3)};
+    const struct like_source sources[2] = {SOURCE, SOURCE};
+    struct error err = {0};
+    const double rms = add_white(&maps[0], 0.05);
+    cJSON *surface = cJSON_CreateObject();
+    if (like_fit_together(surface, 2, maps, sources, &err) != 0)
+        fail_msg("%s", err.text);
+    const double noise = number(surface, "/like/noise") * number(surface, "/like/wavelength");
+    print_message("noise %.4g of %.4g\n", noise, rms);
+    assert_true(fabs(noise / rms - 1) < 0.05);
+    cJSON_Delete(surface);
+    for (size_t m = 0; m < 2; m++)
+        height_map_clear(&maps[m]);
+}
+
 /* Noise in a map is not in its surfaces: their slope is that of the map without it. */
 static void noise_stays_out(void **state) {
     (void)state;
     static const double NOISE = 0.05; /* of the RMS height */
     struct height_map map = patch(false, 2);
     cJSON *clean = fitted("{}", &map);
-    size_t points = grid_points(&map.grid);
-    double *white = calloc(points, sizeof *white), square = 0;
-    assert_non_null(white);
-    random_uniform((struct random_key){3, 0, 0}, STREAM_HEIGHTS, 0, points, white);
-    for (size_t n = 0; n < points; n++)
-        square += map.z[n] * map.z[n] / (double)points;
-    for (size_t n = 0; n < points; n++)
-        map.z[n] += NOISE * sqrt(12 * square) * (white[n] - 0.5); /* a mean square of 1/12 */
+    const double rms = add_white(&map, NOISE);
     cJSON *noisy = fitted("{}", &map);
     double slope = number(noisy, "/rms_slope"), without = number(clean, "/rms_slope");
     print_message("slope %.4f of %.4f\n", slope, without);
     assert_true(fabs(slope / without - 1) < 0.03);
-    noise_is_in_sub_maps(noisy, NOISE * sqrt(square));
+    noise_is_in_sub_maps(noisy, rms);
     assert_null(json_at(clean, "/like/noise"));
     assert_non_null(strstr(
         cJSON_GetStringValue(json_at(cJSON_GetObjectItem(noisy, "like"), "/prepared")), "noise"));
@@ -335,7 +360,6 @@ static void noise_stays_out(void **state) {
         cJSON_GetStringValue(json_at(cJSON_GetObjectItem(clean, "like"), "/prepared")), "noise"));
     cJSON_Delete(noisy);
     cJSON_Delete(clean);
-    free(white);
     height_map_clear(&map);
 }
 
@@ -520,6 +544,7 @@ int main(void) {
         cmocka_unit_test(laws),
         cmocka_unit_test(grooves),
         cmocka_unit_test(noise_stays_out),
+        cmocka_unit_test(noise_of_the_first_of_several),
         cmocka_unit_test(a_bow_is_named),
         cmocka_unit_test(parts_that_differ_are_named),
     };
