@@ -1,10 +1,11 @@
 -- What results.list calls by name: v(k, n, v, e), case, name, value, standard error. Scalars have their names; with ".theory" over
--- their theory, with ".grid" what the theory of the grid is over that, with ".law" their law difference in percent. Points of curves
+-- their theory, with ".grid" what the theory of the grid is over that, with ".difference" their law difference, with ".law" the same in percent. Points of curves
 -- are quantity:series:model@x, those of contact on the finest level.
 CREATE TEMP VIEW v AS
 SELECT "case" AS k, scalar AS n, value AS v, standard_error AS e FROM case_scalars
 UNION ALL SELECT "case", scalar || '.theory', value / theory, standard_error / theory FROM case_scalars
 UNION ALL SELECT "case", scalar || '.grid', grid_theory / theory, 0 FROM case_scalars
+UNION ALL SELECT "case", scalar || '.difference', law_difference, law_standard_error FROM case_scalars
 UNION ALL SELECT "case", scalar || '.law', 100 * law_difference / value, 100 * law_standard_error / abs(value) FROM case_scalars
 UNION ALL SELECT p."case", quantity || ':' || ifnull(series, '') || ':' || ifnull(model, '') || '@' || round(x, 6), y, standard_error
           FROM curve_points p WHERE level IS NULL OR level = (SELECT max(level) FROM curve_points q WHERE q."case" = p."case");
