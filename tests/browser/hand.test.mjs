@@ -16,7 +16,7 @@ const picture = async (page, name) => PICTURES && page.screenshot({ path: join(P
 // Steep profiles are not brought to the load: their case has no values.
 const STEEP = { name: "steep", kind: "contact", seed: 1, realisations: 2,
   surface: { dimension: 1, hurst: 0.8, wavelength_ratio: 2, length_ratio: 2, points_per_wavelength: 6, rms_slope: [0.1, 1.9] },
-  contact: { model: "full", levels: [3, 6], block_height: { lengths: 1 }, time_limit: 0.2, pressures: { values: [5] } } };
+  contact: { model: "full", levels: [3, 6], block_height: { lengths: 1 }, time_limit: 0.01, pressures: { values: [5] } } };
 const TARGET = { name: "target", kind: "contact", seed: 1, target: { error: 0.02 }, surface: { dimension: 1, hurst: 0.8, wavelength_ratio: 2 },
   contact: { model: "halfspace", pressures: { values: [0.1, 0.2] } } };
 const PATCHES = { name: "patches", kind: "contact", seed: 1, realisations: 1,
