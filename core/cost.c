@@ -221,7 +221,7 @@ struct full_fit {
 };
 static const struct full_fit PROFILE_FULL = {400, 55, 2.5, 35, 1e4},
                              SURFACE_FULL = {1800, 130, 4, 60, 7e4};
-/* They hold for so many degrees of freedom, and rise by this power of these. */
+/* They hold for so many degrees of freedom or more, and rise by this power of fewer. */
 static const double FULL_FREEDOM = 40000, CACHE_POWER = 0.2;
 /* Arrays take so many times their bytes, with what heaps keep between them. */
 static const double MEMORY_ROOM = 1.03;
@@ -306,7 +306,7 @@ struct full_size cost_full_size(const struct grid *grid, const struct block *blo
  * which stay in the caches. `linear` is an iteration of the linear equations. */
 static struct full_fit nanoseconds(const struct grid *grid, const struct full_size *size) {
     struct full_fit out = grid_is_profile(grid) ? PROFILE_FULL : SURFACE_FULL;
-    const double part = pow(size->degrees_of_freedom / FULL_FREEDOM, CACHE_POWER);
+    const double part = fmin(1, pow(size->degrees_of_freedom / FULL_FREEDOM, CACHE_POWER));
     out.linear += out.each * size->linear + (size->pressures ? out.pressures : 0);
     out.newton *= part;
     out.linear *= part;
