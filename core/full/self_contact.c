@@ -17,6 +17,8 @@ static const double BIN = 4;
 /* Bends of the face at a node lie in one turn: sharper than this to the right, into the block, they
  * count as to the left. */
 static const double SHARPEST = 1.1 * M_PI;
+/* The middle of an arc. */
+static const double MIDDLE = 0.5;
 static const size_t NONE = SIZE_MAX;
 /* Steps of Newton's method towards the nearest point of an arc. */
 enum { PROJECTIONS = 20 };
@@ -132,7 +134,8 @@ static void measure_pair(const struct mesh *mesh, const double *u, struct self_p
 }
 
 /* Moves t to the point of the curve nearest to the node, over to other arcs where that is beyond an
- * end. */
+ * end. Beyond the end of a fold that is on the node's own flank, which it does not meet: the gap is
+ * infinite. */
 static void project(const struct mesh *mesh, const double *u, struct self_pair *pair) {
     for (int step = 0; step < PROJECTIONS; step++) {
         struct arc arc = arc_of(mesh, u, pair->arc, pair->at);
@@ -150,6 +153,9 @@ static void project(const struct mesh *mesh, const double *u, struct self_pair *
             break;
     }
     measure_pair(mesh, u, pair);
+    struct point own = arc_of(mesh, u, pair->node, MIDDLE).along;
+    if (pair->normal[0] * own.y - pair->normal[1] * own.x >= 0)
+        pair->gap = INFINITY;
 }
 
 /* --- the search --- */
@@ -212,7 +218,7 @@ static bool is_across(const struct self_contact *self, enum self_kind kind, size
  * REACH. */
 static bool nearest(const struct self_contact *self, const double *u, enum self_kind kind,
                     size_t node, struct self_pair *out) {
-    static const double MIDDLE = 0.5, NEAR = 3;
+    static const double NEAR = 3;
     const struct mesh *mesh = self->mesh;
     size_t bins = bins_of(mesh), at = bin_of(mesh, point_of(mesh, u, node).x);
     size_t around = bins < 3 ? bins : 3;
@@ -234,9 +240,7 @@ static bool nearest(const struct self_contact *self, const double *u, enum self_
     if (!(least < NEAR))
         return false;
     project(mesh, u, out);
-    struct point own = arc_of(mesh, u, node, MIDDLE).along;
-    return fabs(out->gap) < REACH && is_across(self, kind, node, out->arc) &&
-           out->normal[0] * own.y - out->normal[1] * own.x < 0;
+    return fabs(out->gap) < REACH && is_across(self, kind, node, out->arc);
 }
 
 static size_t node_behind(const struct mesh *mesh, size_t node) {
