@@ -1,6 +1,7 @@
 #include "core/map/gaussian_filter.h"
 #include "core/statistics/measured_map.h"
 #include "core/surface/transform.h"
+#include <gsl/gsl_statistics_double.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -288,38 +289,13 @@ static void plain_mean(struct work *work) {
             work->mean[i] /= work->weight != NULL ? work->weight[i] : work->x[column] * work->y[j];
 }
 
-/* Returns value number n in rising order, from 0; reorders the values (Hoare 1961). */
-static double select_value(double *values, size_t count, size_t n) {
-    size_t low = 0, high = count - 1;
-    while (low < high) {
-        const double pivot = values[low + (high - low) / 2];
-        size_t i = low, j = high;
-        for (;;) {
-            while (values[i] < pivot)
-                i++;
-            while (values[j] > pivot)
-                j--;
-            if (i >= j)
-                break;
-            const double swapped = values[i];
-            values[i++] = values[j];
-            values[j--] = swapped;
-        }
-        if (n <= j)
-            high = j;
-        else
-            low = j + 1;
-    }
-    return values[n];
-}
-
 /* Returns the distance from the mean surface at which weights end. */
 static double distance_most(struct work *work) {
     size_t count = 0;
     for (size_t i = 0; i < work->points; i++)
         if (!isnan(work->z[i]))
             work->distance[count++] = fabs(work->z[i] - work->base - work->mean[i]);
-    return MEDIANS * select_value(work->distance, count, count / 2);
+    return MEDIANS * gsl_stats_select(work->distance, 1, count, count / 2);
 }
 
 /* Makes one step: the mean surface with weights by the distance from the last one. A point without

@@ -1,5 +1,6 @@
 #include "core/statistics/grooves/groove_background.h"
 #include "core/surface/spectrum.h"
+#include <gsl/gsl_statistics_double.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -20,45 +21,6 @@ struct groove_background {
     double *power,
         *count; /* of each ring: median over MEDIAN, and how many waves; owned by power */
 };
-
-/* Returns number k in rising order of n values, which are moved: those before it are not above it
- * (Hoare 1961). */
-static double select_value(double *values, size_t n, size_t k) {
-    size_t low = 0, high = n - 1;
-    while (low < high) {
-        const double pivot = values[low + (high - low) / 2];
-        size_t a = low, b = high;
-        for (;;) {
-            while (values[a] < pivot)
-                a++;
-            while (values[b] > pivot)
-                b--;
-            if (a >= b)
-                break;
-            const double kept = values[a];
-            values[a++] = values[b];
-            values[b--] = kept;
-        }
-        if (k <= b)
-            high = b;
-        else
-            low = b + 1;
-    }
-    return values[k];
-}
-
-static double median_of(double *values, size_t n) {
-    if (n == 0)
-        return 0;
-    const double middle = select_value(values, n, n / 2);
-    double below = middle;
-    if (n % 2 == 0) {
-        below = values[0];
-        for (size_t a = 1; a < n / 2; a++)
-            below = fmax(below, values[a]);
-    }
-    return (below + middle) / 2;
-}
 
 /* Returns which ring a wave of mx, my periods is in, as a real number. */
 static double ring_of(const struct groove_background *b, double mx, double my) {
@@ -103,7 +65,7 @@ static int measure(struct groove_background *b, struct error *err) {
         }
     }
     for (size_t r = 0; r < b->rings && status == 0; r++)
-        b->power[r] = median_of(sorted + start[r], (size_t)b->count[r]) / MEDIAN;
+        b->power[r] = gsl_stats_median(sorted + start[r], 1, (size_t)b->count[r]) / MEDIAN;
     free(sorted);
     free(start);
     return status;
@@ -166,7 +128,7 @@ static double sides(const struct groove_background *b, size_t m, int from, int t
                 near[n++] =
                     modes_power(b->modes, (size_t)at, 0) * pow((double)at / (double)m, fall);
         }
-    return median_of(near, n) / MEDIAN;
+    return gsl_stats_median(near, 1, n) / MEDIAN;
 }
 
 static double both_sides(const struct groove_background *b, size_t m) {
@@ -220,9 +182,9 @@ static void neighbours_find(struct neighbours *out, const struct groove_backgrou
 static double neighbours(const struct groove_background *b, double mx, double my, bool parts) {
     struct neighbours near;
     neighbours_find(&near, b, mx, my);
-    double most = median_of(near.all, near.count);
+    double most = gsl_stats_median(near.all, 1, near.count);
     for (size_t p = 0; p < PARTS && parts; p++)
-        most = fmax(most, median_of(near.part[p], near.part_count[p]));
+        most = fmax(most, gsl_stats_median(near.part[p], 1, near.part_count[p]));
     return most / MEDIAN;
 }
 
@@ -276,9 +238,9 @@ static double ratio_near(const struct groove_background *b, double mx, double my
             all[count++] = ratio;
             quarter[q][quarter_count[q]++] = ratio;
         }
-    const double middle = median_of(all, count);
+    const double middle = gsl_stats_median(all, 1, count);
     for (size_t q = 0; q < QUARTERS; q++)
-        most = fmax(most, median_of(quarter[q], quarter_count[q]));
+        most = fmax(most, gsl_stats_median(quarter[q], 1, quarter_count[q]));
     return (most > END * middle ? most : middle) / MEDIAN;
 }
 
