@@ -449,6 +449,8 @@ check-book: all
 # Needs sqlite3, as the documents do.
 check-results: all
 	@tests/install-deps "" sqlite3 sqlite3
+	@sed '/^|/!d' $(BOOK)/cases.md >$(BUILD)/cases.list
+	@$(BOOK)/list-cases $(BOOK)/*.md | diff $(BUILD)/cases.list - || { echo "cases.md is not what the pages say: make book PAGES=cases"; exit 1; }
 	@tests/check-results --self-test
 	@tests/check-results $(BUILD)/rugo
 .PHONY: check-results
