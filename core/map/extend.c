@@ -2,6 +2,7 @@
 #include "core/error.h"
 #include "core/map/map_law.h"
 #include "core/map/membrane.h"
+#include "core/statistics/grooves/groove_extension.h"
 #include "core/statistics/heights/normal_scores.h"
 #include "core/statistics/heights/roughness.h"
 #include <math.h>
@@ -30,7 +31,10 @@ struct cell_law {
 };
 
 struct extension {
-    const struct height_map *map; /* borrowed */
+    const struct height_map *map; /* borrowed, or `rest` */
+    struct map_grooves grooves;
+    struct height_map
+        rest; /* without grooves, with heights of its own; no heights: there are none */
     enum detrend trend;
     struct grid cell;
     struct roughness roughness;
@@ -326,7 +330,9 @@ int extension_draw(struct extension *e, struct random_key key, double *z, struct
     }
     for (size_t p = 0; p < points && status == 0; p++)
         z[p] += e->roughness.mean;
-    return status;
+    out->grooves = e->grooves;
+    return status == 0 ? groove_extension_add(&e->grooves, &e->map->grid, &e->cell, 1, z, err)
+                       : status;
 }
 
 /* --- together --- */
@@ -339,12 +345,43 @@ void extension_destroy(struct extension **extension) {
     law_clear(&gone->drawn);
     free(gone->held);
     free(gone->cell_z);
+    free(gone->rest.z);
     free(gone);
     *extension = NULL;
 }
 
 const struct grid *extension_cell(const struct extension *extension) {
     return &extension->cell;
+}
+
+int extension_grooves(struct map_grooves *out, const struct height_map *map, struct error *err) {
+    const size_t points = grid_points(&map->grid);
+    double *filled = array_create(points, sizeof *filled);
+    if (filled == NULL)
+        return error_memory(err, points * sizeof *filled, "a map without holes");
+    memcpy(filled, map->z, points * sizeof *filled);
+    const struct measured_map whole = {&map->grid, filled, BOUNDARY_OPEN};
+    int status = membrane_fill(&map->grid, filled, BOUNDARY_OPEN, err);
+    if (status == 0)
+        status = map_grooves_find(out, &whole, err);
+    free(filled);
+    return status;
+}
+
+/* Takes the grooves out of the map, to go on by themselves: no law of a random face has them. */
+static int take_grooves(struct extension *e, struct error *err) {
+    const struct grid *grid = &e->map->grid;
+    const size_t points = grid_points(grid);
+    int status = extension_grooves(&e->grooves, e->map, err);
+    if (status != 0 || e->grooves.families == 0)
+        return status;
+    e->rest = (struct height_map){.grid = *grid, .z = array_create(points, sizeof(double))};
+    if (e->rest.z == NULL)
+        return error_memory(err, points * sizeof(double), "a map without its grooves");
+    memcpy(e->rest.z, e->map->z, points * sizeof(double));
+    map_grooves_take(&e->grooves, grid, e->rest.z);
+    e->map = &e->rest;
+    return 0;
 }
 
 static int check(const struct extension *e, struct error *err) {
@@ -380,7 +417,6 @@ int extension_create(struct extension **out, const struct height_map *map, enum 
                      struct error *err) {
     const struct grid *grid = &map->grid;
     const bool profile = grid_is_profile(grid);
-    const struct measured_map measured = {grid, map->z, BOUNDARY_OPEN};
     struct extension *e = array_create(1, sizeof *e);
     *out = NULL;
     if (e == NULL)
@@ -389,10 +425,13 @@ int extension_create(struct extension **out, const struct height_map *map, enum 
     e->trend = trend;
     e->cell = (struct grid){2 * grid->nx, profile ? 1 : 2 * grid->ny, 2 * grid->lx,
                             profile ? grid->ly : 2 * grid->ly};
+    int status = take_grooves(e, err);
+    const struct measured_map measured = {grid, e->map->z, BOUNDARY_OPEN};
     map_roughness_measure(&measured, &e->roughness);
     e->translated = fabs(e->roughness.skewness) > SKEWNESS_MOST ||
                     fabs(e->roughness.kurtosis - 3) > KURTOSIS_MOST;
-    int status = extension_fill(e, err);
+    if (status == 0)
+        status = extension_fill(e, err);
     if (status != 0)
         extension_destroy(&e);
     *out = e;

@@ -5,6 +5,7 @@
 
 #include "core/map/detrend.h"
 #include "core/map/height_map.h"
+#include "core/statistics/grooves/map_grooves.h"
 #include "core/surface/conditional.h"
 
 struct extend_result {
@@ -15,15 +16,19 @@ struct extend_result {
     bool law_holds;  /* the deviance of the fit (spectrum_fit.h) is within its limit */
     bool translated; /* heights are not Gaussian: normal scores (normal_scores.h) are extended, in
                         which all of the above but draw.difference is, and have the map's heights */
+    struct map_grooves grooves; /* that go on (groove_extension.h), the same in all draws */
     bool drawn; /* law and heights are draws, too; false: no sub-map had any, and they are those
                    of the map */
 };
 
+/* Finds the grooves of an open map, with holes or none. Errors as of map_grooves_find(). */
+int extension_grooves(struct map_grooves *out, const struct height_map *map, struct error *err);
+
 /* Draws that hold one map, by one thread at a time. */
 struct extension;
-/* Fits the law of an open map, with holes or none; trend: what was taken out of it, so that each
- * draw has its own. Borrows the map. ERROR_INPUT for maps to which no law can be fitted or that are
- * too large; ERROR_MEMORY. */
+/* Fits the law of an open map, with holes or none, of what is left without its grooves; trend: what
+ * was taken out of it, so that each draw has its own. Borrows the map. ERROR_INPUT for maps to
+ * which no law can be fitted or that are too large; ERROR_MEMORY. */
 int extension_create(struct extension **out, const struct height_map *map, enum detrend trend,
                      struct error *err);
 void extension_destroy(struct extension **extension);

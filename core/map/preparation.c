@@ -12,6 +12,7 @@
 #include "core/map/scan_lines.h"
 #include "core/map/tip.h"
 #include "core/plain_text.h"
+#include "core/statistics/grooves/groove_extension.h"
 #include "core/statistics/grooves/map_grooves.h"
 #include "core/sum.h"
 #include <math.h>
@@ -675,11 +676,22 @@ static int filter(struct preparation_record *record, struct height_map *map,
     return status == 0 ? filter_one(record, map, second, false, asked->robust, err) : status;
 }
 
+/* What is done with grooves, of a map that had this grid. */
+static void write_extended(const struct map_grooves *grooves, const struct height_map *map,
+                           const struct grid *before, char out[160]) {
+    char period[40], beyond[40];
+    if (grooves->families == 0)
+        return;
+    preparation_length_text(map, grooves->family[0].period, period);
+    preparation_length_text(map, groove_extension_period(&grooves->family[0], before), beyond);
+    snprintf(out, 160, "; grooves every %s go on every %s, so that whole ones fit", period, beyond);
+}
+
 static int extend(struct preparation_record *record, struct height_map *map,
                   const struct preparation *asked, struct error *err) {
     static const double USUAL = 1.5; /* power that is no misfit */
     struct extend_result done;
-    char noise[40], power[40] = "";
+    char noise[40], power[40] = "", grooves[160] = "";
     if (!asked->extend)
         return 0;
     if (asked->window != MAP_WINDOW_NONE)
@@ -690,6 +702,7 @@ static int extend(struct preparation_record *record, struct height_map *map,
                          "--extend: the map repeats already (by %s); --boundary open says that it "
                          "does not",
                          record->boundary_by);
+    const struct grid before = map->grid;
     int status = map_extend(map, record->detrend, asked->extend_seed, &done, err);
     if (status != 0)
         return error_context(err, "--extend");
@@ -697,13 +710,14 @@ static int extend(struct preparation_record *record, struct height_map *map,
     record->boundary_by = "extension";
     if (done.draw.power > USUAL)
         snprintf(power, sizeof power, "; %.3g times the law's power", done.draw.power);
+    write_extended(&done.grooves, map, &before, grooves);
     preparation_note(
-        record, "extend", "to %zu by %zu points, draw %llu, %s off the map, %.3g of %s%s%s%s%s",
+        record, "extend", "to %zu by %zu points, draw %llu, %s off the map, %.3g of %s%s%s%s%s%s",
         map->grid.nx, map->grid.ny, (unsigned long long)asked->extend_seed,
         height_text(map, done.draw.difference, noise), done.draw.held,
         done.noise_seen ? "its noise" : "1/1000 RMS", power, done.law_holds ? "" : "; no law holds",
         done.translated ? "; by normal scores" : "",
-        done.drawn ? "" : "; by the law of the map itself");
+        done.drawn ? "" : "; by the law of the map itself", grooves);
     return 0;
 }
 

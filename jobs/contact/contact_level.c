@@ -1,4 +1,5 @@
 #include "jobs/contact/contact_level.h"
+#include "core/statistics/grooves/groove_extension.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,6 +27,17 @@ static int resample_translated(const struct contact_level *level,
     return status;
 }
 
+/* Adds the grooves of a realisation, or those of a held patch, `times` their heights. */
+static int add_grooves(const struct surface_case *surface, const struct grid *grid,
+                       const struct level_source *source, double times, double *z,
+                       struct error *err) {
+    const struct held_patch *held = surface->held;
+    if (held != NULL && held->grooves != NULL)
+        return groove_extension_add(held->grooves, &held->map.grid, grid, times, z, err);
+    grooves_add(surface->grooves, grid, source->key, times * source->rms_height, z);
+    return 0;
+}
+
 /* Grooves are no waves of the band: the random part alone is sampled. */
 static int resample_grooved(const struct contact_level *level, const struct surface_case *surface,
                             const struct level_source *source, const double *z, double *out,
@@ -35,10 +47,11 @@ static int resample_grooved(const struct contact_level *level, const struct surf
     if (rest == NULL)
         return error_memory(err, points * sizeof *rest, "a surface without its grooves");
     memcpy(rest, z, points * sizeof *rest);
-    grooves_add(surface->grooves, &surface->grid, source->key, -source->rms_height, rest);
-    int status = resample(level, surface, rest, out, err);
+    int status = add_grooves(surface, &surface->grid, source, -1, rest, err);
     if (status == 0)
-        grooves_add(surface->grooves, &level->grid, source->key, source->rms_height, out);
+        status = resample(level, surface, rest, out, err);
+    if (status == 0)
+        status = add_grooves(surface, &level->grid, source, 1, out, err);
     free(rest);
     return status;
 }

@@ -106,8 +106,8 @@ static int refuse_grooves(const struct fit *fit, struct error *err) {
     const char *unit = fit->unit;
     return error_set(
         err, ERROR_INPUT,
-        "the map has grooves (every %.4g%s%s, %.3g%s%s deep; p-value %.2g), and surfaces that hold "
-        "a map, are like several of them or have grooves of their own are not made with them: give "
+        "the map has grooves (every %.4g%s%s, %.3g%s%s deep; p-value %.2g), and surfaces that "
+        "are like several maps or have grooves of their own are not made with them: give "
         "\"degroove\": true, which takes them out",
         first->period, *unit != '\0' ? " " : "", unit, first->fit.depth, *unit != '\0' ? " " : "",
         unit, first->p_value);
@@ -119,8 +119,7 @@ static int take_grooves(struct fit *fit, const cJSON *surface, struct error *err
     int status = map_grooves_find(&fit->grooves.found, &fit->map, err);
     if (status != 0 || fit->grooves.found.families == 0)
         return status;
-    if (fit->count > 1 || fit->source->hold ||
-        cJSON_GetObjectItemCaseSensitive(surface, "grooves") != NULL)
+    if (fit->count > 1 || cJSON_GetObjectItemCaseSensitive(surface, "grooves") != NULL)
         return refuse_grooves(fit, err);
     fit->rest = array_create(points, sizeof *fit->rest);
     if (fit->rest == NULL)
@@ -473,8 +472,9 @@ static int estimate_together(struct fit *fit, struct error *err) {
 static int make_grooves(struct fit *fit, cJSON *surface, const struct height_map *map,
                         struct error *err) {
     const struct measured_map whole = {&map->grid, map->z, BOUNDARY_OPEN};
-    int status =
-        like_grooves_put(surface, &fit->grooves, &map->grid, fit->wavelength, fit->unit, err);
+    int status = like_grooves_put(
+        surface, &fit->grooves,
+        &(struct like_grooves_of){&map->grid, fit->wavelength, fit->unit, fit->source->hold}, err);
     return status == 0 ? patch_measure(&whole, fit->estimate.measured, err) : status;
 }
 

@@ -1,4 +1,5 @@
 #include "jobs/like/like_grooves.h"
+#include "core/statistics/grooves/groove_extension.h"
 #include "core/surface/spectrum.h"
 #include "jobs/surface/surface_case.h"
 #include "schema/json/field.h"
@@ -92,26 +93,32 @@ static int mirror(struct made *cross, const struct made *first, struct error *er
     return 0;
 }
 
-static void write_words(struct like_grooves *grooves, const struct made *made, double wavelength,
-                        const char *unit) {
+/* What was found, and what is made of it; held: beyond the map alone, whose grooves stay. */
+static void write_words(struct like_grooves *grooves, const struct made *made,
+                        const struct like_grooves_of *of) {
     const struct map_groove *first = &grooves->found.family[0];
-    const bool angled = isfinite(first->angle);
+    const bool angled = isfinite(first->angle), crossed = grooves->found.families > 1;
+    const char *unit = of->unit, *gap = *unit != '\0' ? " " : "";
+    const double period =
+        of->hold ? groove_extension_period(first, of->map) : made->period * of->wavelength;
     char from[40] = "", to[40] = "";
-    if (angled) {
+    if (angled)
         snprintf(from, sizeof from, " at %.4g degrees", first->angle / DEGREE);
+    if (angled && !of->hold)
         snprintf(to, sizeof to, " at %.4g degrees", made->angle);
-    }
     snprintf(
         grooves->words, sizeof grooves->words,
         "grooves: every %.5g%s%.10s%s, %.3g%s%.10s deep (+- %.2g %%), taken out of the law and "
-        "made every %.5g%s%.10s%s, as the cell has whole numbers of periods%s",
-        first->period, *unit != '\0' ? " " : "", unit, from, first->fit.depth,
-        *unit != '\0' ? " " : "", unit, 100 * grooves->depth_error, made->period * wavelength,
-        *unit != '\0' ? " " : "", unit, to, grooves->found.families > 1 ? ", and mirrored" : "");
+        "%s every %.5g%s%.10s%s, as the cell has whole numbers of periods%s",
+        first->period, gap, unit, from, first->fit.depth, gap, unit, 100 * grooves->depth_error,
+        of->hold ? "held as they are, and beyond the map made" : "made", period, gap, unit, to,
+        !crossed || of->hold ? "" : ", and mirrored");
 }
 
-int like_grooves_put(cJSON *surface, struct like_grooves *grooves, const struct grid *map,
-                     double wavelength, const char *unit, struct error *err) {
+int like_grooves_put(cJSON *surface, struct like_grooves *grooves, const struct like_grooves_of *of,
+                     struct error *err) {
+    const struct grid *map = of->map;
+    const double wavelength = of->wavelength;
     const struct map_groove *family = grooves->found.family;
     const bool crossed = grooves->found.families > 1;
     struct surface_case read;
@@ -130,7 +137,7 @@ int like_grooves_put(cJSON *surface, struct like_grooves *grooves, const struct 
         status = error_memory(err, sizeof *grooves, "grooves of a study");
     grooves->depth_error = family[0].fit.depth_error / family[0].fit.depth;
     if (status == 0)
-        write_words(grooves, &first, wavelength, unit);
+        write_words(grooves, &first, of);
     surface_case_clear(&read);
     return status;
 }

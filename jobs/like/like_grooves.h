@@ -13,12 +13,18 @@ struct like_grooves {
     char words[LIKE_GROOVES_TEXT]; /* what was found, and what is made */
 };
 
+struct like_grooves_of {
+    const struct grid *map; /* of the heights */
+    double wavelength;      /* lambda_s, in its unit */
+    const char *unit;
+    bool hold; /* surfaces hold the map, whose grooves go on */
+};
+
 /* Writes the found grooves into the object "surface" of a study whose spectrum, scale and cell are
- * there, with whole numbers of periods along its sides, and fills the rest of `grooves`. map: of
- * the heights; wavelength: lambda_s in its unit, which has the name `unit`. ERROR_INPUT: two
- * families that are not mirror images of each other on the cell, or what surface_case_read()
- * refuses; ERROR_MEMORY. */
-int like_grooves_put(cJSON *surface, struct like_grooves *grooves, const struct grid *map,
-                     double wavelength, const char *unit, struct error *err);
+ * there, with whole numbers of periods along its sides, and fills the rest of `grooves`.
+ * ERROR_INPUT: two families that are not mirror images of each other on the cell, or what
+ * surface_case_read() refuses; ERROR_MEMORY. */
+int like_grooves_put(cJSON *surface, struct like_grooves *grooves, const struct like_grooves_of *of,
+                     struct error *err);
 
 #endif

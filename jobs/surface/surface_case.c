@@ -616,8 +616,10 @@ void surface_case_clear(struct surface_case *surface) {
     free(surface->counter);
     free(surface->counter_face);
     free(surface->plateau);
-    if (surface->held != NULL)
+    if (surface->held != NULL) {
         height_map_clear(&surface->held->map);
+        free(surface->held->grooves);
+    }
     free(surface->held);
     *surface = (struct surface_case){0};
 }
@@ -636,7 +638,11 @@ int surface_case_hold(struct surface_case *surface, size_t nx, size_t ny, const 
     *held = (struct held_patch){
         .map = {.grid = {nx, ny, dx * (double)nx, dx * (double)ny}, .z = copy}, .trend = trend};
     surface->held = held;
-    return 0;
+    if (surface->grooves == NULL)
+        return 0;
+    held->grooves = array_create(1, sizeof *held->grooves);
+    return held->grooves != NULL ? extension_grooves(held->grooves, &held->map, err)
+                                 : error_memory(err, sizeof *held->grooves, "grooves of a patch");
 }
 
 /* Returns the highest wave number along a side of so many points and lambda_s. */

@@ -14,8 +14,9 @@
 
 /* A measured patch that surfaces hold in their first rows and columns (core/map/extend.h). */
 struct held_patch {
-    struct height_map map; /* owned, in lambda_s */
-    enum detrend trend;    /* that was taken out of it */
+    struct height_map map;       /* owned, in lambda_s */
+    enum detrend trend;          /* that was taken out of it */
+    struct map_grooves *grooves; /* of it, owned; NULL: the case has none */
 };
 
 struct surface_case {
@@ -61,7 +62,8 @@ int surface_case_fill(struct surface_case *out, struct values *values,
 int surface_case_dimension(struct values *values);
 void surface_case_clear(struct surface_case *surface);
 /* Makes surfaces hold nx by ny heights, so far apart as the points of the grid, which is twice as
- * large along each side; z is copied. ERROR_MEMORY. */
+ * large along each side; z is copied. Where the case has grooves, those of the patch are found,
+ * which go on. ERROR_MEMORY. */
 int surface_case_hold(struct surface_case *surface, size_t nx, size_t ny, const double *z,
                       enum detrend trend, struct error *err);
 

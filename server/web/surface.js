@@ -1,4 +1,4 @@
-// A measured surface: a file that is dropped or chosen is sent, and shown as the page for print and as a table.
+// A measured surface: the files that are dropped or chosen are sent, and shown as the page for print and as a table; several are maps of one surface.
 import { choice, make, measured, number, tick, words } from "/web/elements.js";
 import { beginFrom } from "/web/new.js";
 import { request } from "/web/session.js";
@@ -8,7 +8,7 @@ const DETRENDS = ["auto", "none", "mean", "plane", "quadratic"];
 const BOUNDARIES = ["auto", "open", "periodic"];
 const COLUMNS = ["auto", "xz", "xyz", "map"];
 const LARGE = 2 ** 23; // bytes: a server that refuses so much may hang up before its answer is read
-const kept = { file: null, options: { detrend: "auto", boundary: "auto" } }; // while the tab is open
+const kept = { files: [], options: { detrend: "auto", boundary: "auto" } }; // while the tab is open
 
 const ENTITIES = { "&lt;": "<", "&gt;": ">", "&quot;": '"', "&amp;": "&" };
 
@@ -31,6 +31,13 @@ function shown(group, name) {
   return measured(value, group[`${name}_error`]);
 }
 
+/** "a.x3p", "a.x3p and b.sdf", "a.x3p and 2 more". */
+function named(files) {
+  const [first, second] = files;
+  if (files.length < 2) return first.name;
+  return files.length === 2 ? `${first.name} and ${second.name}` : `${first.name} and ${files.length - 1} more`;
+}
+
 function isError(group, name) {
   return /_(error|low|high)$/.test(name) && name.replace(/_(error|low|high)$/, "") in group;
 }
@@ -49,60 +56,65 @@ export function showSurface(root, signal) {
   let turn = 0;
 
   async function look() {
-    if (!kept.file) return;
-    const mine = ++turn, { file } = kept;
-    message.textContent = `Looking at ${file.name} …`;
+    if (kept.files.length === 0) return;
+    const mine = ++turn, { files } = kept;
+    message.textContent = `Looking at ${named(files)} …`;
     fault.textContent = "";
     try {
-      const svg = await (await send(file, "svg")).text();
-      if (mine === turn) show(file, svg);
+      const svg = await (await send(files, "svg")).text();
+      if (mine === turn) show(files, svg);
     } catch (error) {
       if (signal.aborted || mine !== turn) return;
       place.replaceChildren();
-      tell(error, file);
+      tell(error, files);
     }
   }
 
-  function send(file, format, more = {}) {
-    const query = new URLSearchParams({ name: file.name, format, ...more });
+  /** One file is sent as it is, several as a form: maps of one surface. */
+  function send(files, format, more = {}) {
+    const [first] = files, several = files.length > 1;
+    const query = new URLSearchParams({ ...(several ? { together: "true" } : { name: first.name }), format, ...more });
     for (const [name, value] of Object.entries(kept.options)) if (value && value !== "auto") query.set(name, value);
-    return request(`/v1/characterise?${query}`, { method: "POST", body: file, signal, headers: { "Content-Type": "application/octet-stream" } });
+    const form = new FormData();
+    for (const file of several ? files : []) form.append("map", file);
+    return request(`/v1/characterise?${query}`, { method: "POST", signal, ...(several ? { body: form } : { body: first, headers: { "Content-Type": "application/octet-stream" } }) });
   }
 
-  function tell(error, file) {
+  function tell(error, files) {
     message.textContent = "";
-    const cut = error.status === undefined && file.size > LARGE ? " It may take no file as large as this one." : "";
+    const cut = error.status === undefined && files.reduce((size, file) => size + file.size, 0) > LARGE ? " It may take no files as large as these." : "";
     fault.textContent = [error.message + cut, ...(error.faults ?? []).map((one) => `${one.pointer}: ${one.detail}`)].join("; ");
   }
 
   /** The new-study form, filled with surfaces like this one, or with surfaces that hold it and go on. */
-  async function begin(file, more = {}) {
+  async function begin(files, more = {}) {
     message.textContent = "Fitting …";
     fault.textContent = "";
     try {
-      beginFrom(await (await send(file, "study", more)).json());
+      beginFrom(await (await send(files, "study", more)).json());
     } catch (error) {
-      if (!signal.aborted) tell(error, file);
+      if (!signal.aborted) tell(error, files);
     }
   }
 
-  function show(file, svg) {
-    const found = numbersOf(svg), base = file.name.replace(/\.[^.]*$/, "");
+  function show(files, svg) {
+    const found = numbersOf(svg), [file] = files, one = files.length === 1;
+    const base = file.name.replace(/\.[^.]*$/, "") + (one ? "" : "-together");
     message.textContent = "";
     place.replaceChildren(make("div", { class: "tools" },
       make("button", { onclick: () => save(svg, "image/svg+xml", `${base}.svg`) }, "Save the page (SVG)"),
       make("button", { onclick: () => save(JSON.stringify(found, null, 1), "application/json", `${base}.json`) }, "Save the numbers (JSON)"),
-      make("button", { onclick: () => begin(file) }, "Make a study of surfaces like this"),
-      make("button", { onclick: () => begin(file, { hold: "true" }) }, "Make a study of surfaces that hold this")),
-      make("div", { class: "scroll sheet", tabindex: "0", role: "figure", "aria-label": `page about ${file.name}` },
-        make("img", { class: "picture", alt: `map, heights, spectrum and scales of ${file.name}, with the main parameters`, src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}` })),
-      make("details", {}, make("summary", {}, "All values"), found.map?.unit === "m" ? make("p", {}, "Lengths are in metres.") : "", tableOf(found)));
+      make("button", { onclick: () => begin(files) }, `Make a study of surfaces like ${one ? "this" : "these"}`),
+      one ? make("button", { onclick: () => begin(files, { hold: "true" }) }, "Make a study of surfaces that hold this") : ""),
+      make("div", { class: "scroll sheet", tabindex: "0", role: "figure", "aria-label": `page about ${named(files)}` },
+        make("img", { class: "picture", alt: one ? `map, heights, spectrum and scales of ${file.name}, with the main parameters` : `spectra of ${named(files)}, and the law that fits them together`, src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}` })),
+      make("details", {}, make("summary", {}, "All values"), (found.map ?? found.together)?.unit === "m" ? make("p", {}, "Lengths are in metres.") : "", tableOf(found)));
   }
 
   function take(files) {
     if (files.length === 0) return;
-    [kept.file] = files;
-    drop.querySelector("b").textContent = kept.file.name;
+    kept.files = [...files];
+    drop.querySelector("b").textContent = named(kept.files);
     look();
   }
   const set = (name) => (value) => { kept.options[name] = value.trim(); look(); };
@@ -112,9 +124,9 @@ export function showSurface(root, signal) {
   const over = (event) => { event.preventDefault(); drop.classList.add("over"); };
   const drop = make("label", { class: "drop", ondragenter: over, ondragover: over, ondragleave: () => drop.classList.remove("over"),
     ondrop: (event) => { event.preventDefault(); drop.classList.remove("over"); take(event.dataTransfer.files); } },
-    make("b", {}, kept.file?.name ?? "Drop a file here, or choose one"),
-    make("small", {}, "X3P, SDF, GWY, NumPy, or heights as text; nothing of it is kept"),
-    make("input", { type: "file", "aria-label": "File of a measured surface", onchange: (event) => take(event.target.files) }));
+    make("b", {}, kept.files.length > 0 ? named(kept.files) : "Drop a file here, or choose one"),
+    make("small", {}, "X3P, SDF, GWY, NumPy, or heights as text; several at once are maps of one surface; nothing of it is kept"),
+    make("input", { type: "file", multiple: true, "aria-label": "Files of a measured surface", onchange: (event) => take(event.target.files) }));
   root.append(make("h1", {}, "Measured surface"), drop,
     make("div", { class: "tools" }, choice("Trend", DETRENDS, kept.options.detrend, set("detrend")), choice("Boundary", BOUNDARIES, kept.options.boundary, set("boundary")),
       text("Layer", "layer", "the first"), choice("Columns", COLUMNS, kept.options.columns, set("columns")), text("Spacing", "dx", "0.5um"), text("Unit of x and y", "unit", "um"), text("Unit of heights", "z_unit", "nm"), text("Part", "crop", "x,y,width,height"),

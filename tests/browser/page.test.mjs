@@ -174,11 +174,21 @@ function patch() {
   return rows.join("\n");
 }
 
-const dropped = (page, name, content) => page.evaluate((called, text) => {
+/** Heights as text of 150 waves with random phases that fall as those of rough surfaces do. */
+function rough() {
+  const waves = Array.from({ length: 150 }, (_, n) => {
+    const length = 40 * 0.97 ** n, angle = 2.4 * n;
+    return [2 * Math.PI * Math.cos(angle) / length, 2 * Math.PI * Math.sin(angle) / length, 7.1 * n * n, length ** 0.8];
+  });
+  const height = (x, y) => waves.reduce((sum, [kx, ky, phase, amplitude]) => sum + amplitude * Math.cos(kx * x + ky * y + phase), 0);
+  return Array.from({ length: 60 }, (_, j) => Array.from({ length: 80 }, (__, i) => height(i, j).toFixed(4)).join(",")).join("\n");
+}
+
+const dropped = (page, name, content, ...others) => page.evaluate((called, text, more) => {
   const data = new DataTransfer();
-  data.items.add(new File([text], called));
+  for (const one of [called, ...more]) data.items.add(new File([text], one));
   document.querySelector(".drop").dispatchEvent(new DragEvent("drop", { bubbles: true, cancelable: true, dataTransfer: data }));
-}, name, content);
+}, name, content, others);
 
 test("a measured surface is dropped, shown as a page and a table, shown again otherwise, and saved", async (t) => {
   const page = await tab(t, [422]);
@@ -203,6 +213,22 @@ test("a measured surface is dropped, shown as a page and a table, shown again ot
   assert.ok((await page.$eval("textarea", (one) => one.value)).includes("sha256"));
   await page.goBack();
   await page.waitForSelector(".sheet img", { timeout: WAIT_MS }); // the file is looked at again
+  await click(page, "Make a study of surfaces that hold this");
+  await says(page, "1 case of 16 realisations");
+  await page.goBack();
+  await page.waitForSelector(".sheet img", { timeout: WAIT_MS });
+  await dropped(page, "one.csv", rough(), "two.csv", "three.csv");
+  await says(page, "one.csv and 2 more");
+  await page.waitForFunction(() => document.querySelector(".sheet img")?.alt.startsWith("spectra of one.csv"), { timeout: WAIT_MS });
+  await click(page, "All values");
+  assert.equal(await value("together", "maps"), "3");
+  assert.equal(await value("files", "3"), "three.csv");
+  await picture(page, "surfaces-together");
+  await click(page, "Make a study of surfaces like these");
+  await says(page, "1 case of 100 realisations");
+  assert.ok((await page.$eval("textarea", (one) => one.value)).includes("\"others\""));
+  await page.goBack();
+  await page.waitForSelector(".sheet img", { timeout: WAIT_MS });
   await dropped(page, "nothing.npy", "no map");
   await says(page, "nothing.npy: ");
   assert.equal(await page.$(".sheet"), null, "what was shown before is not taken for it");

@@ -1,6 +1,7 @@
 /* rugo characterise FILE: what a height map in a file is like. */
 #include "jobs/maps/map_planes.h"
 #include "server/command/command.h"
+#include "server/command/input_file.h"
 #include "server/command/map/like_study.h"
 #include "server/command/map/map_file.h"
 #include "server/command/map/map_output.h"
@@ -18,6 +19,7 @@ struct characterise_options {
     const char *trust_from, *trust_to; /* NULL: by the map */
     int format;
     bool all, together, hold;
+    const char *form;             /* boundary of the form on standard input; NULL: there is none */
     const char *group;            /* NULL: none is asked for */
     const char *picture, *report; /* NULL: none, as the next */
     const char *acf, *psd;
@@ -39,6 +41,9 @@ static const struct option_row OPTIONS[] = {
      "print all values and tables in place of one screen"},
     {"together", 0, OPTION_FLAG, 0, 0, AT(together), NULL, NULL,
      "several files are of one surface: fit one law to them; --report draws their spectra"},
+    {"form", 0, OPTION_TEXT, 0, 0, AT(form), "BOUNDARY", NULL,
+     "standard input (-) is multipart/form-data with the files, and for --format study perhaps the "
+     "study that names them"},
     {"group", 0, OPTION_TEXT, 0, 0, AT(group), "NAME[,NAME]", NULL,
      "print these groups of values and tables, as text or JSON"},
     {"picture", 0, OPTION_TEXT, 0, 0, AT(picture), "FILE.svg|FILE.png", NULL,
@@ -58,7 +63,7 @@ enum { FORMAT_TEXT, FORMAT_JSON, FORMAT_SVG, FORMAT_STUDY };
 
 static int print_study(const struct map_figure *figure, bool hold, struct error *err) {
     cJSON *study = NULL;
-    int status = like_study_make(&study, figure->map, figure->record, hold, err);
+    int status = like_study_make(&study, 1, figure->map, figure->record, hold, err);
     if (status == 0)
         status = output_document(study, err);
     cJSON_Delete(study);
@@ -249,77 +254,152 @@ static int check_together(const struct characterise_options *options, struct err
         return error_set(err, ERROR_INPUT,
                          "--together goes with --report, and not with --trust-from, --trust-to, "
                          "--picture, --acf and --psd");
-    return options->format <= FORMAT_JSON
-               ? 0
-               : error_set(err, ERROR_INPUT, "--together prints --format text or json");
+    return 0;
 }
 
-static int run_together(const struct characterise_options *options, const char *const *arguments) {
+static int print_together(const struct characterise_options *options, struct named_values *found,
+                          struct error *err) {
     static const char ONE_SCREEN[] = "files,together,maps";
-    struct named_values found = {0};
-    struct error err = {0};
-    int status = check_report(options->report, &err);
-    if (status == 0)
-        status = check_group(options, &err);
-    if (status == 0)
-        status = check_together(options, &err);
-    if (status == 0)
-        status = together_run(arguments, &options->map, options->report, &found, &err);
     const bool text = options->format == FORMAT_TEXT;
     const char *groups =
         options->group == NULL && text && !options->all ? ONE_SCREEN : options->group;
-    if (status == 0)
-        status = keep_groups(&found, groups, &err);
+    int status = keep_groups(found, groups, err);
     if (status == 0 && text)
-        named_values_print(stdout, &found);
-    else if (status == 0 && named_values_print_json(stdout, &found))
+        named_values_print(stdout, found);
+    else if (status == 0 && named_values_print_json(stdout, found))
         putchar('\n');
     else if (status == 0)
-        status = error_memory(&err, sizeof found, "the characterisation");
+        status = error_memory(err, sizeof *found, "the characterisation");
+    return status;
+}
+
+static int study_together(const struct characterise_options *options, const char *const *files,
+                          struct error *err) {
+    cJSON *study = NULL;
+    int status = options->report == NULL
+                     ? together_study(files, &options->map, options->hold, &study, err)
+                     : error_set(err, ERROR_INPUT, "--report does not go with --format study");
+    if (status == 0)
+        status = output_document(study, err);
+    cJSON_Delete(study);
+    return status;
+}
+
+static int characterise_together(const struct characterise_options *options,
+                                 const char *const *files, struct error *err) {
+    struct named_values found = {0};
+    int status = check_report(options->report, err);
+    if (status == 0)
+        status = check_group(options, err);
+    if (status == 0)
+        status = check_together(options, err);
+    if (status == 0 && options->format == FORMAT_STUDY)
+        return study_together(options, files, err);
+    if (status == 0)
+        status = together_run(files, &options->map, options->report, options->format == FORMAT_SVG,
+                              &found, err);
+    if (status == 0 && options->format != FORMAT_SVG)
+        status = print_together(options, &found, err);
     if (status == 0 && (fflush(stdout) != 0 || ferror(stdout) != 0))
-        status = error_set(&err, ERROR_SYSTEM, "cannot write to standard output");
+        status = error_set(err, ERROR_SYSTEM, "cannot write to standard output");
     named_values_clear(&found);
-    return status == 0 ? EXIT_DONE : command_fail("characterise", &err);
+    return status;
+}
+
+static int characterise_one(const struct characterise_options *options, const char *const *files,
+                            struct error *err) {
+    struct height_map map = {0};
+    struct map_characterisation measured = {0};
+    struct named_values found = {0};
+    struct preparation_record record = {0};
+    int status = files[1] == NULL
+                     ? check_report(options->report, err)
+                     : error_set(err, ERROR_INPUT,
+                                 "several files; --together fits them as maps of one surface");
+    if (status == 0)
+        status = check_group(options, err);
+    if (status == 0)
+        status = check_planes(options, err);
+    if (status == 0)
+        status = map_options_read(&map, &record, files[0], &options->map, err);
+    if (status == 0) {
+        status = characterise(&measured, &found, &map, &record, options, err);
+        if (status != 0)
+            error_context(err, "%s", files[0]);
+    }
+    if (status == 0 && options->picture != NULL)
+        status = draw(options->picture, files[0], &map, record.boundary, err);
+    if (status == 0)
+        status = write_planes(options, &map, record.boundary, err);
+    const struct map_figure figure = {&measured, &found, &map, &record};
+    if (status == 0 && options->report != NULL)
+        status = output_file_draw(options->report, draw_page, &figure, err);
+    if (status == 0)
+        status = keep_groups(&found, options->group, err);
+    if (status == 0)
+        status = print(options, &figure, err);
+    named_values_clear(&found);
+    map_characterisation_clear(&measured);
+    height_map_clear(&map);
+    return status;
+}
+
+/* --- files of a form --- */
+
+static int characterise_files(const struct characterise_options *options, const char *const *files,
+                              struct error *err) {
+    return options->together ? characterise_together(options, files, err)
+                             : characterise_one(options, files, err);
+}
+
+/* Fits the study of a form to its files, and prints it. */
+static int print_sent(const struct characterise_options *options, const struct form *form,
+                      struct error *err) {
+    if (options->format != FORMAT_STUDY)
+        return error_set(err, ERROR_INPUT,
+                         "a study that is sent with files goes with the format study");
+    char *text = NULL;
+    size_t size;
+    const struct form only = {.count = 1, .files = {form->study}};
+    int status = form_read(&only, form->study.name, &text, &size, err);
+    if (status == 0)
+        status = like_study_fit_sent(&text, &size, &options->map, err);
+    if (status == 0)
+        puts(text);
+    free(text);
+    return status == 0 ? output_flush(err) : status;
+}
+
+static int characterise_form(const struct characterise_options *options, const char *path,
+                             struct error *err) {
+    static const size_t FORM_MOST = (size_t)1 << 36; /* bytes, as of a file */
+    struct characterise_options own = *options;
+    struct form form = {0};
+    char *text = NULL;
+    size_t size;
+    int status = strcmp(path, "-") == 0 && options->map.name == NULL
+                     ? input_file_read(path, FORM_MOST, &text, &size, err)
+                     : error_set(err, ERROR_INPUT,
+                                 "--form goes with standard input (-) alone, and not with --name");
+    if (status == 0)
+        status = form_take(&form, text, size, options->form, err);
+    const char *files[FORM_FILES_MOST + 1] = {NULL};
+    for (size_t f = 0; f < form.count; f++)
+        files[f] = form.files[f].name;
+    own.map.form = &form;
+    if (status == 0 && form.study.name != NULL)
+        status = print_sent(&own, &form, err);
+    else if (status == 0)
+        status = characterise_files(&own, files, err);
+    form_clear(&form);
+    return status;
 }
 
 static int run(const void *values, const char *const *arguments) {
     const struct characterise_options *options = values;
-    if (options->together)
-        return run_together(options, arguments);
-    struct height_map map = {0};
-    struct map_characterisation measured = {0};
-    struct named_values found = {0};
     struct error err = {0};
-    struct preparation_record record = {0};
-    int status = arguments[1] == NULL
-                     ? check_report(options->report, &err)
-                     : error_set(&err, ERROR_INPUT,
-                                 "several files; --together fits them as maps of one surface");
-    if (status == 0)
-        status = check_group(options, &err);
-    if (status == 0)
-        status = check_planes(options, &err);
-    if (status == 0)
-        status = map_options_read(&map, &record, arguments[0], &options->map, &err);
-    if (status == 0) {
-        status = characterise(&measured, &found, &map, &record, options, &err);
-        if (status != 0)
-            error_context(&err, "%s", arguments[0]);
-    }
-    if (status == 0 && options->picture != NULL)
-        status = draw(options->picture, arguments[0], &map, record.boundary, &err);
-    if (status == 0)
-        status = write_planes(options, &map, record.boundary, &err);
-    const struct map_figure figure = {&measured, &found, &map, &record};
-    if (status == 0 && options->report != NULL)
-        status = output_file_draw(options->report, draw_page, &figure, &err);
-    if (status == 0)
-        status = keep_groups(&found, options->group, &err);
-    if (status == 0)
-        status = print(options, &figure, &err);
-    named_values_clear(&found);
-    map_characterisation_clear(&measured);
-    height_map_clear(&map);
+    int status = options->form != NULL ? characterise_form(options, arguments[0], &err)
+                                       : characterise_files(options, arguments, &err);
     return status == 0 ? EXIT_DONE : command_fail("characterise", &err);
 }
 

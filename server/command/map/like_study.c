@@ -334,11 +334,17 @@ static int fit_maps(cJSON *document, const char *study, const struct like_option
     return status;
 }
 
-static int fit_study(cJSON *document, const char *study, struct error *err) {
+/* sent: the files that were sent with the study; NULL: they are read from the disk. */
+static int fit_study(cJSON *document, const char *study, const struct map_options *sent,
+                     struct error *err) {
     struct like_options options = {0};
     cJSON *surface = cJSON_GetObjectItemCaseSensitive(document, "surface");
     cJSON *like = cJSON_DetachItemFromObjectCaseSensitive(surface, "like");
     int status = like_options_parse(&options, like, err);
+    if (sent != NULL) {
+        options.map.form = sent->form;
+        options.map.convert = sent->convert;
+    }
     if (status == 0)
         status = fit_maps(document, study, &options, err);
     cJSON_Delete(like);
@@ -378,11 +384,30 @@ int like_study_fit(char **text, size_t *size, const char *path, const char *cons
     *fitted = false;
     int status = open_study(&document, *text, *size, overrides, err);
     if (status == 0 && document != NULL && is_unfitted(json_at(document, LIKE))) {
-        status = fit_study(document, path, err);
+        status = fit_study(document, path, NULL, err);
         if (status == 0)
             status = print(document, text, size, err);
         *fitted = status == 0;
     }
+    cJSON_Delete(document);
+    return status == 0 ? 0 : error_context(err, "%s", LIKE);
+}
+
+int like_study_fit_sent(char **text, size_t *size, const struct map_options *sent,
+                        struct error *err) {
+    cJSON *document = NULL;
+    if (*size > JSON_LIMITS.bytes)
+        return error_set(err, ERROR_INPUT, "a study of %zu bytes; allowed: %zu", *size,
+                         JSON_LIMITS.bytes);
+    int status = json_parse(*text, *size, NULL, &document, err);
+    if (status != 0)
+        return error_context(err, "the study");
+    if (!is_unfitted(json_at(document, LIKE)))
+        status = error_set(err, ERROR_INPUT, "no name of a file that was sent, nor a list of them");
+    if (status == 0)
+        status = fit_study(document, NULL, sent, err);
+    if (status == 0)
+        status = print(document, text, size, err);
     cJSON_Delete(document);
     return status == 0 ? 0 : error_context(err, "%s", LIKE);
 }
@@ -404,23 +429,34 @@ static int check_study(const cJSON *document, struct error *err) {
     return status == 0 ? 0 : error_context(err, "no study can be made of the map");
 }
 
-int like_study_make(cJSON **out, const struct height_map *map,
-                    const struct preparation_record *record, bool hold, struct error *err) {
-    enum { REALISATIONS = 100, DRAWS = 16, NAME_SIZE = 80 };
-    char steps[PREPARATION_STEPS_TEXT], name[NAME_SIZE];
-    struct like_source source = source_of(record, steps);
-    cJSON *study = cJSON_CreateObject();
-    source.off_stated = true; /* by the study that is written */
-    source.hold = hold;
-    source.uncertainty = LIKE_UNCERTAINTY_POSTERIOR;
-    snprintf(name, sizeof name, "like %.70s", source.file != NULL ? source.file : "a map");
-    cJSON *surface = NULL;
-    if (study != NULL && field_put_text(study, "name", name) &&
-        field_put_text(study, "kind", "statistics") &&
-        cJSON_AddNumberToObject(study, "realisations", hold ? DRAWS : REALISATIONS) != NULL)
+static bool study_begin(cJSON *study, const char *file, size_t count, bool hold) {
+    enum { REALISATIONS = 100, DRAWS = 16, NAME_SIZE = 100 };
+    char name[NAME_SIZE];
+    int used = snprintf(name, sizeof name, "like %.70s", file != NULL ? file : "a map");
+    if (count > 1)
+        snprintf(name + used, sizeof name - (size_t)used, " and %zu more", count - 1);
+    return field_put_text(study, "name", name) && field_put_text(study, "kind", "statistics") &&
+           cJSON_AddNumberToObject(study, "realisations", hold ? DRAWS : REALISATIONS) != NULL;
+}
+
+int like_study_make(cJSON **out, size_t count, const struct height_map *maps,
+                    const struct preparation_record *records, bool hold, struct error *err) {
+    struct sources {
+        struct like_source source[JOINT_PATCHES_MOST];
+        char steps[JOINT_PATCHES_MOST][PREPARATION_STEPS_TEXT];
+    } *of = array_create(1, sizeof *of);
+    cJSON *study = cJSON_CreateObject(), *surface = NULL;
+    for (size_t m = 0; m < count && of != NULL; m++) {
+        of->source[m] = source_of(&records[m], of->steps[m]);
+        of->source[m].off_stated = true; /* by the study that is written */
+        of->source[m].hold = hold;
+        of->source[m].uncertainty = LIKE_UNCERTAINTY_POSTERIOR;
+    }
+    if (study != NULL && of != NULL && study_begin(study, of->source[0].file, count, hold))
         surface = cJSON_AddObjectToObject(study, "surface");
-    int status =
-        surface != NULL ? like_fit(surface, map, &source, err) : error_memory(err, 0, "a study");
+    int status = surface != NULL ? like_fit_together(surface, count, maps, of->source, err)
+                                 : error_memory(err, 0, "a study");
+    free(of);
     if (status == 0)
         status = check_study(study, err);
     if (status == 0)

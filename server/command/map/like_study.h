@@ -4,6 +4,7 @@
 #define RUGO_SERVER_COMMAND_MAP_LIKE_STUDY_H
 
 #include "core/map/preparation.h"
+#include "server/command/map/map_file.h"
 #include <cjson/cJSON.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -16,10 +17,16 @@
 int like_study_fit(char **text, size_t *size, const char *path, const char *const *overrides,
                    bool *fitted, struct error *err);
 
-/* Makes a study of statistics of surfaces like the map, fitted, for the caller to delete. hold: the
- * surfaces hold the map, which is in the study.
+/* Does so with a study that was sent with its files: those of sent->form alone are read, and
+ * converted as `sent` says, whatever the study does. ERROR_INPUT, too, where no file is to be
+ * fitted. */
+int like_study_fit_sent(char **text, size_t *size, const struct map_options *sent,
+                        struct error *err);
+
+/* Makes a study of statistics of surfaces like one map or several of one surface, each with its
+ * record, fitted, for the caller to delete. hold: the surfaces hold the map, which is in the study.
  * ERROR_INPUT where its reader would refuse what was measured. */
-int like_study_make(cJSON **out, const struct height_map *map,
-                    const struct preparation_record *record, bool hold, struct error *err);
+int like_study_make(cJSON **out, size_t count, const struct height_map *maps,
+                    const struct preparation_record *records, bool hold, struct error *err);
 
 #endif

@@ -87,6 +87,13 @@ static int open_content(struct opened *opened, unsigned seconds, struct error *e
     return status == 0 ? 0 : error_context(err, "%s", opened->source.name);
 }
 
+static int read_file(struct opened *opened, const char *path, const struct form *form,
+                     struct error *err) {
+    size_t *size = &opened->source.size;
+    return form != NULL ? form_read(form, path, &opened->data, size, err)
+                        : input_file_read(path, FILE_MOST, &opened->data, size, err);
+}
+
 static int read_layer(struct height_map *out, const char *path, const struct map_options *options,
                       struct preparation_record *record, struct error *err) {
     struct opened opened = {.source = {.name = name_of(path, options),
@@ -96,7 +103,7 @@ static int read_layer(struct height_map *out, const char *path, const struct map
     unsigned seconds = 0;
     int status = read_seconds(&seconds, options->convert, err);
     if (status == 0)
-        status = input_file_read(path, FILE_MOST, &opened.data, &source->size, err);
+        status = read_file(&opened, path, options->form, err);
     source->data = opened.data;
     if (status == 0)
         status = open_content(&opened, seconds, err);

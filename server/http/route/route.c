@@ -40,7 +40,7 @@ static const struct route ROUTES[] = {
      {"name",     "layer",      "columns",     "dx",      "unit",       "z_unit",    "crop",
       "stride",   "lines",      "lines_along", "despike", "deconvolve", "transpose", "rotate",
       "detrend",  "degroove",   "fill",        "denoise", "filter",     "resample",  "window",
-      "boundary", "trust_from", "trust_to",    "format"}},
+      "boundary", "trust_from", "trust_to",    "hold",    "together",   "format"}},
     {"POST", "/v1/check", ROLE_SUBMIT, handle_check, {NULL}},
     {"GET", "/v1/templates", ROLE_NONE, handle_templates, {NULL}},
     {"GET", "/v1/workers", ROLE_READ, handle_workers, {NULL}},
@@ -322,14 +322,21 @@ static bool has_body(const struct exchange *exchange) {
            exchange_header(exchange, "Transfer-Encoding") != NULL;
 }
 
-static bool check_media(struct exchange *exchange, const struct route *route) {
-    const char *wanted = takes_file(route) ? "application/octet-stream" : "application/json";
+static bool is_media(struct exchange *exchange, const char *wanted) {
     const char *type = exchange_header(exchange, "Content-Type");
     size_t length = type != NULL ? strcspn(type, "; \t") : 0;
-    char detail[64];
-    if (!has_body(exchange) || (length == strlen(wanted) && strncasecmp(type, wanted, length) == 0))
+    return length == strlen(wanted) && strncasecmp(type, wanted, length) == 0;
+}
+
+static bool check_media(struct exchange *exchange, const struct route *route) {
+    const char *wanted = takes_file(route) ? "application/octet-stream" : "application/json";
+    const char *other = takes_file(route) ? FORM_MEDIA : NULL; /* several of them */
+    char detail[96];
+    if (!has_body(exchange) || is_media(exchange, wanted) ||
+        (other != NULL && is_media(exchange, other)))
         return true;
-    snprintf(detail, sizeof detail, "a body must be %s", wanted);
+    snprintf(detail, sizeof detail, "a body must be %s%s%s", wanted, other != NULL ? " or " : "",
+             other != NULL ? other : "");
     answer_problem(exchange, 415, detail, NULL);
     return false;
 }

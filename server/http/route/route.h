@@ -5,6 +5,7 @@
 
 #include "server/http/exchange.h"
 
+#define FORM_MEDIA "multipart/form-data" /* of several files */
 enum { SEGMENT_SIZE = 256, QUERY_NAMES_MOST = 32 };
 typedef void route_handler(struct exchange *exchange, const char *id);
 

@@ -1,4 +1,5 @@
-/* Characterises a map in a file that the peer sends: in a process of its own, a few at a time. */
+/* Characterises a map, or several of one surface, in files that the peer sends: in a process of its
+ * own, a few at a time. */
 #include "server/http/accept.h"
 #include "server/http/route/own_process.h"
 #include "server/http/route/route.h"
@@ -6,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 enum {
     MAPS_MOST = 2,            /* at a time */
@@ -14,7 +16,7 @@ enum {
     MEMORY_FACTOR = 16,       /* of the largest file that is taken */
     MEMORY_LEAST = 512 << 20, /* for small ones */
     ANSWER_MOST = 64 << 20,   /* bytes: tables of large maps are a few */
-    ARGUMENTS_MOST = 32,
+    ARGUMENTS_MOST = 40,
     OPTION_SIZE = 320,
 };
 
@@ -46,13 +48,15 @@ static const struct {
                {"boundary", "boundary", false},
                {"trust_from", "trust-from", false},
                {"trust_to", "trust-to", false},
-               {"hold", "hold", true}};
+               {"hold", "hold", true},
+               {"together", "together", true}};
 enum { OPTION_COUNT = sizeof OPTIONS / sizeof *OPTIONS };
 
 struct command_line {
     size_t count;
     const char *arguments[ARGUMENTS_MOST];
     char texts[OPTION_COUNT][OPTION_SIZE];
+    char form[96];
 };
 
 /* Words of the query stay in their options whatever they begin with: "--name=-x". */
@@ -91,6 +95,47 @@ static enum answer_format read_format(struct exchange *exchange, struct fault_li
     return (enum answer_format)format;
 }
 
+/* Finds the boundary of a form in the body's media type; false where the body is no form. *length
+ * is 0 where the boundary is missing. */
+static bool find_boundary(struct exchange *exchange, const char **boundary, size_t *length) {
+    static const char KEY[] = "boundary=";
+    const char *type = exchange_header(exchange, "Content-Type");
+    *boundary = NULL;
+    *length = 0;
+    if (type == NULL || strncasecmp(type, FORM_MEDIA, strlen(FORM_MEDIA)) != 0)
+        return false;
+    const char *at = strcasestr(type, KEY);
+    if (at == NULL)
+        return true;
+    at += strlen(KEY);
+    *boundary = *at == '"' ? at + 1 : at;
+    *length = strcspn(*boundary, *at == '"' ? "\"" : "; \t");
+    return true;
+}
+
+/* What is sent: one file, with its name in the query, or a form of them, which have theirs. */
+static void add_source(struct exchange *exchange, struct command_line *line,
+                       struct fault_list *faults) {
+    enum { BOUNDARY_MOST = 70 };
+    const char *boundary;
+    size_t length;
+    const bool named = exchange_query(exchange, "name") != NULL;
+    if (!find_boundary(exchange, &boundary, &length)) {
+        if (!named)
+            fault_add(faults, "?name", "missing: the name of the file, such as patch.x3p");
+        return;
+    }
+    if (named)
+        fault_add(faults, "?name", "the files of a form have names of their own");
+    if (length == 0 || length > BOUNDARY_MOST)
+        fault_add(faults, "Content-Type", "a form has a boundary of 1 to %d letters",
+                  (int)BOUNDARY_MOST);
+    else {
+        snprintf(line->form, sizeof line->form, "--form=%.*s", (int)length, boundary);
+        line->arguments[line->count++] = line->form;
+    }
+}
+
 static const char CONVERT[] = "--convert=30"; /* seconds, below those of the whole process */
 
 /* Returns false after an answer. */
@@ -109,8 +154,7 @@ static bool write_arguments(struct exchange *exchange, enum answer_format *forma
         if (value != NULL)
             add_option(out, n, value, &faults);
     }
-    if (exchange_query(exchange, "name") == NULL)
-        fault_add(&faults, "?name", "missing: the name of the file, such as patch.x3p");
+    add_source(exchange, out, &faults);
     out->arguments[out->count++] = exchange->service->convert ? CONVERT : "--convert=0";
     out->arguments[out->count++] = "-";
     out->arguments[out->count] = NULL;
@@ -179,7 +223,8 @@ void handle_characterise(struct exchange *exchange, const char *id) {
     if (!write_arguments(exchange, &format, &line))
         return;
     if (exchange->body_size == 0) {
-        answer_problem(exchange, 400, "a body is needed: the bytes of the file", NULL);
+        answer_problem(exchange, 400,
+                       "a body is needed: the bytes of the file, or a form with several", NULL);
         return;
     }
     uint64_t memory = MEMORY_FACTOR * (uint64_t)exchange->body_most;

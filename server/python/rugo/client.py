@@ -168,6 +168,28 @@ class _NoRedirect(urllib.request.HTTPRedirectHandler):
         return None
 
 
+def _document(study):
+    """The JSON of a study: a dict, JSON text, or the path of a file of it."""
+    if isinstance(study, str) and not study.lstrip().startswith("{"):
+        with open(study, encoding="utf-8") as file:
+            study = file.read()
+    return study if isinstance(study, str) else json.dumps(study)
+
+
+def _form(files, study=None):
+    """Files, and perhaps a study, as a form (RFC 7578): its bytes and their media type."""
+    boundary, parts = secrets.token_hex(16), []
+    for path in files:
+        name = os.path.basename(os.fspath(path)).replace("\\", "\\\\").replace('"', '\\"')
+        with open(path, "rb") as opened:
+            parts.append((f'name="map"; filename="{name}"', opened.read()))
+    if study is not None:
+        parts.append(('name="study"', study.encode("utf-8")))
+    lines = [f"--{boundary}\r\nContent-Disposition: form-data; {said}\r\n\r\n".encode("utf-8") + content + b"\r\n"
+             for said, content in parts]
+    return b"".join(lines) + f"--{boundary}--\r\n".encode("ascii"), "multipart/form-data; boundary=" + boundary
+
+
 def _is_here(host):
     try:
         return host == "localhost" or ipaddress.ip_address(host or "").is_loopback
@@ -245,11 +267,7 @@ class Server:
 
     def submit(self, study, key=None):
         """Queues a study: a dict, JSON text, or the path of a file of it. The same key gives the same study."""
-        if isinstance(study, str) and not study.lstrip().startswith("{"):
-            with open(study, encoding="utf-8") as file:
-                study = file.read()
-        text = study if isinstance(study, str) else json.dumps(study)
-        answer = json.loads(self.change("POST", "/v1/studies", key, body=text.encode("utf-8")))
+        answer = json.loads(self.change("POST", "/v1/studies", key, body=_document(study).encode("utf-8")))
         return Study(self, answer["id"])
 
     def study(self, name, unique=False):
@@ -273,17 +291,28 @@ class Server:
     def characterise(self, file, name=None, format="json", **options):
         """What a map in a file (a path, or bytes with a name) is like: a dict of groups; format="svg": the page about it,
         as text; "study": a study of surfaces like it, for submit. options: layer, columns, dx, unit, z_unit, crop, stride, lines,
-        lines_along, despike, deconvolve, transpose, rotate, detrend, degroove, fill, denoise, filter, resample, window, boundary, trust_from, trust_to, as of rugo characterise."""
+        lines_along, despike, deconvolve, transpose, rotate, detrend, degroove, fill, denoise, filter, resample, window, boundary, trust_from, trust_to, hold,
+        as of rugo characterise. A list of paths: maps of one surface together."""
+        if isinstance(file, (list, tuple)):
+            return self._characterised(_form(file), format, dict(options, together=True))
         if not isinstance(file, (bytes, bytearray)):
             name = name or os.path.basename(os.fspath(file))
             with open(file, "rb") as opened:
                 file = opened.read()
         if not name:
             raise ValueError("bytes need the name of their file, such as name='patch.x3p'")
+        return self._characterised((bytes(file), "application/octet-stream"), format, dict(options, name=name))
+
+    def _characterised(self, sent, format, options):
         query = {key: str(value).lower() if isinstance(value, bool) else value for key, value in options.items()}
-        text = self.text("POST", "/v1/characterise", query=dict(query, name=name, format=format), body=bytes(file),
-                         headers={"Content-Type": "application/octet-stream"})
+        text = self.text("POST", "/v1/characterise", query=dict(query, format=format), body=sent[0],
+                         headers={"Content-Type": sent[1]})
         return text if format == "svg" else json.loads(text)
+
+    def fit(self, study, files):
+        """The study (a dict, JSON or a path, as for submit) with what is fitted to the files that its /surface/like
+        names, which are sent: paths, of which the study has the last part. It needs no file any more."""
+        return self._characterised(_form(files, _document(study)), "study", {})
 
     def snapshot(self, path):
         """Copies the database of the service to a file, for SQLite and pandas.read_sql. The file is there, in place of

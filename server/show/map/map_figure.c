@@ -1,6 +1,5 @@
 #include "server/show/map/map_figure.h"
 #include "core/map/preparation.h"
-#include "core/memory_file.h"
 #include "server/show/map/map_figure_internal.h"
 #include <math.h>
 #include <stdlib.h>
@@ -20,23 +19,6 @@ static void draw_head(const struct figure_page *page) {
           "<rect width=\"6\" height=\"6\" fill=\"#fff\"/>"
           "<path d=\"M0 6L6 0\" stroke=\"#999\"/></pattern></defs>\n",
           file);
-}
-
-/* For readers of the file: all that was found. */
-static int draw_metadata(const struct figure_page *page, struct error *err) {
-    struct memory_file memory;
-    if (!memory_file_open(&memory))
-        return error_memory(err, 0, "the numbers of a page");
-    bool done = named_values_print_json(memory.file, page->figure->found);
-    char *text = memory_file_close(&memory, NULL);
-    done = done && text != NULL;
-    if (done) {
-        fputs("<metadata>", page->pen.file);
-        svg_text(page->pen.file, text);
-        fputs("</metadata>\n", page->pen.file);
-    }
-    free(text);
-    return done ? 0 : error_memory(err, 0, "the numbers of a page");
 }
 
 /* A name that is too long keeps its begin and its end. */
@@ -137,7 +119,7 @@ int map_figure_draw(const struct map_figure *figure, FILE *file, struct error *e
     page.units = figure_units_of(figure);
     page.map = (struct measured_map){&figure->map->grid, figure->map->z, figure->record->boundary};
     draw_head(&page);
-    int status = draw_metadata(&page, err);
+    int status = named_values_draw_metadata(file, figure->found, err);
     draw_title(&page);
     figure_draw_table(&page);
     if (status == 0)

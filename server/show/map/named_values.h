@@ -2,6 +2,7 @@
 #ifndef RUGO_SERVER_SHOW_MAP_NAMED_VALUES_H
 #define RUGO_SERVER_SHOW_MAP_NAMED_VALUES_H
 
+#include "core/error.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -58,5 +59,7 @@ void named_values_print(FILE *file, const struct named_values *values);
 /* Prints {group: {name: value}}, and arrays of values for columns, null for NaN. Returns false when
  * out of memory. */
 bool named_values_print_json(FILE *file, const struct named_values *values);
+/* Writes the same into a picture, for programs that read it: <metadata>. ERROR_MEMORY. */
+int named_values_draw_metadata(FILE *file, const struct named_values *values, struct error *err);
 
 #endif

@@ -1,8 +1,11 @@
 #include "core/map/length_unit.h"
+#include "core/memory_file.h"
 #include "schema/json/json.h"
 #include "server/show/map/named_values.h"
+#include "server/show/plot/plot_words.h"
 #include "server/show/table/text_table.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Returns whether entry n is the first one of its group. */
@@ -267,4 +270,20 @@ bool named_values_print_json(FILE *file, const struct named_values *values) {
     done = done && print_columns_json(file, values);
     fputc('}', file);
     return done;
+}
+
+int named_values_draw_metadata(FILE *file, const struct named_values *values, struct error *err) {
+    struct memory_file memory;
+    if (!memory_file_open(&memory))
+        return error_memory(err, 0, "the numbers of a page");
+    bool done = named_values_print_json(memory.file, values);
+    char *text = memory_file_close(&memory, NULL);
+    done = done && text != NULL;
+    if (done) {
+        fputs("<metadata>", file);
+        svg_text(file, text);
+        fputs("</metadata>\n", file);
+    }
+    free(text);
+    return done ? 0 : error_memory(err, 0, "the numbers of a page");
 }

@@ -42,6 +42,8 @@ static void add_law(struct named_values *out, const struct map_together *togethe
     static const char GROUP[] = "together";
     const struct joint_fit *fit = &together->fit;
     named_values_add(out, GROUP, "maps", (double)fit->patches);
+    if (together->in_metres)
+        named_values_add_text(out, GROUP, "unit", "m");
     named_values_add_length(out, GROUP, "trusted_from", fit->longest, 1);
     named_values_add_length(out, GROUP, "trusted_to", fit->shortest, 1);
     add_interval(out, HURST, &fit->hurst, 0);
@@ -297,13 +299,16 @@ static void draw_names(const struct plot_pen *pen, const struct map_together *to
             LEFT - 40, TOP + ROW * (int)rows, together->fit.hurst.value);
 }
 
-int together_draw(const struct map_together *together, FILE *file, struct error *err) {
+int together_draw(const struct map_together *together, const struct named_values *found, FILE *file,
+                  struct error *err) {
     struct plot_pen pen = {.file = file};
     const struct units units = units_of(together);
     const int more = 16 * (int)((together->count + 3) / 4) + 16;
     pen_head_sized(&pen, &(struct pen_size){.width = WIDTH, .height = HEIGHT + more, .font = 13});
+    int status = named_values_draw_metadata(file, found, err);
     pen_title(&pen, "Power spectral density", "maps of one surface together");
-    int status = draw_panel(&pen, together, false, &units, err);
+    if (status == 0)
+        status = draw_panel(&pen, together, false, &units, err);
     if (status == 0)
         status = draw_panel(&pen, together, true, &units, err);
     draw_names(&pen, together);

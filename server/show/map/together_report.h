@@ -11,7 +11,9 @@
 int together_report_fill(struct named_values *out, const struct map_together *together,
                          struct error *err);
 /* Draws an SVG: C(q) of all maps with the law, and their densities of lines along x, on logarithmic
- * axes. Each map is a thick line in its trusted band, and a thin one beyond. ERROR_MEMORY. */
-int together_draw(const struct map_together *together, FILE *file, struct error *err);
+ * axes. Each map is a thick line in its trusted band, and a thin one beyond. The file has what was
+ * found, as JSON in <metadata>. ERROR_MEMORY. */
+int together_draw(const struct map_together *together, const struct named_values *found, FILE *file,
+                  struct error *err);
 
 #endif

@@ -175,14 +175,40 @@ static char *drawn_body(struct drawing *drawing) {
     return NULL;
 }
 
+/* A form of one or two files with these bytes, or of what is no form; frees the body. */
+static char *make_form(struct choices *choices, char *body) {
+    static const char PART[] =
+        "--b0\r\nContent-Disposition: form-data; name=\"map\"; filename=\"%s\"\r\n\r\n%s\r\n";
+    static const char *const SECOND[] = {"b.csv", "a.csv", ""};
+    struct memory_file memory;
+    MUST(memory_file_open(&memory));
+    fprintf(memory.file, PART, "a.csv", body);
+    if (choose_rarely(choices, 2))
+        fprintf(memory.file, PART, SECOND[choose(choices, 3)], body);
+    if (choose_rarely(choices, 4))
+        fputs("--b0\r\nContent-Disposition: form-data; name=\"study\"\r\n\r\n"
+              "{\"surface\":{\"like\":[\"a.csv\",\"b.csv\"]}}\r\n",
+              memory.file);
+    fputs(choose_rarely(choices, 8) ? "" : "--b0--\r\n", memory.file);
+    free(body);
+    char *text = memory_file_close(&memory, NULL);
+    MUST(text != NULL);
+    return text;
+}
+
 static void put_body(struct drawing *drawing) {
     struct choices *choices = drawing->choices;
     bool file = drawing->request->route->handler == handle_characterise;
     char *body = drawn_body(drawing);
     bool wrong = is_odd(drawing, 32);
+    const bool form = file && body != NULL && choose_rarely(choices, 4);
+    if (form)
+        body = make_form(choices, body);
     if (body != NULL)
         put_header(drawing, "Content-Type",
-                   file != wrong ? "application/octet-stream" : "application/json");
+                   form && !wrong  ? "multipart/form-data; boundary=b0"
+                   : file != wrong ? "application/octet-stream"
+                                   : "application/json");
     if (body == NULL)
         fputs("Content-Length: 0\r\n\r\n", drawing->file);
     else if (choose_rarely(choices, 16))

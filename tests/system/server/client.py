@@ -105,7 +105,19 @@ def maps_are_characterised(server):
     assert server.json("POST", "/v1/check", body=json.dumps(alike).encode("utf-8"))["cases"]
     refused(lambda: server.characterise(b"\x00", name="map.csv"), 422, "map.csv")
     refused(lambda: server.characterise(path, colour="red"), 422, "not valid")
+    other = pathlib.Path(FOLDER, 'client "map" 2.csv')
+    other.write_text("\n".join(reversed(rows)), encoding="utf-8")
+    refused(lambda: server.characterise([path, path], dx="0.5um", z_unit="nm"), 422, "two files named client-map.csv")
+    one = server.characterise([path, other], dx="0.5um", z_unit="nm", detrend="mean")
+    assert list(one["files"].values()) == [path.name, other.name] and one["together"]["maps"] == 2
+    study = {"name": "alike", "kind": "statistics", "realisations": 2, "surface": {"hurst": 0.7, "wavelength_ratio": 8, "rms_slope": 0.1,
+             "points_per_wavelength": 2, "length_ratio": 8, "like": {"file": path.name, "dx": 1, "detrend": "none"}}}
+    fitted = server.fit(study, [path])
+    assert fitted["surface"]["like"]["sha256"] and fitted["surface"]["hurst"] == 0.7
+    server.submit(fitted).cancel()
+    refused(lambda: server.fit(study, [other]), 422, "no file of this name was sent")
     path.unlink()
+    other.unlink()
 
 
 def tokens_are_read_as_commands_do():

@@ -1,4 +1,5 @@
-/* Protects: a file that is sent to a service is characterised as the command does it, and drawn;
+/* Protects: a file that is sent to a service, or a form of several, is characterised as the command
+ * does it, and drawn; a study that is sent with files is fitted to these alone;
  * what is wrong with it, or with the query, is reported as a problem; no file, however it is made,
  * harms the service; and a client that goes ends the work. */
 #include "tests/support/check.h"
@@ -112,6 +113,93 @@ static void a_study_of_surfaces_like_it_is_made(void **state) {
                      200);
     free(plan);
     free(answer);
+    assert_int_equal(post("name=map.csv&format=study&hold=true", BYTES, csv, &answer), 200);
+    assert_non_null(strstr(answer, "\"hold\":true"));
+    free(answer);
+}
+
+/* Returns a form of these files, and of a study unless it is NULL; the caller frees. */
+static char *make_form(const char *const *names, const char *study) {
+    char *text = NULL;
+    size_t size;
+    FILE *file = open_memstream(&text, &size);
+    assert_non_null(file);
+    for (; *names != NULL; names++)
+        fprintf(
+            file,
+            "--b0\r\nContent-Disposition: form-data; name=\"map\"; filename=\"%s\"\r\n\r\n%s\r\n",
+            *names, csv);
+    if (study != NULL)
+        fprintf(file, "--b0\r\nContent-Disposition: form-data; name=\"study\"\r\n\r\n%s\r\n",
+                study);
+    fputs("--b0--\r\n", file);
+    assert_int_equal(fclose(file), 0);
+    return text;
+}
+
+static const char FORM[] = "Content-Type: multipart/form-data; boundary=b0\r\n";
+static const char *const TWO[] = {"a.csv", "b.csv", NULL};
+
+/* Files of one surface together, as the command has them. */
+static void several_maps_are_sent_as_a_form(void **state) {
+    (void)state;
+    static const char *const FORMATS[] = {"json", "svg", "study"};
+    char *form = make_form(TWO, NULL);
+    spit("a.csv", csv);
+    spit("b.csv", csv);
+    for (size_t f = 0; f < sizeof FORMATS / sizeof *FORMATS; f++) {
+        const char *const command[] = {"characterise", "a.csv", "b.csv",    "--together", "--fill",
+                                       "--dx",         "1",     "--format", FORMATS[f],   NULL};
+        char query[80], *answer = NULL;
+        snprintf(query, sizeof query, "together=true&fill=true&dx=1&format=%s", FORMATS[f]);
+        assert_int_equal(run_rugo("near", command), 0);
+        char *near = slurp("near.out");
+        assert_int_equal(post(query, FORM, form, &answer), 200);
+        assert_string_equal(answer, near);
+        free(near);
+        free(answer);
+    }
+    refused("format=json", FORM, form, 422, "several files");
+    refused("together=true&name=a.csv", FORM, form, 422, "names of their own");
+    refused("together=true&hold=true&format=study&fill=true", FORM, form, 422, "hold one map");
+    refused("together=true", "Content-Type: multipart/form-data\r\n", form, 422, "boundary");
+    refused("together=true", "Content-Type: multipart/form-data; boundary=b1\r\n", form, 422,
+            "no boundary --b1");
+    free(form);
+    static const char *const TWICE[] = {"a.csv", "a.csv", NULL};
+    form = make_form(TWICE, NULL);
+    refused("together=true", FORM, form, 422, "two files named a.csv");
+    free(form);
+}
+
+/* A study that is sent with files is fitted to these, and to none of the server's own. */
+static void a_study_is_fitted_to_what_was_sent(void **state) {
+    (void)state;
+#define ALIKE(like)                                                                                \
+    "{\"name\":\"mine\",\"kind\":\"statistics\",\"realisations\":2,\"surface\":{\"like\":" like "}}"
+    char *form = make_form(
+        TWO, ALIKE("{\"file\":[\"a.csv\",\"b.csv\"],\"dx\":1,\"fill\":true,\"off\":\"stated\"}"));
+    char *answer = NULL;
+    assert_int_equal(post("format=study", FORM, form, &answer), 200);
+    assert_non_null(strstr(answer, "\"name\":\"mine\""));
+    assert_non_null(strstr(answer, "\"maps\":["));
+    refused("format=json", FORM, form, 422, "goes with the format study");
+    free(answer);
+    free(form);
+    static const struct {
+        const char *study, *words;
+    } FAULTS[] = {
+        {ALIKE("\"near.out\""), "near.out: no file of this name was sent"},
+        {ALIKE("[\"a.csv\",\"/etc/passwd\"]"), "/etc/passwd: no file of this name was sent"},
+        {ALIKE("7"), "neither the name of a file"},
+        {"{\"surface\":{}}", "no name of a file that was sent"},
+        {"[1", "the study: "},
+    };
+    for (size_t f = 0; f < sizeof FAULTS / sizeof *FAULTS; f++) {
+        form = make_form(TWO, FAULTS[f].study);
+        refused("format=study&fill=true", FORM, form, 422, FAULTS[f].words);
+        free(form);
+    }
 }
 
 static void faults_are_problems(void **state) {
@@ -265,6 +353,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_service_says_what_the_command_says),
         cmocka_unit_test(a_study_of_surfaces_like_it_is_made),
+        cmocka_unit_test(several_maps_are_sent_as_a_form),
+        cmocka_unit_test(a_study_is_fitted_to_what_was_sent),
         cmocka_unit_test(faults_are_problems),
         cmocka_unit_test(names_are_texts),
         cmocka_unit_test(damaged_files_harm_nobody),

@@ -101,6 +101,15 @@ static void like_makes_them(void **state) {
     write_text("like.json",
                "{\"name\":\"l\",\"kind\":\"statistics\",\"realisations\":2,\"surface\":"
                "{\"like\":{\"file\":\"map.npy\",\"dx\":\"0.25\",\"hold\":true}}}");
+    assert_int_equal(run_rugo("check", (const char *[]){"check", "like.json", "--study", NULL}), 0);
+    expect_in("check.out", "held as they are, and beyond the map made every 3.2,");
+    expect_in("check.out", "\"grooves\"");
+    assert_int_equal(rename("check.out", "held.json"), 0);
+    assert_int_equal(
+        run_rugo("generate", (const char *[]){"generate", "held.json", "-o", "held.npy", NULL}), 0);
+    write_text("like.json",
+               "{\"name\":\"l\",\"kind\":\"statistics\",\"realisations\":2,\"surface\":"
+               "{\"like\":{\"file\":[\"map.npy\",\"map.npy\"],\"dx\":\"0.25\"}}}");
     assert_int_not_equal(run_rugo("check", (const char *[]){"check", "like.json", NULL}), 0);
     expect_in("check.err", "give \"degroove\": true");
 }

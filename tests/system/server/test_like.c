@@ -163,6 +163,39 @@ static void several_maps_are_of_one_surface(void **state) {
     assert_true(contains("several-near.json", "\"patch_bound\":"));
 }
 
+/* A study and the maps that it names are sent as a form; what comes back is submitted, and a worker
+ * without the files computes what a command with them does. */
+static void several_maps_go_over_http(void **state) {
+    (void)state;
+    struct process server;
+    char url[64], line[600];
+    spit("data/two.json", STUDY("{\"file\":[\"one.npy\",\"two.npy\"],\"dx\":0.25,"
+                                "\"heights\":\"gaussian\"}"));
+    assert_int_equal(run_shell("cd data && $RUGO convert patch.npy one.npy --dx 0.25 && $RUGO "
+                               "convert patch.npy two.npy --dx 0.25 --crop 0,0,48,48"),
+                     0);
+    assert_int_equal(run_shell("$RUGO run --db near2.db --workers 2 data/two.json"), 0);
+    const unsigned port = serve_start(&server, (const char *[]){"--db", "far2.db", NULL});
+    snprintf(url, sizeof url, "http://127.0.0.1:%u", port);
+    snprintf(line, sizeof line,
+             "mkdir -p away && cd data && curl -sS -f -F map=@one.npy -F map=@two.npy -F "
+             "study=@two.json '%s/v1/characterise?format=study' -o ../away/fitted.json && cd "
+             "../away && $RUGO submit --server %s fitted.json && $RUGO work --server %s --drain",
+             url, url, url);
+    assert_int_equal(run_shell(line), 0);
+    process_kill(&server, SIGTERM);
+    assert_int_equal(process_wait(&server, 20), 0);
+    assert_int_equal(run_shell("$RUGO curves --db near2.db alike > near.json && $RUGO curves --db "
+                               "far2.db alike > far.json"),
+                     0);
+    char *near_cases = slurp_from("near.json", "\"cases\":"),
+         *far_cases = slurp_from("far.json", "\"cases\":");
+    assert_string_equal(near_cases, far_cases);
+    assert_non_null(strstr(near_cases, "\"/surface/like/others\":\"two.npy"));
+    free(near_cases);
+    free(far_cases);
+}
+
 static void a_file_alone_is_refused_over_http(void **state) {
     (void)state;
     struct process server;
@@ -249,6 +282,7 @@ int main(void) {
         cmocka_unit_test(contact),
         cmocka_unit_test(surfaces_hold_the_patch),
         cmocka_unit_test(several_maps_are_of_one_surface),
+        cmocka_unit_test(several_maps_go_over_http),
         cmocka_unit_test(a_file_alone_is_refused_over_http),
         cmocka_unit_test(check_shows_what_was_fitted),
         cmocka_unit_test(faults_are_named),

@@ -2,6 +2,7 @@
  * found in random faces with or without a lay, taken out so that the law of the rest is found, and
  * no offsets of scan lines. */
 #include "core/map/artefacts/map_artefacts.h"
+#include "core/statistics/grooves/groove_extension.h"
 #include "core/statistics/grooves/map_grooves.h"
 #include "core/statistics/spectra/spectrum_fit.h"
 #include "core/surface/grooves/grooves.h"
@@ -239,8 +240,66 @@ static void odd_maps(void **state) {
     maker_destroy(&maker);
 }
 
+/* Heights at x points from the middle of a row of the cell, of the steepest step between them. */
+static double steepest(const double *row, size_t first, size_t last) {
+    double most = 0;
+    for (size_t i = first; i < last; i++)
+        most = fmax(most, fabs(row[i + 1] - row[i]));
+    return most;
+}
+
+/* On a cell of twice the sides, and on finer grids of it, grooves are those of the map within it
+ * and go on without a step to where it repeats, though their periods do not fit. */
+static void they_go_on_beyond_the_map(void **state) {
+    (void)state;
+    enum { CELL = 2 * SIDE, FINE = 3 * CELL };
+    static const struct grid CELLS = {CELL, CELL, CELL, CELL}, FINER = {FINE, FINE, CELL, CELL};
+    static const enum groove_shape SHAPES[] = {GROOVE_SINE, GROOVE_ARCS, GROOVE_HARMONICS};
+    struct maker maker = maker_create(1);
+    double *cell = malloc(CELL * CELL * sizeof *cell), *fine = malloc(FINE * FINE * sizeof *fine);
+    assert_non_null(cell);
+    assert_non_null(fine);
+    for (size_t s = 0; s < sizeof SHAPES / sizeof *SHAPES; s++) {
+        const struct truth truth = {SHAPES[s] == GROOVE_HARMONICS ? GROOVE_SINE : SHAPES[s], 9.3,
+                                    1.1, 1, 0.3};
+        make(&maker, s, 0.3);
+        add(maker.z, &truth);
+        if (SHAPES[s] == GROOVE_HARMONICS) { /* a shape without a name */
+            const struct truth third = {GROOVE_SINE, 9.3 / 3, 1.1, 0.7, 0.1};
+            add(maker.z, &third);
+        }
+        const struct map_grooves grooves = find(maker.z, BOUNDARY_OPEN);
+        assert_int_equal(grooves.families, 1);
+        assert_int_equal(grooves.family[0].fit.shape, SHAPES[s]);
+        assert_true(fabs(remainder(2 * grooves.family[0].lines.mx, 1)) > 0.1);
+        memset(cell, 0, CELL * CELL * sizeof *cell);
+        memset(fine, 0, FINE * FINE * sizeof *fine);
+        assert_int_equal(groove_extension_add(&grooves, &GRID, &CELLS, 1, cell, NULL), 0);
+        assert_int_equal(groove_extension_add(&grooves, &GRID, &FINER, 1, fine, NULL), 0);
+        memset(maker.z, 0, SIDE * SIDE * sizeof *maker.z);
+        map_grooves_take(&grooves, &GRID, maker.z);
+        for (size_t j = 0; j < CELL; j++)
+            for (size_t i = 0; i < CELL; i++) {
+                if (i < SIDE && j < SIDE)
+                    assert_true(fabs(cell[j * CELL + i] + maker.z[j * SIDE + i]) < 1e-9);
+                assert_true(fabs(cell[j * CELL + i] - fine[3 * j * FINE + 3 * i]) < 1e-9);
+            }
+        for (size_t j = 0; j < FINE; j += 17) {
+            const double *row = fine + j * FINE;
+            assert_true(fabs(row[0] - row[FINE - 1]) < 1.2 * steepest(row, 0, FINE - 1));
+            assert_true(steepest(row, FINE / 2, FINE - 1) < 1.3 * steepest(row, 0, FINE / 2));
+        }
+        const double beyond = groove_extension_period(&grooves.family[0], &GRID);
+        assert_true(fabs(beyond - 9.3) > 0.01 && fabs(beyond - 9.3) < 9.3 * 9.3 / SIDE);
+    }
+    free(cell);
+    free(fine);
+    maker_destroy(&maker);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(they_go_on_beyond_the_map),
         cmocka_unit_test(errors_hold),
         cmocka_unit_test(shapes_are_found),
         cmocka_unit_test(random_faces_have_none),

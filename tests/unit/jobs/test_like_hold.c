@@ -2,7 +2,9 @@
  * results have the area within the patch, and the error "patch" by the spread of draws, in the same
  * digits however they are divided; what such a study excludes is refused by name. How often the
  * error holds the truth is in tests/validation/jobs/test_hold_coverage.c. */
+#include "core/statistics/grooves/map_grooves.h"
 #include "jobs/contact/contact_case.h"
+#include "jobs/contact/contact_level.h"
 #include "jobs/like/like_fit.h"
 #include "jobs/like/like_hold.h"
 #include "jobs/merger.h"
@@ -134,6 +136,67 @@ static void surfaces_hold_the_patch(void **state) {
     height_map_clear(&map);
 }
 
+/* Grooves of a patch are held with it and go on in each draw, with whole numbers of periods, also
+ * between the points of the cell. */
+static void grooves_go_on(void **state) {
+    (void)state;
+    enum { CELL = 2 * SIDE, FINE = 2 * CELL };
+    struct height_map map = patch_of(false);
+    double square = 0;
+    for (size_t p = 0; p < (size_t)SIDE * SIDE; p++)
+        square += map.z[p] * map.z[p] / (SIDE * SIDE);
+    for (size_t p = 0; p < (size_t)SIDE * SIDE; p++)
+        map.z[p] += 1.5 * sqrt(square) *
+                    cos(2 * M_PI * (0.14 * (double)(p % SIDE) + 0.031 * (double)(p / SIDE)));
+    cJSON *parameters = held(&map, "{}");
+    const double length = json_number_at(parameters, "/surface/like/wavelength", NAN);
+    const char *prepared = cJSON_GetStringValue(json_at(parameters, "/surface/like/prepared"));
+    assert_non_null(strstr(prepared, "held as they are, and beyond the map made every"));
+    struct statistics_case one = {0};
+    struct error err = {0};
+    if (statistics_case_read(&one, parameters, NULL, &err) != 0)
+        fail_msg("%s", err.text);
+    assert_non_null(one.surface.grooves);
+    assert_int_equal(one.surface.held->grooves->families, 1);
+    double *z = NULL, rest[SIDE * SIDE], off = 0;
+    struct surface_report report;
+    struct trend trend;
+    const struct random_key key = {SEED, 0, 1};
+    assert_int_equal(realisation_surface(&one.surface, key, &z, &report, &err), 0);
+    for (size_t p = 0; p < (size_t)SIDE * SIDE; p++)
+        rest[p] = z[p / SIDE * CELL + p % SIDE] * length - map.z[p];
+    assert_int_equal(detrend(&map.grid, rest, DETREND_PLANE, &trend, NULL), 0);
+    for (size_t p = 0; p < (size_t)SIDE * SIDE; p++)
+        off += rest[p] * rest[p] / (SIDE * SIDE);
+    print_message("with grooves %.2g of the RMS height off\n", sqrt(off / square));
+    assert_true(sqrt(off / square) < 3e-3);
+    for (size_t p = 0; p < (size_t)SIDE * SIDE; p++) /* beyond it, along x */
+        rest[p] = z[p / SIDE * CELL + SIDE + p % SIDE] * length;
+    const struct measured_map beyond = {&map.grid, rest, BOUNDARY_OPEN};
+    struct map_grooves found;
+    assert_int_equal(map_grooves_find(&found, &beyond, NULL), 0);
+    assert_int_equal(found.families, 1);
+    /* 2*6.72 periods along x are 13, of which 6.28 lie here */
+    print_message("%.3f and %.3f periods beyond the map\n", found.family[0].lines.mx,
+                  found.family[0].lines.my);
+    assert_true(fabs(found.family[0].lines.mx - (13 - 0.14 * SIDE)) < 0.15);
+    assert_true(fabs(found.family[0].lines.my - 0.031 * SIDE) < 0.15);
+    struct contact_level level = {.grid = {FINE, FINE, one.surface.grid.lx, one.surface.grid.ly}};
+    double *fine = calloc((size_t)FINE * FINE, sizeof *fine);
+    const struct level_source source = {.key = key, .rms_height = 1};
+    assert_non_null(fine);
+    assert_int_equal(contact_level_sample(&level, &one.surface, &source, z, fine, &err), 0);
+    for (size_t j = 0; j < CELL; j++)
+        for (size_t i = 0; i < CELL; i++)
+            assert_true(fabs(fine[2 * j * FINE + 2 * i] - z[j * CELL + i]) * length <
+                        1e-6 * sqrt(square));
+    free(fine);
+    free(z);
+    statistics_case_clear(&one);
+    cJSON_Delete(parameters);
+    height_map_clear(&map);
+}
+
 static void areas_have_the_spread_of_draws(void **state) {
     (void)state;
     struct height_map map = patch_of(false);
@@ -213,6 +276,7 @@ static void what_it_excludes_is_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(surfaces_hold_the_patch),
+        cmocka_unit_test(grooves_go_on),
         cmocka_unit_test(areas_have_the_spread_of_draws),
         cmocka_unit_test(what_it_excludes_is_refused),
     };
