@@ -149,14 +149,16 @@ static int heights_by_law(struct map_characterisation *out, const struct common 
     const struct height_fit *best = &out->height_fits.list[out->height_fits.best];
     const double before = out->errors.sq;
     const bool stratified = isfinite(out->functional.plateau.ratio);
+    const bool clearly = plateau_is_clear(&out->functional.plateau);
     struct map_height_law law;
-    if (!map_height_law_find(&law, out))
+    if (!clearly && !map_height_law_find(&law, out))
         return 0;
-    if (best->p_value >= LAW_LEVEL) {
+    if (clearly)
+        scalar_errors_by_strata(&out->errors, common->map, &out->functional.plateau);
+    else if (best->p_value >= LAW_LEVEL)
         scalar_errors_by_law(&out->errors, common->map, &law.heights, &law.moments);
-        for (int s = 0; s < MAP_STENCILS; s++)
-            out->parameters.summits[s].errors.height_deviation *= out->errors.sq / before;
-    }
+    for (int s = 0; s < MAP_STENCILS; s++)
+        out->parameters.summits[s].errors.height_deviation *= out->errors.sq / before;
     /* tilts make the fit itself worse: whatever its level is, its ends are the best that is known
      */
     return out->functional.has_errors && !stratified

@@ -20,8 +20,8 @@ static const double STRAY = 0.01;
 static const double CLEARLY = 4;
 /* Number of independent heights where it is not known. */
 static const double INDEPENDENT_AT_LEAST = 100;
-/* The last section is 1e-7 of the logarithm of a shape; a minimum is not known much better. */
-enum { SHAPES_TRIED = 20, NARROWINGS = 34 };
+/* The last section is 1e-3 of the logarithm of a shape; the parabola is right to 1e-6 of it. */
+enum { SHAPES_TRIED = 20, NARROWINGS = 12 };
 
 /* A tilt that is taken out of an open map is partly random, and its error blurs the distribution.
  * Eight equally frequent offsets, of mean square 1, represent it. */
@@ -65,10 +65,13 @@ static double distance_at(const struct cell_heights *h, struct model *model, dou
     return known ? distance_of(h, model->share) : INFINITY;
 }
 
-/* Finds the shape of the least distance: the best of a table, then by golden sections beside it. */
-static void shape_find(const struct cell_heights *h, struct model *model) {
-    double low = log(model->row->shape_low), high = log(model->row->shape_high), best = INFINITY;
-    double step = (high - low) / SHAPES_TRIED, at = low;
+/* Returns the best shape of a table, without blur, which moves it by little, or the one of the
+ * table beside it that is better with it. */
+static double shape_begin(const struct cell_heights *h, struct model *model, double low,
+                          double high, double step) {
+    const double blur = model->blur;
+    double best = INFINITY, at = low;
+    model->blur = 0;
     for (int n = 0; n <= SHAPES_TRIED; n++) {
         double distance = distance_at(h, model, low + n * step);
         if (distance < best) {
@@ -76,6 +79,27 @@ static void shape_find(const struct cell_heights *h, struct model *model) {
             at = low + n * step;
         }
     }
+    model->blur = blur;
+    if (blur == 0)
+        return at;
+    best = distance_at(h, model, at);
+    for (int side = -1; side <= 1; side += 2)
+        for (double next = at + side * step; next > low - step / 2 && next < high + step / 2;
+             next += side * step) {
+            const double distance = distance_at(h, model, next);
+            if (!(distance < best))
+                break;
+            best = distance;
+            at = next;
+        }
+    return at;
+}
+
+/* Finds the shape of the least distance: from the best of a table by golden sections beside it, and
+ * by the parabola through the last section. */
+static void shape_find(const struct cell_heights *h, struct model *model) {
+    const double low = log(model->row->shape_low), high = log(model->row->shape_high);
+    const double step = (high - low) / SHAPES_TRIED, at = shape_begin(h, model, low, high, step);
     const double golden = (sqrt(5) - 1) / 2;
     double left = fmax(low, at - step), right = fmin(high, at + step);
     double a = right - golden * (right - left), b = left + golden * (right - left);
@@ -92,7 +116,11 @@ static void shape_find(const struct cell_heights *h, struct model *model) {
         b = leftward ? kept : next;
         at_b = leftward ? at_kept : value;
     }
-    distance_at(h, model, (left + right) / 2);
+    const double middle = (left + right) / 2, half = (right - left) / 2;
+    const double before = distance_at(h, model, left), behind = distance_at(h, model, right);
+    const double bend = before - 2 * distance_at(h, model, middle) + behind;
+    const double move = bend > 0 ? (before - behind) / (2 * bend) : 0;
+    distance_at(h, model, middle + half * fmin(fmax(move, -1), 1));
 }
 
 /* Fills density and bend by central differences. */

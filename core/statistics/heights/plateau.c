@@ -176,6 +176,12 @@ void plateau_fit(const struct material_curve *curve, struct plateau_law *out) {
                                 .line_residual = line};
 }
 
+bool plateau_is_clear(const struct plateau_law *law) {
+    static const double BETTER = 0.5, WELL = 0.2, SHARE[2] = {0.1, 0.95}; /* scores, shares */
+    return law->residual < BETTER * law->line_residual && law->residual < WELL &&
+           law->ratio > SHARE[0] && law->ratio < SHARE[1];
+}
+
 double plateau_ratio(const struct plateau_law *law, double height) {
     return gsl_cdf_ugaussian_Q((height - law->plateau_mean) / law->plateau_rms) *
            gsl_cdf_ugaussian_Q((height - law->valley_mean) / law->valley_rms);

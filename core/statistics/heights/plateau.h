@@ -16,6 +16,9 @@ struct plateau_law {
 
 /* Fits the law to the curve on the normal probability plot. */
 void plateau_fit(const struct material_curve *curve, struct plateau_law *out);
+/* Whether two laws fit far better than one, and well, and each has a share of the points: far tails
+ * alone are no second surface. */
+bool plateau_is_clear(const struct plateau_law *law);
 /* Returns the share of the points that reach a height about the mean, by the law. */
 double plateau_ratio(const struct plateau_law *law, double height);
 

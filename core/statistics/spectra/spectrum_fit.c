@@ -6,9 +6,13 @@
 /* The rise of the deviance at the ends of a 95 % interval, also where only one end is known. An end
  * at 5 %, reported where noise hides the other, would be wrong more often than 1 time in 20. */
 static const double RISE = 3.841;
-/* By how much the rings at a sharp end scatter more than those inside: half of a ring is empty
- * there, and under a window what its modes hold comes from few. */
+/* By how much the rings at an end scatter more than those inside: half of a ring is empty there,
+ * and under a window what its modes hold comes from few. */
 static const double EDGE_SCATTER = 2, EDGE_SCATTER_WINDOWED = 1.6;
+/* The same of a sharp end under a window, by its place beyond the middle of a ring, in parts of the
+ * distance to the next one (FORMULAS.md, F18.58). */
+enum { PLACES = 8 };
+static const double EDGE_SCATTER_AT[PLACES] = {1.36, 1.42, 1.53, 1.62, 1.61, 1.59, 1.53, 1.46};
 /* Ratio of the variances found over 1500 surfaces of known laws to those estimated without it. */
 static const double OVERDISPERSION = 1.1;
 static const double SCORE = 1.960; /* of a standard deviation, of two ends */
@@ -218,15 +222,31 @@ static int fitted_reconsider(struct fitted *fitted, struct spectrum_range *range
     return status;
 }
 
+/* Returns by how much more than inside the rings at an end scatter. Where those of a sharp end
+ * count as one, by their mean, its degrees of freedom are those of its modes as they are. */
+static double edge_scatter(const struct fitted *fitted, enum law_parameter a) {
+    const struct law_problem *problem = fitted->problem;
+    if ((a != LAW_SHORT && a != LAW_LONG) ||
+        (a == LAW_SHORT && problem->freedom[problem->leakage->count] > 0))
+        return 1;
+    if (!problem->spectrum->windowed)
+        return EDGE_SCATTER;
+    if (a == LAW_LONG)
+        return EDGE_SCATTER_WINDOWED;
+    const double ring = exp(fitted->law.p[a]), at = PLACES * (ring - floor(ring));
+    const size_t before = (size_t)at % PLACES;
+    const double part = at - floor(at);
+    return (1 - part) * EDGE_SCATTER_AT[before] + part * EDGE_SCATTER_AT[(before + 1) % PLACES];
+}
+
 /* Returns an end of an interval in terms of a parameter; NaN: open. */
 static double bound(const struct fitted *fitted, enum law_parameter a, int direction) {
     double ratio = fitted->covariance[a][a] / fitted->likelihood[a][a];
     double more = scatter_variance(fitted, a == LAW_AMPLITUDE ? 1 : 0, a == LAW_HURST ? 1 : 0);
     double error = sqrt(fitted->covariance[a][a] * fitted->widening + more);
     double wider = fmax(ratio, 0.5) * fitted->widening + more / fitted->likelihood[a][a];
-    if (a == LAW_SHORT || a == LAW_LONG)
-        wider *= fitted->problem->spectrum->windowed ? EDGE_SCATTER_WINDOWED : EDGE_SCATTER;
-    return law_bound(fitted->problem, &fitted->law, a, direction, RISE * wider, sqrt(RISE) * error);
+    return law_bound(fitted->problem, &fitted->law, a, direction,
+                     RISE * wider * edge_scatter(fitted, a), sqrt(RISE) * error);
 }
 
 /* Returns a wavelength by its wave number's interval, whose ends are in the reverse order. */

@@ -20,16 +20,22 @@ static const double WEIGHT = 0.5;
  * fewest. */
 static const double FAR_HEIGHTS = 1.1, FEW_VALLEYS = 1.15, ANY = 1.06;
 
+/* How many heights of a cell are in a class; few cells have some of each class. */
+struct heights_in {
+    uint32_t cell, count;
+};
+
 struct weighing {
     const struct material_curve *curve; /* borrowed */
     size_t cells, points;
-    uint32_t *count; /* owned; [class*cells + cell] */
-    double *z;       /* owned: the heights of a weighted curve, `points` */
-    double *share;   /* owned: of each class */
+    size_t first[CLASSES + 1];  /* of each class, among ... */
+    struct heights_in *heights; /* ... these, owned */
+    double *z;                  /* owned: the heights of a weighted curve, `points` */
+    double *share;              /* owned: of each class */
 };
 
 static void weighing_clear(struct weighing *w) {
-    free(w->count);
+    free(w->heights);
     free(w->z);
     free(w->share);
 }
@@ -41,27 +47,44 @@ static size_t class_of(const struct material_curve *curve, double height) {
     return !(at > 0) ? 0 : at >= CLASSES - 1 ? CLASSES - 1 : (size_t)at;
 }
 
-static int weighing_create(struct weighing *w, const struct measured_map *map,
-                           const struct material_curve *curve, const struct low_modes *modes,
-                           struct error *err) {
+/* Fills counts, [class*cells + cell]; returns how many of them are not 0. */
+static size_t heights_count(const struct weighing *w, const struct measured_map *map,
+                            const struct low_modes *modes, uint32_t *count) {
     const struct grid *grid = map->grid;
-    *w = (struct weighing){.curve = curve, .cells = modes->cells_x * modes->cells_y};
-    w->points = curve->n < POINTS_MOST ? curve->n : POINTS_MOST;
-    w->count = array_create(CLASSES * w->cells, sizeof *w->count);
-    w->z = array_create(w->points, sizeof *w->z);
-    w->share = array_create(CLASSES, sizeof *w->share);
-    if (w->count == NULL || w->z == NULL || w->share == NULL) {
-        weighing_clear(w);
-        return error_memory(err, CLASSES * w->cells * sizeof *w->count, "heights by cell");
-    }
+    size_t some = 0;
     for (size_t j = 0; j < grid->ny; j++)
         for (size_t i = 0; i < grid->nx; i++) {
             const double z = map->z[j * grid->nx + i];
             const size_t cell = cell_of(j, modes->cells_y, grid->ny) * modes->cells_x +
                                 cell_of(i, modes->cells_x, grid->nx);
-            if (!isnan(z))
-                w->count[class_of(curve, z - curve->mean) * w->cells + cell]++;
+            if (!isnan(z) && count[class_of(w->curve, z - w->curve->mean) * w->cells + cell]++ == 0)
+                some++;
         }
+    return some;
+}
+
+static int weighing_create(struct weighing *w, const struct measured_map *map,
+                           const struct material_curve *curve, const struct low_modes *modes,
+                           struct error *err) {
+    *w = (struct weighing){.curve = curve, .cells = modes->cells_x * modes->cells_y};
+    w->points = curve->n < POINTS_MOST ? curve->n : POINTS_MOST;
+    uint32_t *count = array_create(CLASSES * w->cells, sizeof *count);
+    const size_t some = count != NULL ? heights_count(w, map, modes, count) : 0;
+    w->heights = array_create(some, sizeof *w->heights);
+    w->z = array_create(w->points, sizeof *w->z);
+    w->share = array_create(CLASSES, sizeof *w->share);
+    if (count == NULL || w->heights == NULL || w->z == NULL || w->share == NULL) {
+        free(count);
+        weighing_clear(w);
+        return error_memory(err, CLASSES * w->cells * sizeof *count, "heights by cell");
+    }
+    for (size_t k = 0, at = 0; k < CLASSES; k++) {
+        for (size_t cell = 0; cell < w->cells; cell++)
+            if (count[k * w->cells + cell] > 0)
+                w->heights[at++] = (struct heights_in){(uint32_t)cell, count[k * w->cells + cell]};
+        w->first[k + 1] = at;
+    }
+    free(count);
     return 0;
 }
 
@@ -71,8 +94,8 @@ static void weigh(struct weighing *w, const double *wave, double part) {
     double all = 0, below = 0, mean = 0;
     for (size_t k = 0; k < CLASSES; k++) {
         w->share[k] = 0;
-        for (size_t cell = 0; cell < w->cells; cell++)
-            w->share[k] += (1 + part * wave[cell]) * (double)w->count[k * w->cells + cell];
+        for (size_t h = w->first[k]; h < w->first[k + 1]; h++)
+            w->share[k] += (1 + part * wave[w->heights[h].cell]) * (double)w->heights[h].count;
         all += w->share[k];
     }
     size_t k = 0;

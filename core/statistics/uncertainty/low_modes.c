@@ -137,6 +137,107 @@ double low_modes_excess_slopes(const struct low_modes *modes, const struct corre
     return excess_at(modes, &field);
 }
 
+/* Returns the correlation of a field at a lag; 0 beyond its reach. */
+static double field_at(const struct correlation_field *field, double x, double y) {
+    const double at_x = x / field->step + FIELD_LAGS, at_y = y / field->step + FIELD_LAGS;
+    const double last = FIELD_SIDE - 1;
+    if (!(at_x >= 0 && at_x < last && at_y >= 0 && at_y < last))
+        return 0;
+    const size_t a = (size_t)at_x, b = (size_t)at_y;
+    const double u = at_x - (double)a, v = at_y - (double)b;
+    const double *here = field->value[b], *above = field->value[b + 1];
+    return (1 - v) * ((1 - u) * here[a] + u * here[a + 1]) +
+           v * ((1 - u) * above[a] + u * above[a + 1]);
+}
+
+/* Offsets between cells. */
+enum { OFFSETS_X = 2 * CELLS_PROFILE - 1, OFFSETS_Y = 2 * CELLS_SURFACE - 1 };
+typedef double cell_offsets[OFFSETS_Y][OFFSETS_X];
+
+/* Fills in the mean correlation of points of two cells that are so many cells apart. */
+static void cells_correlate(const struct low_modes *modes, const struct correlation_field *field,
+                            const struct grid *grid, cell_offsets out) {
+    enum { PARTS = 4 };
+    static const double PART[PARTS] = {-0.75, -0.25, 0.25, 0.75};
+    static const double SHARE[PARTS] = {0.125, 0.375, 0.375, 0.125}; /* of pairs so far apart */
+    const bool profile = grid_is_profile(grid);
+    const double width = grid->lx / (double)modes->cells_x;
+    const double height = profile ? 0 : grid->ly / (double)modes->cells_y;
+    const long most_x = (long)modes->cells_x - 1, most_y = (long)modes->cells_y - 1;
+    for (long y = -most_y; y <= most_y; y++)
+        for (long x = -most_x; x <= most_x; x++) {
+            double mean = 0;
+            for (size_t u = 0; u < PARTS; u++)
+                for (size_t v = 0; v < (profile ? 1 : PARTS); v++)
+                    mean += SHARE[u] * (profile ? 1 : SHARE[v]) *
+                            field_at(field, ((double)x + PART[u]) * width,
+                                     profile ? 0 : ((double)y + PART[v]) * height);
+            out[y + most_y][x + most_x] = mean;
+        }
+}
+
+/* Fills in what the sums over cells, each times its weight, have to do with those of all others. */
+static void cells_spread(const struct low_modes *modes, cell_offsets correlation,
+                         const double *weight, double *out) {
+    const size_t nx = modes->cells_x, ny = modes->cells_y;
+    for (size_t cell = 0; cell < nx * ny; cell++) {
+        const size_t x = cell % nx, y = cell / nx;
+        out[cell] = 0;
+        for (size_t b = 0; b < ny; b++)
+            for (size_t a = 0; a < nx; a++)
+                out[cell] += weight[b * nx + a] * correlation[ny - 1 + y - b][nx - 1 + x - a];
+    }
+}
+
+/* Fills in the waves that weigh enough, about their means, times the counts and over the roots of
+ * what they weigh; returns how many. */
+static size_t waves_within(const struct low_modes *modes, const double *counts,
+                           double out[LOW_MODES_MOST][LOW_CELLS_MOST]) {
+    const size_t cells = modes->cells_x * modes->cells_y;
+    size_t waves = 0;
+    for (size_t m = 0; m < modes->count; m++) {
+        const double weight = low_mode_weight(modes, m, counts);
+        double n = 0, mean = 0;
+        if (!(weight > LOW_MODE_WEIGHT_LEAST))
+            continue;
+        for (size_t cell = 0; cell < cells; cell++) {
+            n += counts[cell];
+            mean += counts[cell] * modes->value[m][cell];
+        }
+        for (size_t cell = 0; cell < cells; cell++)
+            out[waves][cell] = counts[cell] * (modes->value[m][cell] - mean / n) / sqrt(weight);
+        waves++;
+    }
+    return waves;
+}
+
+double low_modes_freedom_slopes(const struct low_modes *modes,
+                                const struct correlation *correlation, const struct grid *grid,
+                                double lag, const double *counts) {
+    const double length = correlation_length(correlation), most = (double)modes->count;
+    const size_t cells = modes->cells_x * modes->cells_y;
+    double wave[LOW_MODES_MOST][LOW_CELLS_MOST], spread[LOW_CELLS_MOST];
+    double trace = 0, squares = 0;
+    struct correlation_field field;
+    cell_offsets between;
+    if (isnan(length) || !modes->open)
+        return most;
+    correlation_field_slopes(correlation, grid, length, lag, &field);
+    cells_correlate(modes, &field, grid, between);
+    const size_t waves = waves_within(modes, counts, wave);
+    for (size_t m = 0; m < waves; m++) {
+        cells_spread(modes, between, wave[m], spread);
+        for (size_t other = 0; other < waves; other++) {
+            double both = 0;
+            for (size_t cell = 0; cell < cells; cell++)
+                both += wave[other][cell] * spread[cell];
+            trace += other == m ? both : 0;
+            squares += both * both;
+        }
+    }
+    return squares > 0 ? fmin(trace * trace / squares, most) : most;
+}
+
 bool low_modes_fill(const struct measured_map *map, const struct correlation *correlation,
                     struct low_modes *out) {
     struct wave list[CANDIDATES];
@@ -208,6 +309,10 @@ double low_modes_variance_within(const struct low_modes *modes, const double *su
 
 double low_modes_factor(size_t count) {
     return gsl_cdf_tdist_Pinv(0.975, (double)count);
+}
+
+double low_modes_factor_over(const struct low_modes *modes, double freedom) {
+    return gsl_cdf_tdist_Pinv(0.975, freedom) / low_modes_factor(modes->count);
 }
 
 double correlation_lengths_inside(const struct correlation *correlation, const struct grid *grid) {

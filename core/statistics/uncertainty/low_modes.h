@@ -55,6 +55,11 @@ bool low_modes_fill(const struct measured_map *map, const struct correlation *co
 /* Returns the same of products of slopes over a lag, which is a length. */
 double low_modes_excess_slopes(const struct low_modes *modes, const struct correlation *correlation,
                                const struct grid *grid, double lag);
+/* Returns the degrees of freedom of low_modes_variance_within() of such products, of which the
+ * cells have these counts: at most as many as there are waves. */
+double low_modes_freedom_slopes(const struct low_modes *modes,
+                                const struct correlation *correlation, const struct grid *grid,
+                                double lag, const double *counts);
 
 /* Returns the first of the n points of a side that is in a cell. */
 static inline size_t cell_begin(size_t cell, size_t cells, size_t n) {
@@ -81,6 +86,8 @@ double low_modes_variance_within(const struct low_modes *modes, const double *su
                                  const double *counts, double n);
 /* Returns by how many standard errors a 95 % interval reaches to either side (Student). */
 double low_modes_factor(size_t count);
+/* The same with these degrees of freedom, over that with as many as there are waves. */
+double low_modes_factor_over(const struct low_modes *modes, double freedom);
 
 /* Returns how many times the longest lag, over directions, at which the correlation falls to 0.2
  * fits into the shorter side; 0 where it does not fall so far within half a side. */

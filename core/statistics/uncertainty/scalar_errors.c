@@ -100,17 +100,77 @@ static void influences_of_map(const struct measured_map *map, double out[INFLUEN
 /* A law that only just fits may have far longer tails than the surface: more is not believed. */
 static const double FAR_MOST = 3;
 
-void scalar_errors_by_law(struct scalar_errors *errors, const struct measured_map *map,
-                          const struct heights *law, const struct height_moments *moments) {
-    double wanted[INFLUENCES], found[INFLUENCES];
-    influences_of_law(law, moments, wanted);
+/* Replaces the mean squares that influences have over a law by the factors that they are to errors
+ * from the map; applies that of the RMS height. */
+static void law_apply(struct scalar_errors *errors, const struct measured_map *map,
+                      double influences[INFLUENCES]) {
+    double found[INFLUENCES];
     influences_of_map(map, found);
     for (size_t q = 0; q < INFLUENCES; q++)
-        wanted[q] = fmin(sqrt(wanted[q] / found[q]), FAR_MOST);
-    errors->sq *= wanted[0];
-    errors->m0 *= wanted[0];
-    errors->ssk *= wanted[1];
-    errors->sku *= fmax(wanted[2] / LONG_TAIL, 1); /* which is in the law */
+        influences[q] = fmin(sqrt(influences[q] / found[q]), FAR_MOST);
+    errors->sq *= influences[0];
+    errors->m0 *= influences[0];
+}
+
+void scalar_errors_by_law(struct scalar_errors *errors, const struct measured_map *map,
+                          const struct heights *law, const struct height_moments *moments) {
+    double factor[INFLUENCES];
+    influences_of_law(law, moments, factor);
+    law_apply(errors, map, factor);
+    errors->ssk *= factor[1];
+    errors->sku *= fmax(factor[2] / LONG_TAIL, 1); /* which is in the law */
+}
+
+/* Of a stratified face the law is that of few valleys, and as uncertain: as of functional
+ * parameters that rest on far heights (F18.61). */
+static const double FEW_VALLEYS = 1.1;
+
+/* Heights of a stratified face in equal steps, with the share of each. */
+enum { STRATA_STEPS = 4000 };
+struct strata {
+    double height[STRATA_STEPS], share[STRATA_STEPS];
+};
+
+static void strata_fill(const struct plateau_law *law, struct strata *out) {
+    static const double REACH = 8;
+    const double low = fmin(law->valley_mean - REACH * law->valley_rms,
+                            law->plateau_mean - REACH * law->plateau_rms);
+    const double high = law->plateau_mean + REACH * law->plateau_rms;
+    const double step = (high - low) / STRATA_STEPS;
+    double above = 1;
+    for (size_t n = 0; n < STRATA_STEPS; n++) {
+        const double next = plateau_ratio(law, low + ((double)n + 1) * step);
+        out->height[n] = low + ((double)n + 0.5) * step;
+        out->share[n] = above - next;
+        above = next;
+    }
+}
+
+static double strata_moment(const struct strata *strata, double mean, double rms, int power) {
+    double moment = 0;
+    for (size_t n = 0; n < STRATA_STEPS; n++)
+        moment += strata->share[n] * pow((strata->height[n] - mean) / rms, power);
+    return moment;
+}
+
+void scalar_errors_by_strata(struct scalar_errors *errors, const struct measured_map *map,
+                             const struct plateau_law *law) {
+    struct strata strata;
+    strata_fill(law, &strata);
+    const double mean = strata_moment(&strata, 0, 1, 1);
+    const double rms = sqrt(strata_moment(&strata, mean, 1, 2));
+    const double skewness = strata_moment(&strata, mean, rms, 3);
+    const double kurtosis = strata_moment(&strata, mean, rms, 4);
+    double factor[INFLUENCES] = {0};
+    for (size_t n = 0; n < STRATA_STEPS; n++) {
+        double influences[INFLUENCES];
+        influences_at((strata.height[n] - mean) / rms, skewness, kurtosis, influences);
+        for (size_t q = 0; q < INFLUENCES; q++)
+            factor[q] += strata.share[n] * influences[q] * influences[q];
+    }
+    law_apply(errors, map, factor);
+    errors->ssk *= FEW_VALLEYS * factor[1];
+    errors->sku *= fmax(factor[2], 1); /* beside LONG_TAIL */
 }
 
 /* Fills the deviations from the mean by cell, over the mean and the number of all; returns the

@@ -4,6 +4,7 @@
 #ifndef RUGO_CORE_STATISTICS_UNCERTAINTY_SCALAR_ERRORS_H
 #define RUGO_CORE_STATISTICS_UNCERTAINTY_SCALAR_ERRORS_H
 
+#include "core/statistics/heights/plateau.h"
 #include "core/statistics/summits/summit_list.h"
 #include "core/statistics/uncertainty/cell_heights.h"
 #include "core/surface/heights.h"
@@ -26,6 +27,9 @@ void scalar_errors_differences(const struct cell_differences *differences,
  * law: standardised by `moments`. */
 void scalar_errors_by_law(struct scalar_errors *errors, const struct measured_map *map,
                           const struct heights *law, const struct height_moments *moments);
+/* The same by the law of a stratified face. */
+void scalar_errors_by_strata(struct scalar_errors *errors, const struct measured_map *map,
+                             const struct plateau_law *law);
 /* Fills those of the same parameters over a share of the area alone, heights being those of all: a
  * mean over it differs from that over all by what a field has at wave number 0, over one area less
  * that over the other. */

@@ -4,7 +4,7 @@
 #include "core/map/detrend.h"
 #include "core/statistics/uncertainty/cell_heights.h"
 #include "tests/support/check.h"
-#include "tests/support/seed.h"
+#include "tests/support/noise.h"
 #include <stdlib.h>
 
 static const struct grid SQUARE = {64, 64, 1, 1}, OBLONG = {128, 32, 4, 1}, LINE = {256, 1, 1, 1};
@@ -90,6 +90,73 @@ static void variance_within_a_part(void **state) {
     check_relative(mean * 12 * n, 1, 5 * sqrt(2. / 19 / TRIALS));
 }
 
+/* Fills a map with the sums of independent numbers over squares. */
+static void squares_fill(uint64_t *seed, double *z) {
+    enum { SIDE = 64, SQUARE_SIDE = 4, WHOLE = SIDE + SQUARE_SIDE };
+    static double noise[WHOLE * WHOLE];
+    noise_fill(seed, (size_t)WHOLE * WHOLE, noise);
+    for (size_t j = 0; j < SIDE; j++)
+        for (size_t i = 0; i < SIDE; i++) {
+            z[j * SIDE + i] = 0;
+            for (size_t b = 0; b < SQUARE_SIDE; b++)
+                for (size_t a = 0; a < SQUARE_SIDE; a++)
+                    z[j * SIDE + i] += noise[(j + b) * WHOLE + i + a];
+        }
+}
+
+/* Fills the sums over cells of what squared differences over a lag are more than their mean, over
+ * that mean. */
+static void deviations_fill(const struct cell_differences *d, double *out) {
+    double n = 0, mean = 0;
+    for (size_t cell = 0; cell < LOW_CELLS_MOST; cell++) {
+        n += d->count[cell];
+        mean += d->slope[cell];
+    }
+    for (size_t cell = 0; cell < LOW_CELLS_MOST; cell++)
+        out[cell] = (d->slope[cell] - d->count[cell] * mean / n) / mean;
+}
+
+/* Differences over an eighth of the side are known in a part of the map, and alike over much of it:
+ * of 19 waves far fewer are independent. Their variance scatters from map to map as one of the
+ * degrees of freedom that are stated. */
+static void freedom_over_a_lag(void **state) {
+    (void)state;
+    enum { TRIALS = 240, LAG = 8 };
+    uint64_t seed = seed_or(8);
+    static struct low_modes modes;
+    static struct cell_differences differences;
+    static double z[64 * 64];
+    const struct grid grid = {64, 64, 64, 64};
+    const struct measured_map map = {&grid, z, BOUNDARY_OPEN};
+    double sum = 0, square = 0, freedom = 0, nearest = 0;
+    assert_true(low_modes_fill(&map, NULL, &modes));
+    for (int trial = 0; trial < TRIALS; trial++) {
+        double deviations[LOW_CELLS_MOST];
+        struct correlation *correlation = NULL;
+        squares_fill(&seed, z);
+        cell_differences_measure(&map, &modes, LAG, &differences);
+        deviations_fill(&differences, deviations);
+        const double variance = low_modes_variance_within(&modes, deviations, differences.count, 1);
+        sum += variance;
+        square += variance * variance;
+        if (trial % 24 != 0)
+            continue;
+        assert_int_equal(correlation_create(&correlation, &map, NULL), 0);
+        freedom += low_modes_freedom_slopes(&modes, correlation, &grid, LAG, differences.count);
+        cell_differences_measure(&map, &modes, 1, &differences);
+        nearest += low_modes_freedom_slopes(&modes, correlation, &grid, 1, differences.count);
+        correlation_destroy(&correlation);
+    }
+    freedom /= TRIALS / 24;
+    nearest /= TRIALS / 24;
+    const double mean = sum / TRIALS, found = 2 / (square / TRIALS / (mean * mean) - 1);
+    print_message("stated %.1f, of neighbours %.1f, found %.1f\n", freedom, nearest, found);
+    assert_true(nearest > 17 && nearest <= 19 && freedom < 14);
+    /* squares of differences scatter a little more than a Gaussian field */
+    check_relative(found, freedom, 4 * sqrt((2 + 12 / freedom) / TRIALS));
+    check_relative(low_modes_factor_over(&modes, 10), 2.2281 / low_modes_factor(19), 1e-4);
+}
+
 static void heights_by_cell(void **state) {
     (void)state;
     uint64_t seed = seed_or(4);
@@ -133,6 +200,7 @@ static void heights_by_cell(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(waves_are_orthonormal), cmocka_unit_test(variance_of_a_mean),
-        cmocka_unit_test(variance_within_a_part), cmocka_unit_test(heights_by_cell)};
+        cmocka_unit_test(variance_within_a_part), cmocka_unit_test(freedom_over_a_lag),
+        cmocka_unit_test(heights_by_cell)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -88,6 +88,40 @@ static void far_heights(void **state) {
     assert_true(cut.sku > 1.2 * whole.sku);
 }
 
+/* Returns the height of which a share of a stratified face lies above. */
+static double height_above(const struct plateau_law *law, double share) {
+    double low = -100, high = 100;
+    for (int n = 0; n < 60; n++) {
+        const double middle = (low + high) / 2;
+        if (plateau_ratio(law, middle) > share)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* The same of a stratified face, whose far heights are its valleys. */
+static void far_valleys(void **state) {
+    (void)state;
+    static double z[POINTS];
+    const struct measured_map map = {&GRID, z, BOUNDARY_OPEN};
+    const struct plateau_law law = {
+        .plateau_mean = 1, .plateau_rms = 0.5, .valley_mean = 2, .valley_rms = 2};
+    struct scalar_errors whole = {.sq = 1, .m0 = 1, .ssk = 1, .sku = 1}, cut = whole;
+    for (size_t point = 0; point < POINTS; point++)
+        z[point] = height_above(&law, ((double)point + 0.5) / POINTS);
+    scalar_errors_by_strata(&whole, &map, &law);
+    check_relative(whole.sq, 1, 0.01);
+    check_relative(whole.ssk, 1.1, 0.1); /* 2304 heights lack what is beyond the last ones */
+    assert_true(whole.sku >= 1 && whole.sku < 1.4);
+    for (size_t point = POINTS - POINTS / 100; point < POINTS; point++)
+        z[point] = z[POINTS - POINTS / 100 - 1];
+    scalar_errors_by_strata(&cut, &map, &law);
+    assert_true(cut.sq > 1.02 * whole.sq && cut.ssk > 1.1 * whole.ssk);
+    assert_true(cut.sku > 1.2 * whole.sku);
+}
+
 /* Differences over a lag as by their definition, of a wave. */
 static void differences_of_a_wave(void **state) {
     (void)state;
@@ -173,8 +207,9 @@ static void searched_points(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(independent_heights), cmocka_unit_test(errors_inside),
-        cmocka_unit_test(far_heights),         cmocka_unit_test(differences_of_a_wave),
-        cmocka_unit_test(scattered_summits),   cmocka_unit_test(searched_points)};
+        cmocka_unit_test(independent_heights),   cmocka_unit_test(errors_inside),
+        cmocka_unit_test(far_heights),           cmocka_unit_test(far_valleys),
+        cmocka_unit_test(differences_of_a_wave), cmocka_unit_test(scattered_summits),
+        cmocka_unit_test(searched_points)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
