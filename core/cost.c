@@ -196,13 +196,19 @@ static const double GENTLE = 0.3, UPRIGHT = 0.3, PROFILE_WIDE = 10, SURFACE_WIDE
  * FAR_STEPS (l h' - FAR) more loads' work. */
 static const double FAR = 0.11, FAR_STEPS = 33;
 static const double USUAL_LOAD = 0.1; /* p/(E* h') */
-/* Steep faces overhang and jump from a load on: those of slopes above JUMPING (p/0.1)^-JUMPING_LOAD
- * at loads below 0.1, above JUMPING beyond, take e^(JUMPS more) as much, in the mean. One of
- * several faces does, with ten times the iterations of the others. */
-static const double JUMPING = 0.9, JUMPING_PRESSURES = 0.6, JUMPING_LOAD = 0.4;
-static const double PROFILE_JUMPS = 4.5, SURFACE_JUMPS = 2.5;
-/* What is hard takes so many times as much at most. */
-static const double HARD_MOST = 30;
+/* Steep faces fold and jump, some of them: a realisation does at a normal distribution's share of
+ * those below (h' + JUMP_LOAD ln(p/0.1) - jump_slope)/jump_width at the highest load p, and more in
+ * cells of more than JUMP_WAVES shortest waves. A jump takes so many iterations as `newton`, with
+ * `linear` of the linear equations in each (0: as many as in others), and factorisations, e times
+ * more or less. */
+struct jump_fit {
+    double slope, pressures_slope, width, pressures_width, newton, linear, factored;
+};
+static const struct jump_fit PROFILE_JUMP = {0.98, 1, 0.12, 0.3, 300, 20, 160},
+                             SURFACE_JUMP = {1.75, 1.75, 0.25, 0.25, 150, 0, 0};
+static const double JUMP_LOAD = 0.036, JUMP_WAVES = 16;
+/* Fewer jumps a realisation are not counted. */
+static const double RARE = 1e-3;
 /* Iterations of the linear equations: LINEAR_LEAST + STEEP h' (1 + h') (0.4 min(B, 10))^0.6
  * (nx/SIDE)^SIDE_POWER, with B = 1/(1 - 2 nu), about the bulk over the shear modulus, and at least
  * 1 for the power. With pressures as unknowns it is LINEAR_PRESSURES, and there are PRESSURE_TENS
@@ -222,7 +228,7 @@ struct full_fit {
 static const struct full_fit PROFILE_FULL = {400, 55, 2.5, 35, 1e4},
                              SURFACE_FULL = {1800, 130, 4, 60, 7e4};
 /* They hold for so many degrees of freedom or more, and rise by this power of fewer. */
-static const double FULL_FREEDOM = 40000, CACHE_POWER = 0.2;
+static const double FULL_FREEDOM = 40000, CACHE_POWER = 0.2, FACTOR_CACHE_POWER = 0.4;
 /* Arrays take so many times their bytes, with what heaps keep between them. */
 static const double MEMORY_ROOM = 1.03;
 /* Iterations of the linear equations of a step, over their mean, at most. */
@@ -254,11 +260,11 @@ static const double STEP_SOLVES = 6.8, SOLVES_STEEP = 0.15, SOLVES_RUBBER = 0.28
 static const double STEP_FACTORED = 0.1, FACTORED_RUBBER = 0.24, FACTORED_FINER = 0.5,
                     FACTORED_STEEP = 1.27, FACTORED_SLOPE = 0.32;
 static const double WAVE_NODES = 4, LEG_STEPS = 20, RUBBER_DECADES = 3.7;
-/* Where the coefficient times h' is above HARD (p/0.1)^-HARD_LOAD, steps are halved, and faces
- * may fold and jump: all takes e^(HARDER more) as much, in the mean. Single faces take a tenth to
- * twice of that. */
-static const double HARD = 0.29, HARDER = 7, HARD_RUBBER = 0.26, HARDER_RUBBER = 11,
-                    HARD_LOAD = 0.4;
+/* As a face without friction jumps, a profile that is dragged does at such a share of
+ * (mu h' (p/0.1)^FRICTION_JUMP_LOAD - FRICTION_JUMP_STEEP)/FRICTION_JUMP_WIDTH. It takes so many
+ * iterations of Newton's method, and factorisations in each. */
+static const double FRICTION_JUMP_LOAD = 0.4, FRICTION_JUMP_STEEP = 0.6, FRICTION_JUMP_WIDTH = 0.15,
+                    FRICTION_JUMP_NEWTON = 600, FRICTION_JUMP_FACTORED = 0.3;
 /* Of surfaces, iterations of a step over those of a load without friction: Newton's, and of the
  * linear equations. Bytes of a degree of freedom, more with pressures. */
 static const double SURFACE_FRICTION_NEWTON = 0.8, SURFACE_FRICTION_LINEAR = 1.4;
@@ -297,7 +303,8 @@ struct full_size cost_full_size(const struct grid *grid, const struct block *blo
         .newton = newton_iterations(grid, block->poisson, pressures, rms_slope),
         .linear = linear_iterations(grid, block->poisson, pressures, rms_slope),
         .pressures = pressures,
-        .overhangs = rms_slope > OVERHANG_SLOPE && options->kinematics != KINEMATICS_SMALL};
+        .folds = options->kinematics != KINEMATICS_SMALL};
+    size.overhangs = size.folds && rms_slope > OVERHANG_SLOPE;
     size.factored = profile && size.linear > FACTORED_ITERATIONS;
     return size;
 }
@@ -310,6 +317,7 @@ static struct full_fit nanoseconds(const struct grid *grid, const struct full_si
     out.linear += out.each * size->linear + (size->pressures ? out.pressures : 0);
     out.newton *= part;
     out.linear *= part;
+    out.factored *= fmin(1, pow(size->degrees_of_freedom / FULL_FREEDOM, FACTOR_CACHE_POWER));
     return out;
 }
 
@@ -323,24 +331,46 @@ struct full_limit cost_full_limit(const struct grid *grid, const struct full_siz
                                .factored = unit * each.factored};
 }
 
-/* Returns how much more work a load takes for jumps. */
-static double jumps(const struct grid *grid, const struct full_size *size, double rms_slope,
-                    double load) {
-    double least = (size->pressures ? JUMPING_PRESSURES : JUMPING) *
-                   pow(fmin(1, load / USUAL_LOAD), -JUMPING_LOAD);
-    double rate = grid_is_profile(grid) ? PROFILE_JUMPS : SURFACE_JUMPS;
-    return fmin(exp(rate * fmax(0, rms_slope - least)), HARD_MOST);
-}
-
-double cost_full_loads(const struct grid *grid, const struct full_size *size, double rms_slope,
-                       size_t count, const double *loads) {
+double cost_full_loads(double rms_slope, size_t count, const double *loads) {
     double all = loads != NULL ? 0 : (double)count;
     for (size_t l = 0; loads != NULL && l < count; l++) {
         double length = loads[l] - (l > 0 ? loads[l - 1] : 0);
-        all += (1 + FAR_STEPS * fmax(0, length * rms_slope - FAR)) *
-               jumps(grid, size, rms_slope, loads[l]);
+        all += 1 + FAR_STEPS * fmax(0, length * rms_slope - FAR);
     }
     return all;
+}
+
+/* Returns the share of a standard normal distribution below x. */
+static double normal_below(double x) {
+    return erfc(-x / sqrt(2)) / 2;
+}
+
+/* Returns what so many jumps take in the mean: each an exponentially distributed time, of this mean
+ * and no more than a limit. */
+static struct cost_jumps jumps_of(double number, double seconds, double limit) {
+    const double each = limit > 0 ? fmin(seconds, limit) : seconds;
+    return (struct cost_jumps){.seconds = number * each, .variance = 2 * number * each * each};
+}
+
+/* Returns how many cells of so many waves a cell is worth. */
+static double cell_share(double waves) {
+    return fmax(1, waves / JUMP_WAVES);
+}
+
+struct cost_jumps cost_full_jumps(const struct grid *grid, const struct full_size *size,
+                                  double rms_slope, double pressure, double limit) {
+    const struct jump_fit *fit = grid_is_profile(grid) ? &PROFILE_JUMP : &SURFACE_JUMP;
+    const double slope = rms_slope + JUMP_LOAD * log(pressure / USUAL_LOAD);
+    const double least = size->pressures ? fit->pressures_slope : fit->slope;
+    const double width = size->pressures ? fit->pressures_width : fit->width;
+    const double number = normal_below((slope - least) / width) * cell_share(grid->lx);
+    struct full_size within = *size;
+    within.linear = fit->linear > 0 ? fit->linear : size->linear;
+    const struct full_limit each = cost_full_limit(grid, &within, 0);
+    return jumps_of(number > RARE && size->folds ? number : 0,
+                    fit->newton * (each.newton + within.linear * each.linear) +
+                        fit->factored * each.factored,
+                    limit);
 }
 
 double cost_full_contact(const struct grid *grid, const struct full_size *size, double loads) {
@@ -369,25 +399,17 @@ static double rubber_share(const struct friction_work *of) {
     return of->load->pressures ? fmin(1, fmax(0, decades - 1) / (RUBBER_DECADES - 1)) : 0;
 }
 
-/* Returns by how much more steps take that are halved. */
-static double hard(const struct friction_work *of, double rubber) {
-    double least =
-        (HARD + rubber * (HARD_RUBBER - HARD)) * pow(of->pressure / USUAL_LOAD, -HARD_LOAD);
-    double more = fmax(0, of->coefficient * of->rms_slope - least);
-    return fmin(exp((HARDER + rubber * (HARDER_RUBBER - HARDER)) * more), HARD_MOST);
-}
-
 static struct friction_size profile_step(const struct friction_work *of) {
     const double steep = of->coefficient + of->rms_slope, finer = of->wave / WAVE_NODES;
-    const double rubber = rubber_share(of), more = hard(of, rubber);
+    const double rubber = rubber_share(of);
     const double factored = pow(finer, FACTORED_FINER) * exp(FACTORED_STEEP * steep) *
                             pow(of->rms_slope, FACTORED_SLOPE);
     return (struct friction_size){
         .newton = STEP_NEWTON * pow(finer, NEWTON_FINER) * exp(NEWTON_STEEP * steep) *
                   pow(of->leg / LEG_STEPS, -NEWTON_SHORT) *
-                  pow(of->pressure / USUAL_LOAD, NEWTON_LOAD) * (1 + rubber * NEWTON_RUBBER) * more,
+                  pow(of->pressure / USUAL_LOAD, NEWTON_LOAD) * (1 + rubber * NEWTON_RUBBER),
         .linear = STEP_SOLVES * exp(SOLVES_STEEP * steep) * (1 + rubber * SOLVES_RUBBER),
-        .factored = (STEP_FACTORED + rubber * FACTORED_RUBBER * factored) * more};
+        .factored = STEP_FACTORED + rubber * FACTORED_RUBBER * factored};
 }
 
 struct friction_size cost_friction_size(const struct friction_work *of) {
@@ -413,6 +435,21 @@ double cost_friction_steps(const struct friction_work *of, double steps) {
     const struct full_limit each = cost_friction_limit(of, 0);
     return steps * (step.newton * (each.newton + step.linear * each.linear) +
                     step.factored * each.factored);
+}
+
+struct cost_jumps cost_friction_jumps(const struct friction_work *of, double limit) {
+    const double steep =
+        of->coefficient * of->rms_slope * pow(of->pressure / USUAL_LOAD, FRICTION_JUMP_LOAD);
+    const double number = grid_is_profile(of->grid)
+                              ? normal_below((steep - FRICTION_JUMP_STEEP) / FRICTION_JUMP_WIDTH) *
+                                    cell_share(of->grid->lx)
+                              : 0;
+    const struct full_limit each = cost_friction_limit(of, 0);
+    return jumps_of(number > RARE ? number : 0,
+                    FRICTION_JUMP_NEWTON *
+                        (each.newton + cost_friction_size(of).linear * each.linear +
+                         FRICTION_JUMP_FACTORED * each.factored),
+                    limit);
 }
 
 double cost_friction_bytes(const struct grid *grid, const struct block *block,

@@ -50,6 +50,7 @@ struct full_size {
     double linear;             /* iterations of the linear equations in each of these */
     bool factored;             /* linear is so large that the equations are factorised instead */
     bool pressures; /* elements are nearly incompressible: their pressures are unknowns */
+    bool folds;     /* strains are finite: a steep face may fold and jump */
     bool overhangs; /* the face is so steep that it may overhang (core/full/full.h) */
 };
 struct full_size cost_full_size(const struct grid *grid, const struct block *block,
@@ -65,10 +66,19 @@ struct full_size cost_full_size(const struct grid *grid, const struct block *blo
  * it. */
 double cost_full_contact(const struct grid *grid, const struct full_size *size, double loads);
 /* Returns the number of loads near each other whose work these rising ones take, in E* h': those
- * far from the one before are reached in several steps on steep faces, and faces may jump. NULL:
- * all are near. */
-double cost_full_loads(const struct grid *grid, const struct full_size *size, double rms_slope,
-                       size_t count, const double *loads);
+ * far from the one before are reached in several steps on steep faces. NULL: all are near. */
+double cost_full_loads(double rms_slope, size_t count, const double *loads);
+/* What jumps of steep faces take of a realisation: CPU seconds in the mean, and the variance of it
+ * between realisations, of which some jump. Each jump takes the limit at most, unless it is 0. */
+struct cost_jumps {
+    double seconds, variance;
+};
+static inline struct cost_jumps cost_jumps_sum(struct cost_jumps a, struct cost_jumps b) {
+    return (struct cost_jumps){a.seconds + b.seconds, a.variance + b.variance};
+}
+/* pressure: the highest load, in E* h'. */
+struct cost_jumps cost_full_jumps(const struct grid *grid, const struct full_size *size,
+                                  double rms_slope, double pressure, double limit);
 /* What iterations on a mesh of this size count of a limit of so many of these seconds. */
 struct full_limit cost_full_limit(const struct grid *grid, const struct full_size *size,
                                   double seconds);
@@ -99,6 +109,8 @@ struct friction_size cost_friction_size(const struct friction_work *of);
  * trial of one does not show what the others take. Twenty studies took 0.57 to 5.8 of the estimate.
  */
 double cost_friction_steps(const struct friction_work *of, double steps);
+/* As cost_full_jumps, of a path. */
+struct cost_jumps cost_friction_jumps(const struct friction_work *of, double limit);
 /* As cost_full_limit. */
 struct full_limit cost_friction_limit(const struct friction_work *of, double seconds);
 double cost_friction_bytes(const struct grid *grid, const struct block *block,

@@ -415,6 +415,7 @@ static double area_scatter(const struct contact_case *one_case) {
 void contact_case_estimate(const struct contact_case *one_case, struct study_cost *out) {
     const struct surface_case *surface = &one_case->surface;
     const struct grid *finest = &contact_case_finest(one_case)->grid;
+    struct cost_jumps jumps = {0};
     surface_case_estimate(surface, out);
     out->tolerance = one_case->tolerance;
     out->fine_height = 0;
@@ -433,7 +434,13 @@ void contact_case_estimate(const struct contact_case *one_case, struct study_cos
             const struct quantity_scene quantities = quantity_scene_of(one_case, m, l);
             out->seconds += one_case->models[m]->seconds(one_case, m, &one_case->levels[l].grid) +
                             contact_quantities_seconds(&quantities);
+            jumps = cost_jumps_sum(jumps, contact_quantities_jumps(&quantities));
+            if (one_case->models[m]->jumps != NULL)
+                jumps = cost_jumps_sum(
+                    jumps, one_case->models[m]->jumps(one_case, m, &one_case->levels[l].grid));
         }
+    out->rare_seconds = jumps.seconds;
+    out->rare_variance = jumps.variance;
     out->seconds += companions_seconds(one_case);
     out->result_bytes = contact_rows_bytes(one_case);
     out->runs_most = RUNS_MOST;

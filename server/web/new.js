@@ -144,7 +144,8 @@ export async function showNew(root, signal, from) {
       if (mine !== turn) return;
       showFaults([]);
       const realisations = plan.realisations ? ` of ${plan.realisations} realisations` : "";
-      cost.textContent = `${plan.cases.length} ${plan.cases.length === 1 ? "case" : "cases"}${realisations}: about ${duration(plan.seconds)} of CPU time, ${number(plan.memory_bytes / 2 ** 20, 2)} MiB a worker, expected error ${number(100 * Math.max(...plan.cases.map((one) => one.relative_error)), 2)} %`;
+      const range = plan.seconds_most ? ` (${duration(plan.seconds_least)} to ${duration(plan.seconds_most)})` : "";
+      cost.textContent = `${plan.cases.length} ${plan.cases.length === 1 ? "case" : "cases"}${realisations}: about ${duration(plan.seconds)}${range} of CPU time, ${number(plan.memory_bytes / 2 ** 20, 2)} MiB a worker, expected error ${number(100 * Math.max(...plan.cases.map((one) => one.relative_error)), 2)} %`;
       submit.disabled = false;
     } catch (error) {
       if (mine !== turn || signal.aborted) return;

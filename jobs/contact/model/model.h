@@ -8,6 +8,7 @@
 #define RUGO_JOBS_CONTACT_MODEL_MODEL_H
 
 #include "core/contact/contact.h"
+#include "core/cost.h"
 #include "core/full/material.h"
 #include "core/full/mesh.h"
 #include "jobs/contact/measure.h"
@@ -113,6 +114,9 @@ struct contact_model {
      * core. */
     double (*bytes)(const struct contact_case *one_case, size_t model, const struct grid *grid);
     double (*seconds)(const struct contact_case *one_case, size_t model, const struct grid *grid);
+    /* Returns what only some realisations take of these seconds. NULL: all take the same. */
+    struct cost_jumps (*jumps)(const struct contact_case *one_case, size_t model,
+                               const struct grid *grid);
 
     /* Borrows both, which must outlive it; the compliance is that of `block`. */
     int (*create)(struct contact_solver **out, const struct contact_case *one_case, size_t model,

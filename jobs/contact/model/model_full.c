@@ -133,13 +133,23 @@ static double bytes(const struct contact_case *one_case, size_t model, const str
     return cost_full_bytes(grid, block, &options, &size) + patch_finder_bytes(grid);
 }
 
+static struct cost_jumps jumps(const struct contact_case *one_case, size_t model,
+                               const struct grid *grid) {
+    struct full_options options = contact_case_full_options(one_case, grid);
+    struct full_size size =
+        cost_full_size(grid, &one_case->blocks[model], &options, one_case->rms_slope);
+    if (one_case->loads == NULL)
+        return (struct cost_jumps){0};
+    return cost_full_jumps(grid, &size, one_case->rms_slope,
+                           one_case->loads[one_case->load_count - 1], one_case->time_limit);
+}
+
 static double seconds(const struct contact_case *one_case, size_t model, const struct grid *grid) {
     struct full_options options = contact_case_full_options(one_case, grid);
     struct full_size size =
         cost_full_size(grid, &one_case->blocks[model], &options, one_case->rms_slope);
-    double loads =
-        cost_full_loads(grid, &size, one_case->rms_slope, one_case->load_count, one_case->loads);
-    double expected = cost_full_contact(grid, &size, loads);
+    double loads = cost_full_loads(one_case->rms_slope, one_case->load_count, one_case->loads);
+    double expected = cost_full_contact(grid, &size, loads) + jumps(one_case, model, grid).seconds;
     return one_case->time_limit > 0 ? fmin(expected, one_case->time_limit) : expected;
 }
 
@@ -258,6 +268,7 @@ const struct contact_model FULL_MODEL = {
     .mesh_floor = mesh_floor,
     .bytes = bytes,
     .seconds = seconds,
+    .jumps = jumps,
     .times_linear = 20,
     .create = create,
     .destroy = destroy,

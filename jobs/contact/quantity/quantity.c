@@ -90,6 +90,14 @@ double contact_quantities_seconds(const struct quantity_scene *scene) {
     return seconds;
 }
 
+struct cost_jumps contact_quantities_jumps(const struct quantity_scene *scene) {
+    struct cost_jumps all = {0};
+    for (size_t q = 0; q < CONTACT_QUANTITIES; q++)
+        if (has_state(scene, q) && QUANTITIES[q]->jumps != NULL)
+            all = cost_jumps_sum(all, QUANTITIES[q]->jumps(scene));
+    return all;
+}
+
 int contact_quantities_measure(const struct contact_quantities *quantities,
                                const struct measure_context *context,
                                const struct contact_pressed *pressed,

@@ -7,6 +7,7 @@
 #ifndef RUGO_JOBS_CONTACT_QUANTITY_QUANTITY_H
 #define RUGO_JOBS_CONTACT_QUANTITY_QUANTITY_H
 
+#include "core/cost.h"
 #include "jobs/contact/contact_case.h"
 
 /* All quantities: NAME and how many measures it has. NAME_QUANTITY is its struct, NAME_PARAMETERS
@@ -101,6 +102,8 @@ struct contact_quantity {
     /* Return the bytes of a state, and the CPU seconds of all loads on a 3 GHz core. */
     double (*bytes)(const struct quantity_scene *scene);
     double (*seconds)(const struct quantity_scene *scene);
+    /* As of a model (model.h). */
+    struct cost_jumps (*jumps)(const struct quantity_scene *scene);
     /* NULL where it keeps nothing, as the two above and the next. */
     int (*create)(struct quantity_state **out, const struct quantity_scene *scene,
                   struct error *err);
@@ -154,6 +157,7 @@ int contact_quantities_create(struct contact_quantities *out, const struct quant
 void contact_quantities_clear(struct contact_quantities *quantities);
 double contact_quantities_bytes(const struct quantity_scene *scene);
 double contact_quantities_seconds(const struct quantity_scene *scene);
+struct cost_jumps contact_quantities_jumps(const struct quantity_scene *scene);
 /* Fills values[QUANTITY_MEASURES_MOST]; NaN where not asked for. quantities may be NULL. */
 int contact_quantities_measure(const struct contact_quantities *quantities,
                                const struct measure_context *context,

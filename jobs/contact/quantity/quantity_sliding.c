@@ -80,6 +80,10 @@ static double seconds_of(const struct quantity_scene *scene) {
     return is_linear(scene) ? sliding_linear_seconds(scene) : 0;
 }
 
+static struct cost_jumps jumps_of(const struct quantity_scene *scene) {
+    return scene->slides ? sliding_full_jumps(scene) : (struct cost_jumps){0};
+}
+
 static void destroy(struct quantity_state **state) {
     if (*state != NULL) {
         sliding_full_destroy(&(*state)->full);
@@ -186,6 +190,7 @@ const struct contact_quantity SLIDING_QUANTITY = {.measures = MEASURES,
                                                   .read = asked,
                                                   .bytes = bytes_of,
                                                   .seconds = seconds_of,
+                                                  .jumps = jumps_of,
                                                   .create = create,
                                                   .destroy = destroy,
                                                   .complete = complete,

@@ -295,16 +295,37 @@ static double steps_expected(const struct quantity_scene *scene) {
     return all * more * (1 + STEEPER * one_case->rms_slope);
 }
 
-double sliding_full_seconds(const struct quantity_scene *scene) {
+/* CPU seconds until the load is held and along the path, and what jumps take of both. */
+struct sliding_cost {
+    double held, dragged;
+    struct cost_jumps jumps;
+};
+
+static struct sliding_cost cost_of(const struct quantity_scene *scene) {
     const struct contact_case *one_case = scene->one_case;
     const struct full_options options = contact_case_full_options(one_case, &scene->grid);
     const struct full_size size =
         cost_full_size(&scene->grid, &scene->block, &options, one_case->rms_slope);
     const struct friction_work work = work_of(scene, &size);
     const double pressing = one_case->slip_pressing ? PRESS_STEPS : 0;
-    const double dragging = cost_friction_steps(&work, steps_expected(scene) + pressing);
-    const double load = held_load(one_case);
-    const double held = cost_full_loads(&scene->grid, &size, one_case->rms_slope, 1, &load);
-    return cost_full_contact(&scene->grid, &size, held + pressing) +
-           (one_case->time_limit > 0 ? fmin(dragging, one_case->time_limit) : dragging);
+    const double load = held_load(one_case), limit = one_case->time_limit;
+    const struct cost_jumps held =
+        cost_full_jumps(&scene->grid, &size, one_case->rms_slope, load, limit);
+    const struct cost_jumps dragged = cost_friction_jumps(&work, limit);
+    const double steps =
+        cost_friction_steps(&work, steps_expected(scene) + pressing) + dragged.seconds;
+    const double loads = cost_full_loads(one_case->rms_slope, 1, &load) + pressing;
+    return (struct sliding_cost){.held =
+                                     cost_full_contact(&scene->grid, &size, loads) + held.seconds,
+                                 .dragged = limit > 0 ? fmin(steps, limit) : steps,
+                                 .jumps = cost_jumps_sum(held, dragged)};
+}
+
+double sliding_full_seconds(const struct quantity_scene *scene) {
+    const struct sliding_cost cost = cost_of(scene);
+    return cost.held + cost.dragged;
+}
+
+struct cost_jumps sliding_full_jumps(const struct quantity_scene *scene) {
+    return cost_of(scene).jumps;
 }

@@ -15,5 +15,7 @@ int sliding_full_solve(struct sliding_full *sliding, const struct measure_contex
                        const double *z, struct sliding_record *record, struct error *err);
 double sliding_full_bytes(const struct quantity_scene *scene);
 double sliding_full_seconds(const struct quantity_scene *scene);
+/* What only some realisations take of these. */
+struct cost_jumps sliding_full_jumps(const struct quantity_scene *scene);
 
 #endif

@@ -111,6 +111,18 @@ static size_t own_columns(const struct study *study, bool shown[OWN_COUNT]) {
     return count;
 }
 
+/* Writes CPU seconds, with the range where they scatter. */
+static void cost_text(double seconds, struct plan_range range, char *out, size_t size) {
+    char time[48], least[48], most[48];
+    duration_text(seconds, time, sizeof time);
+    duration_text(range.least, least, sizeof least);
+    duration_text(range.most, most, sizeof most);
+    if (isnan(range.most))
+        snprintf(out, size, "%s", time);
+    else
+        snprintf(out, size, "%s (%s to %s)", time, least, most);
+}
+
 static void print_cases(const struct study *study) {
     size_t swept = 0;
     while (study->swept[swept] != NULL)
@@ -131,8 +143,8 @@ static void print_cases(const struct study *study) {
             table_cell(&table, "%s", OWN_COLUMNS[a].heading);
     for (size_t c = 0; c < study->case_count; c++) {
         const struct study_case *one = &study->cases[c];
-        char time[48];
-        duration_text(plan_case_seconds(&study->cases[c]), time, sizeof time);
+        char time[160];
+        cost_text(plan_case_seconds(one), plan_case_range(one), time, sizeof time);
         table_cell(&table, "%zu", c);
         for (size_t p = 0; p < swept; p++)
             print_value(&table, json_at(one->parameters, study->swept[p]));
@@ -200,8 +212,9 @@ static void print_kept(const struct study *study) {
 }
 
 static void print_text(const struct study *study) {
-    char cpu[48], wall[48];
-    duration_text(plan_seconds(study), cpu, sizeof cpu);
+    const struct plan_range range = plan_range(study);
+    char cpu[160], wall[48];
+    cost_text(plan_seconds(study), range, cpu, sizeof cpu);
     duration_text(plan_seconds(study) / allotment_threads(), wall, sizeof wall);
     printf("%s (%s), seed %llu: %zu cases", study->name, study->kind->name,
            (unsigned long long)study->seed, study->case_count);
@@ -215,6 +228,10 @@ static void print_text(const struct study *study) {
     for (size_t c = 0; c < study->case_count && c < PLANS_SHOWN; c++)
         summary_of_plan(&study->cases[c], stdout);
     print_kept(study);
+    if (!isnan(range.most))
+        puts(
+            "in brackets: what nine of ten such studies take, as a few realisations of steep faces "
+            "may take many times what others take");
     printf("in all about %s of CPU, %s on %u processors; up to %.0f MiB a worker\n", cpu, wall,
            allotment_threads(), plan_bytes(study) / 0x1p20);
 }

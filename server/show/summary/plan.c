@@ -6,12 +6,75 @@
 #include <math.h>
 #include <stdio.h>
 
+/* Nine in ten lie within so many standard deviations. What all realisations take is known within
+ * this factor, and what only some take in the mean to this part. A range is given where seconds may
+ * be off by more than a factor of RANGE_LEAST. */
+static const double RANGE = 1.645, USUAL_FACTOR = 1.3, RARE_PART = 0.5, RANGE_LEAST = 1.5;
+
 double plan_case_seconds(const struct study_case *one) {
     uint64_t expected[TARGET_PARTS_MOST];
     double count = (double)one->realisations;
     double seconds =
         one->component_count > 0 ? target_expect(one, expected) : one->cost.seconds * count;
     return seconds + one->cost.early_seconds * fmin(count, STUDY_EARLY) + one->cost.case_seconds;
+}
+
+/* What is taken, and of this what only some realisations take, with its variance. */
+struct taken {
+    double seconds, rare, variance;
+};
+
+static void add_runs(struct taken *taken, const struct study_cost *cost, double count) {
+    taken->rare += count * cost->rare_seconds;
+    taken->variance += count * cost->rare_variance;
+}
+
+static struct taken taken_by(const struct study_case *one) {
+    struct taken taken = {.seconds = plan_case_seconds(one)};
+    uint64_t expected[TARGET_PARTS_MOST];
+    if (one->component_count == 0)
+        add_runs(&taken, &one->cost, (double)one->realisations);
+    else
+        (void)target_expect(one, expected);
+    for (size_t a = 0; a < one->component_count; a++)
+        add_runs(&taken, &one->components[a].cost, (double)expected[a]);
+    return taken;
+}
+
+/* Returns a quantile of a gamma distribution, by so many standard deviations of a normal one
+ * (Wilson and Hilferty 1931). */
+static double gamma_quantile(double mean, double variance, double deviations) {
+    const double ninth = variance / (mean * mean) / 9;
+    return mean * pow(fmax(0, 1 - ninth + deviations * sqrt(ninth)), 3);
+}
+
+/* FORMULAS.md, F17.4. */
+static struct plan_range range_of(const struct taken *taken) {
+    const double usual = fmax(0, taken->seconds - taken->rare), rare = taken->rare;
+    const double variance = taken->variance + RARE_PART * RARE_PART * rare * rare;
+    if (!(rare > 0))
+        return (struct plan_range){NAN, NAN};
+    const struct plan_range range = {usual / USUAL_FACTOR + gamma_quantile(rare, variance, -RANGE),
+                                     usual * USUAL_FACTOR + gamma_quantile(rare, variance, RANGE)};
+    const bool known =
+        range.most < RANGE_LEAST * taken->seconds && range.least > taken->seconds / RANGE_LEAST;
+    return known ? (struct plan_range){NAN, NAN} : range;
+}
+
+struct plan_range plan_case_range(const struct study_case *one) {
+    const struct taken taken = taken_by(one);
+    return range_of(&taken);
+}
+
+struct plan_range plan_range(const struct study *study) {
+    struct taken all = {0};
+    for (size_t c = 0; c < study->case_count; c++) {
+        const struct taken taken = taken_by(&study->cases[c]);
+        all.seconds += taken.seconds;
+        all.rare += taken.rare;
+        all.variance += taken.variance;
+    }
+    return range_of(&all);
 }
 
 double plan_case_error(const struct study_case *one) {
@@ -127,6 +190,12 @@ static bool put_kept(cJSON *document, const struct study_kept *kept) {
                                   field_put(document, "kept_seconds", json_number(kept->seconds)));
 }
 
+/* Adds between what the seconds lie; nothing where they are as estimated. */
+static bool put_range(cJSON *document, struct plan_range range) {
+    return isnan(range.most) || (field_put(document, "seconds_least", json_number(range.least)) &&
+                                 field_put(document, "seconds_most", json_number(range.most)));
+}
+
 static cJSON *case_document(const struct study *study, size_t c) {
     const struct study_case *one = &study->cases[c];
     cJSON *document = cJSON_CreateObject();
@@ -138,6 +207,7 @@ static cJSON *case_document(const struct study *study, size_t c) {
         field_put(document, "memory_bytes", json_number(plan_case_bytes(one))) &&
         field_put(document, "block", cJSON_CreateNumber((double)block_of(one))) &&
         field_put(document, "seconds", json_number(plan_case_seconds(&study->cases[c]))) &&
+        put_range(document, plan_case_range(&study->cases[c])) &&
         field_put(document, "relative_error", json_number(plan_case_error(&study->cases[c]))) &&
         put_law(document, &one->cost) && put_own(document, one) &&
         put_kept(document, &one->cost.kept) && put_components(document, &study->cases[c]);
@@ -156,6 +226,7 @@ cJSON *plan_document(const struct study *study) {
                   cJSON_CreateString(choice_name(STUDY_RANDOM, (int)study->random))) &&
         field_put(document, "realisations", cJSON_CreateNumber((double)study->realisations)) &&
         field_put(document, "seconds", json_number(plan_seconds(study))) &&
+        put_range(document, plan_range(study)) &&
         field_put(document, "memory_bytes", json_number(plan_bytes(study))) &&
         field_put(document, "cases", cJSON_CreateArray());
     cJSON *cases = cJSON_GetObjectItemCaseSensitive(document, "cases");

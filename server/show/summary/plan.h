@@ -7,6 +7,12 @@
 /* CPU seconds of a case, of all its components; likewise its jobs. */
 double plan_case_seconds(const struct study_case *one);
 uint64_t plan_case_jobs(const struct study_case *one);
+/* Between what a case takes in nine of ten, where a few realisations may take many times what
+ * others take; NaN: seconds are as estimated. */
+struct plan_range {
+    double least, most;
+};
+struct plan_range plan_case_range(const struct study_case *one);
 /* The relative error that is expected, or asked for. */
 double plan_case_error(const struct study_case *one);
 /* The tolerance of the solver, that of the components where there are any; 0: none. */
@@ -15,6 +21,7 @@ double plan_case_tolerance(const struct study_case *one);
 double plan_case_bytes(const struct study_case *one);
 /* Those of the whole study. */
 double plan_seconds(const struct study *study);
+struct plan_range plan_range(const struct study *study);
 double plan_bytes(const struct study *study);
 /* What the files of nodes of all cases take; path NULL: there are none. */
 struct study_kept plan_kept(const struct study *study);

@@ -3,6 +3,7 @@
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include "tests/support/small_studies.h"
+#include <cjson/cJSON.h>
 #include <signal.h>
 #include <sqlite3.h>
 #include <stdio.h>
@@ -135,6 +136,32 @@ static void help_tells_of_a_parameter(void **state) {
     assert_int_equal(run_shell("$RUGO help run weather"), 2);
     assert_int_equal(run_shell("$RUGO help study --format markdown"), 0);
     assert_true(contains("shell.out", "| `/contact/model` | one name, or a list |"));
+}
+
+/* A case of steep faces has a range of CPU time, in text and JSON; one of gentle faces has none. */
+static void check_says_between_what_a_steep_study_lies(void **state) {
+    (void)state;
+    assert_int_equal(
+        run_shell("printf '%s' '{\"name\": \"steep\", \"kind\": \"contact\", \"realisations\": 4, "
+                  "\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 4, "
+                  "\"rms_slope\": [0.1, 1.2]}, "
+                  "\"contact\": {\"model\": \"full\", \"levels\": [8]}}' >steep.json && "
+                  "$RUGO check steep.json --format json >plan.json && $RUGO check steep.json"),
+        0);
+    assert_true(contains("shell.out", "in brackets: what nine of ten such studies take"));
+    char *text = slurp("plan.json");
+    cJSON *plan = cJSON_Parse(text);
+    const cJSON *cases = cJSON_GetObjectItem(plan, "cases"), *steep = cJSON_GetArrayItem(cases, 1);
+    assert_null(cJSON_GetObjectItem(cJSON_GetArrayItem(cases, 0), "seconds_most"));
+    const cJSON *const documents[] = {plan, steep};
+    for (size_t a = 0; a < 2; a++) {
+        const double least = cJSON_GetObjectItem(documents[a], "seconds_least")->valuedouble;
+        const double seconds = cJSON_GetObjectItem(documents[a], "seconds")->valuedouble;
+        assert_true(least > 0 && least < seconds);
+        assert_true(seconds < cJSON_GetObjectItem(documents[a], "seconds_most")->valuedouble);
+    }
+    cJSON_Delete(plan);
+    free(text);
 }
 
 /* Its formatter, where there is one, finds nothing to warn of; a shell reads the completion. */
@@ -317,6 +344,7 @@ int main(void) {
         cmocka_unit_test(every_command_has_help),
         cmocka_unit_test(help_tells_of_a_parameter),
         cmocka_unit_test(theory_needs_no_surface),
+        cmocka_unit_test(check_says_between_what_a_steep_study_lies),
         cmocka_unit_test(the_manual_page_is_sound),
         cmocka_unit_test(a_run_goes_on_where_it_was),
         cmocka_unit_test(a_finished_run_only_prints),
