@@ -19,7 +19,7 @@ struct characterise_options {
     const char *trust_from, *trust_to; /* NULL: by the map */
     int format;
     bool all, together, hold;
-    const char *form;             /* boundary of the form on standard input; NULL: there is none */
+    const char *sent;             /* sizes of files on standard input; NULL: they are on the disk */
     const char *group;            /* NULL: none is asked for */
     const char *picture, *report; /* NULL: none, as the next */
     const char *acf, *psd;
@@ -41,9 +41,9 @@ static const struct option_row OPTIONS[] = {
      "print all values and tables in place of one screen"},
     {"together", 0, OPTION_FLAG, 0, 0, AT(together), NULL, NULL,
      "several files are of one surface: fit one law to them; --report draws their spectra"},
-    {"form", 0, OPTION_TEXT, 0, 0, AT(form), "BOUNDARY", NULL,
-     "standard input (-) is multipart/form-data with the files, and for --format study perhaps the "
-     "study that names them"},
+    {"sent", 0, OPTION_TEXT, 0, 0, AT(sent), "SIZE[,SIZE]", NULL,
+     "the files, of so many bytes, come one behind the other on standard input, and for --format "
+     "study perhaps a study that names them"},
     {"group", 0, OPTION_TEXT, 0, 0, AT(group), "NAME[,NAME]", NULL,
      "print these groups of values and tables, as text or JSON"},
     {"picture", 0, OPTION_TEXT, 0, 0, AT(picture), "FILE.svg|FILE.png", NULL,
@@ -344,61 +344,54 @@ static int characterise_one(const struct characterise_options *options, const ch
     return status;
 }
 
-/* --- files of a form --- */
-
 static int characterise_files(const struct characterise_options *options, const char *const *files,
                               struct error *err) {
     return options->together ? characterise_together(options, files, err)
                              : characterise_one(options, files, err);
 }
 
-/* Fits the study of a form to its files, and prints it. */
-static int print_sent(const struct characterise_options *options, const struct form *form,
+/* --- files on standard input --- */
+
+/* Fits the study behind the files to these, and prints it. */
+static int print_sent(const struct characterise_options *options, char **text, size_t *size,
                       struct error *err) {
-    if (options->format != FORMAT_STUDY)
-        return error_set(err, ERROR_INPUT,
-                         "a study that is sent with files goes with the format study");
-    char *text = NULL;
-    size_t size;
-    const struct form only = {.count = 1, .files = {form->study}};
-    int status = form_read(&only, form->study.name, &text, &size, err);
+    int status = options->format == FORMAT_STUDY
+                     ? like_study_fit_sent(text, size, &options->map, err)
+                     : error_set(err, ERROR_INPUT,
+                                 "a study that is sent with files goes with the format study");
     if (status == 0)
-        status = like_study_fit_sent(&text, &size, &options->map, err);
-    if (status == 0)
-        puts(text);
-    free(text);
+        puts(*text);
     return status == 0 ? output_flush(err) : status;
 }
 
-static int characterise_form(const struct characterise_options *options, const char *path,
+static int characterise_sent(const struct characterise_options *options, const char *const *names,
                              struct error *err) {
-    static const size_t FORM_MOST = (size_t)1 << 36; /* bytes, as of a file */
+    static const size_t BYTES_MOST = (size_t)1 << 36; /* as of a file */
     struct characterise_options own = *options;
-    struct form form = {0};
-    char *text = NULL;
-    size_t size;
-    int status = strcmp(path, "-") == 0 && options->map.name == NULL
-                     ? input_file_read(path, FORM_MOST, &text, &size, err)
-                     : error_set(err, ERROR_INPUT,
-                                 "--form goes with standard input (-) alone, and not with --name");
+    struct sent_files files = {0};
+    char *text = NULL, *study = NULL;
+    size_t size, study_size = 0;
+    int status = options->map.name == NULL
+                     ? input_file_read("-", BYTES_MOST, &text, &size, err)
+                     : error_set(err, ERROR_INPUT, "--sent does not go with --name");
     if (status == 0)
-        status = form_take(&form, text, size, options->form, err);
-    const char *files[FORM_FILES_MOST + 1] = {NULL};
-    for (size_t f = 0; f < form.count; f++)
-        files[f] = form.files[f].name;
-    own.map.form = &form;
-    if (status == 0 && form.study.name != NULL)
-        status = print_sent(&own, &form, err);
+        status = sent_files_take(&files, text, size, options->sent, names, err);
+    if (status == 0)
+        status = sent_files_study(&files, &study, &study_size, err);
+    own.map.sent = &files;
+    if (status == 0 && study_size > 0)
+        status = print_sent(&own, &study, &study_size, err);
     else if (status == 0)
-        status = characterise_files(&own, files, err);
-    form_clear(&form);
+        status = characterise_files(&own, names, err);
+    free(study);
+    sent_files_clear(&files);
     return status;
 }
 
 static int run(const void *values, const char *const *arguments) {
     const struct characterise_options *options = values;
     struct error err = {0};
-    int status = options->form != NULL ? characterise_form(options, arguments[0], &err)
+    int status = options->sent != NULL ? characterise_sent(options, arguments, &err)
                                        : characterise_files(options, arguments, &err);
     return status == 0 ? EXIT_DONE : command_fail("characterise", &err);
 }

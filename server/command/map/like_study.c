@@ -342,7 +342,7 @@ static int fit_study(cJSON *document, const char *study, const struct map_option
     cJSON *like = cJSON_DetachItemFromObjectCaseSensitive(surface, "like");
     int status = like_options_parse(&options, like, err);
     if (sent != NULL) {
-        options.map.form = sent->form;
+        options.map.sent = sent->sent;
         options.map.convert = sent->convert;
     }
     if (status == 0)

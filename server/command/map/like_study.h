@@ -17,7 +17,7 @@
 int like_study_fit(char **text, size_t *size, const char *path, const char *const *overrides,
                    bool *fitted, struct error *err);
 
-/* Does so with a study that was sent with its files: those of sent->form alone are read, and
+/* Does so with a study that was sent with its files: those of sent->sent alone are read, and
  * converted as `sent` says, whatever the study does. ERROR_INPUT, too, where no file is to be
  * fitted. */
 int like_study_fit_sent(char **text, size_t *size, const struct map_options *sent,

@@ -87,10 +87,10 @@ static int open_content(struct opened *opened, unsigned seconds, struct error *e
     return status == 0 ? 0 : error_context(err, "%s", opened->source.name);
 }
 
-static int read_file(struct opened *opened, const char *path, const struct form *form,
+static int read_file(struct opened *opened, const char *path, const struct sent_files *sent,
                      struct error *err) {
     size_t *size = &opened->source.size;
-    return form != NULL ? form_read(form, path, &opened->data, size, err)
+    return sent != NULL ? sent_files_read(sent, path, &opened->data, size, err)
                         : input_file_read(path, FILE_MOST, &opened->data, size, err);
 }
 
@@ -103,7 +103,7 @@ static int read_layer(struct height_map *out, const char *path, const struct map
     unsigned seconds = 0;
     int status = read_seconds(&seconds, options->convert, err);
     if (status == 0)
-        status = read_file(&opened, path, options->form, err);
+        status = read_file(&opened, path, options->sent, err);
     source->data = opened.data;
     if (status == 0)
         status = open_content(&opened, seconds, err);

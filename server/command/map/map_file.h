@@ -6,7 +6,7 @@
 #include "core/instrument/formats.h"
 #include "core/map/height_map_file.h"
 #include "core/map/preparation_words.h"
-#include "server/command/map/form.h"
+#include "server/command/map/sent_files.h"
 #include "server/command/options.h"
 
 /* Part of a command's options. */
@@ -16,8 +16,8 @@ struct map_options {
     int columns;         /* enum instrument_columns */
     const char *convert; /* seconds that a converter may take; NULL, "0": none is asked */
     struct preparation_words words;
-    const struct form *form; /* borrowed: files are those of it, and none of the disk; NULL: none
-                              * was sent */
+    const struct sent_files *sent; /* borrowed: files are those, and none of the disk; NULL: none
+                                    * was sent */
 };
 
 #define MAP_CONVERT_SECONDS "60" /* unless another number is given */

@@ -3,11 +3,11 @@
 #include "server/http/accept.h"
 #include "server/http/route/own_process.h"
 #include "server/http/route/route.h"
+#include "server/http/route/sent_form.h"
 #include "worker/log.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 enum {
     MAPS_MOST = 2,            /* at a time */
@@ -16,7 +16,7 @@ enum {
     MEMORY_FACTOR = 16,       /* of the largest file that is taken */
     MEMORY_LEAST = 512 << 20, /* for small ones */
     ANSWER_MOST = 64 << 20,   /* bytes: tables of large maps are a few */
-    ARGUMENTS_MOST = 40,
+    ARGUMENTS_MOST = 40 + SENT_FILES_MOST,
     OPTION_SIZE = 320,
 };
 
@@ -56,7 +56,7 @@ struct command_line {
     size_t count;
     const char *arguments[ARGUMENTS_MOST];
     char texts[OPTION_COUNT][OPTION_SIZE];
-    char form[96];
+    char sent[SENT_FILES_MOST * 21 + 8];
 };
 
 /* Words of the query stay in their options whatever they begin with: "--name=-x". */
@@ -95,47 +95,6 @@ static enum answer_format read_format(struct exchange *exchange, struct fault_li
     return (enum answer_format)format;
 }
 
-/* Finds the boundary of a form in the body's media type; false where the body is no form. *length
- * is 0 where the boundary is missing. */
-static bool find_boundary(struct exchange *exchange, const char **boundary, size_t *length) {
-    static const char KEY[] = "boundary=";
-    const char *type = exchange_header(exchange, "Content-Type");
-    *boundary = NULL;
-    *length = 0;
-    if (type == NULL || strncasecmp(type, FORM_MEDIA, strlen(FORM_MEDIA)) != 0)
-        return false;
-    const char *at = strcasestr(type, KEY);
-    if (at == NULL)
-        return true;
-    at += strlen(KEY);
-    *boundary = *at == '"' ? at + 1 : at;
-    *length = strcspn(*boundary, *at == '"' ? "\"" : "; \t");
-    return true;
-}
-
-/* What is sent: one file, with its name in the query, or a form of them, which have theirs. */
-static void add_source(struct exchange *exchange, struct command_line *line,
-                       struct fault_list *faults) {
-    enum { BOUNDARY_MOST = 70 };
-    const char *boundary;
-    size_t length;
-    const bool named = exchange_query(exchange, "name") != NULL;
-    if (!find_boundary(exchange, &boundary, &length)) {
-        if (!named)
-            fault_add(faults, "?name", "missing: the name of the file, such as patch.x3p");
-        return;
-    }
-    if (named)
-        fault_add(faults, "?name", "the files of a form have names of their own");
-    if (length == 0 || length > BOUNDARY_MOST)
-        fault_add(faults, "Content-Type", "a form has a boundary of 1 to %d letters",
-                  (int)BOUNDARY_MOST);
-    else {
-        snprintf(line->form, sizeof line->form, "--form=%.*s", (int)length, boundary);
-        line->arguments[line->count++] = line->form;
-    }
-}
-
 static const char CONVERT[] = "--convert=30"; /* seconds, below those of the whole process */
 
 /* Returns false after an answer. */
@@ -154,14 +113,40 @@ static bool write_arguments(struct exchange *exchange, enum answer_format *forma
         if (value != NULL)
             add_option(out, n, value, &faults);
     }
-    add_source(exchange, out, &faults);
     out->arguments[out->count++] = exchange->service->convert ? CONVERT : "--convert=0";
-    out->arguments[out->count++] = "-";
-    out->arguments[out->count] = NULL;
+    const bool named = exchange_query(exchange, "name") != NULL, form = sent_form_is(exchange);
+    if (!named && !form)
+        fault_add(&faults, "?name", "missing: the name of the file, such as patch.x3p");
+    if (named && form)
+        fault_add(&faults, "?name", "the files of a form have names of their own");
     if (faults.count != 0)
         answer_problem(exchange, 422, "the query is not valid", &faults);
     fault_list_clear(&faults);
     return exchange->status == 0;
+}
+
+/* What is sent: one file, with its name in the query, or those of a form, whose names are of the
+ * form. Returns false after an answer. */
+static bool add_source(struct exchange *exchange, struct command_line *line,
+                       struct sent_form *form) {
+    struct error err = {0};
+    const bool several = sent_form_is(exchange);
+    if (several && sent_form_take(form, exchange, &err) != 0) {
+        answer_mend(err.text); /* the name of a file may be any bytes */
+        answer_error(exchange, &err);
+        return false;
+    }
+    size_t used = (size_t)snprintf(line->sent, sizeof line->sent, "--sent=");
+    for (size_t f = 0; f < form->count; f++)
+        used += (size_t)snprintf(line->sent + used, sizeof line->sent - used, "%s%zu",
+                                 f > 0 ? "," : "", form->sizes[f]);
+    line->arguments[line->count++] = several ? line->sent : "-";
+    if (several)
+        line->arguments[line->count++] = "--";
+    for (size_t f = 0; f < form->count; f++)
+        line->arguments[line->count++] = form->names[f];
+    line->arguments[line->count] = NULL;
+    return true;
 }
 
 /* Of a file, or of the query: without the words that a terminal has use for. */
@@ -227,6 +212,11 @@ void handle_characterise(struct exchange *exchange, const char *id) {
                        "a body is needed: the bytes of the file, or a form with several", NULL);
         return;
     }
+    struct sent_form form = {0};
+    if (!add_source(exchange, &line, &form)) {
+        sent_form_clear(&form);
+        return;
+    }
     uint64_t memory = MEMORY_FACTOR * (uint64_t)exchange->body_most;
     const struct own_process process = {.arguments = line.arguments,
                                         .input = exchange->body,
@@ -245,6 +235,7 @@ void handle_characterise(struct exchange *exchange, const char *id) {
         answer_header(exchange, "Vary", "Accept, Authorization");
         free(result.output);
     }
+    sent_form_clear(&form);
 }
 
 bool characterise_enter(struct exchange *exchange) {

@@ -164,12 +164,35 @@ static void several_maps_are_sent_as_a_form(void **state) {
     refused("together=true&hold=true&format=study&fill=true", FORM, form, 422, "hold one map");
     refused("together=true", "Content-Type: multipart/form-data\r\n", form, 422, "boundary");
     refused("together=true", "Content-Type: multipart/form-data; boundary=b1\r\n", form, 422,
-            "no boundary --b1");
+            "without files by the boundary");
     free(form);
     static const char *const TWICE[] = {"a.csv", "a.csv", NULL};
     form = make_form(TWICE, NULL);
     refused("together=true", FORM, form, 422, "two files named a.csv");
     free(form);
+}
+
+/* What is wrong with a form itself. */
+static void forms_that_are_none_are_refused(void **state) {
+    (void)state;
+#define PART(said, bytes) "--b0\r\nContent-Disposition: form-data; " said "\r\n\r\n" bytes "\r\n"
+#define END "--b0--\r\n"
+    static const struct {
+        const char *text, *words;
+    } FAULTS[] = {
+        {"1,2", "without files"},
+        {END, "without files"},
+        {PART("name=\"study\"", "{}") END, "without files"},
+        {PART("name=\"map\"", "1") END, "neither a file nor"},
+        {PART("name=\"map\"; filename=\"a\"", "1") PART("name=\"x\"", "1") END, "neither a file"},
+        {PART("name=\"map\"; filename=\"\"", "1") END, "a file of a form has a name"},
+        {PART("name=\"study\"", "1") PART("name=\"study\"", "2") END, "a second study"},
+        {PART("name=\"map\"; filename=\"a\"", "1"), "the form is cut"},
+        {"--b0\r\nContent-Disposition: form-data", "the form is cut"},
+        {PART("name=\"map\"; filename=\"--all\"", "") END, "--all"},
+    };
+    for (size_t f = 0; f < sizeof FAULTS / sizeof *FAULTS; f++)
+        refused("format=json", FORM, FAULTS[f].text, 422, FAULTS[f].words);
 }
 
 /* A study that is sent with files is fitted to these, and to none of the server's own. */
@@ -354,6 +377,7 @@ int main(void) {
         cmocka_unit_test(the_service_says_what_the_command_says),
         cmocka_unit_test(a_study_of_surfaces_like_it_is_made),
         cmocka_unit_test(several_maps_are_sent_as_a_form),
+        cmocka_unit_test(forms_that_are_none_are_refused),
         cmocka_unit_test(a_study_is_fitted_to_what_was_sent),
         cmocka_unit_test(faults_are_problems),
         cmocka_unit_test(names_are_texts),
