@@ -1,4 +1,5 @@
 #include "server/show/map/map_verdicts.h"
+#include "core/statistics/heights/plateau.h"
 #include "jobs/maps/map_artefact_words.h"
 #include "server/show/map/groove_report.h"
 #include "server/show/map/main_values.h"
@@ -143,22 +144,20 @@ static void judge_heights(struct verdicts *verdicts, const struct map_figure *fi
             p_value);
 }
 
-/* Of honed faces: what a study takes to make such ones. Two laws must fit far better than one, and
- * well, and each must have a share of the points: far tails alone are no second surface. */
+/* Of honed faces: what a study takes to make such ones. */
 static void judge_strata(struct verdicts *verdicts, const struct named_values *found) {
     static const char GROUP[] = "functional";
-    static const double BETTER = 0.5, WELL = 0.2, SHARE[2] = {0.1, 0.95}; /* RMS heights, shares */
     const char letter = isfinite(named_number(found, GROUP, "Rpq")) ? 'R' : 'S';
     const double plateau = named_number(found, GROUP, letter == 'R' ? "Rpq" : "Spq");
     const double valleys = named_number(found, GROUP, letter == 'R' ? "Rvq" : "Svq");
     const double ratio = named_number(found, GROUP, letter == 'R' ? "Rmq" : "Smq");
     const double left = named_number(found, GROUP, "plateau_residual");
     const double before = named_number(found, GROUP, "normal_residual");
-    if (left < BETTER * before && left < WELL && ratio > SHARE[0] && ratio < SHARE[1])
+    if (plateau_stands(left, before, ratio))
         say(verdicts,
             "Heights: two laws fit better than one: a plateau above valleys, which meet at %.3g %% "
             "of the points (%cmq). Studies make such faces by \"plateau\": {\"rms_ratio\": %.3g, "
-            "\"material_ratio\": %.3g} in /surface.",
+            "\"material_ratio\": %.3g} in /surface; --format study writes one with both spectra.",
             100 * ratio, letter, plateau / valleys, ratio);
 }
 
