@@ -120,10 +120,12 @@ static void check_faces(const struct like_case *like, struct values *values,
         values_fault(values, "/surface/grooves/period",
                      "a surface like a measured one has the grooves of the map; allowed: one of "
                      "grooves and like");
-    if (values_is_given(values, RMS_RATIO))
+    const bool given =
+        like->spectrum == LIKE_SPECTRUM_GIVEN && like->heights == LIKE_HEIGHTS_GIVEN && !like->hold;
+    if (values_is_given(values, RMS_RATIO) && !given)
         values_fault(values, RMS_RATIO,
                      "a surface like a measured one has the spectrum and the heights of the map; "
-                     "allowed: one of like and plateau");
+                     "allowed: one of like and plateau, or a spectrum (hurst) beside the plateau");
 }
 
 int like_case_fill(struct like_case *out, struct values *values, const struct surface_case *surface,

@@ -308,8 +308,8 @@ static int set_translation(struct like_draw *draw, struct error *err) {
     return status;
 }
 
-/* Draws the depth of the grooves, which is that of the map to its error, whatever the scale of the
- * random part is. */
+/* Draws the depths of the grooves, which are those of the map to its error, whatever the scale of
+ * the random part is. */
 static int set_grooves(struct like_draw *draw, struct random_key key, struct error *err) {
     const struct surface_case *base = draw->base;
     struct surface_case *surface = &draw->surface;
@@ -323,10 +323,13 @@ static int set_grooves(struct like_draw *draw, struct random_key key, struct err
     if (status != 0)
         return status;
     random_uniform(key, STREAM_GROOVES, GROOVE_FAMILIES_MOST, 2, u); /* those before are phases */
-    const double normal = sqrt(-2 * log1p(-u[0])) * cos(2 * M_PI * u[1]);
+    const double normal[GROOVE_FAMILIES_MOST] = {sqrt(-2 * log1p(-u[0])) * cos(2 * M_PI * u[1]),
+                                                 sqrt(-2 * log1p(-u[0])) * sin(2 * M_PI * u[1])};
     const double error = isnan(draw->like->groove_depth_error) ? 0 : draw->like->groove_depth_error;
     draw->grooves = *base->grooves;
-    draw->grooves.depth *= fmax(1 + error * normal, 0) * of_case.rms_height / drawn.rms_height;
+    for (size_t f = 0; f < draw->grooves.families; f++)
+        draw->grooves.family[f].depth *=
+            fmax(1 + error * normal[f], 0) * of_case.rms_height / drawn.rms_height;
     surface->grooves = &draw->grooves;
     surface->spectrum.grooves = &draw->grooves;
     return 0;

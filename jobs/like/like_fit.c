@@ -207,6 +207,7 @@ static bool heights_given(const cJSON *surface) {
                                        "samples",      "probability", "quantile"};
     const cJSON *heights = cJSON_GetObjectItemCaseSensitive(surface, "heights");
     bool given = heights != NULL && !cJSON_IsObject(heights); /* to be refused as they are */
+    given = given || has(surface, "plateau");                 /* which makes them */
     for (size_t n = 0; n < sizeof SAID / sizeof *SAID; n++)
         given = given || cJSON_GetObjectItemCaseSensitive(heights, SAID[n]) != NULL;
     return given;

@@ -45,99 +45,115 @@ static int read_surface(struct surface_case *out, const cJSON *surface, struct e
     return status;
 }
 
+/* Names of parameters of a family. */
+struct names {
+    const char *period, *angle, *depth, *shape, *amplitudes, *phases;
+};
+static const struct names NAMES[GROOVE_FAMILIES_MOST] = {
+    {"period", "angle", "depth", "shape", "amplitudes", "phases"},
+    {"cross_period", "cross_angle", "cross_depth", "cross_shape", "cross_amplitudes",
+     "cross_phases"}};
+
 /* Writes the shape: by its harmonics where it has no name, or is a saw that falls along the wave
  * vector of the study. */
-static bool put_shape(cJSON *grooves, const struct map_groove *family, bool turned) {
+static bool put_shape(cJSON *grooves, const struct names *names, const struct map_groove *family,
+                      bool turned) {
     const struct groove_shape_fit *fit = &family->fit;
     const struct groove_lines *lines = &family->lines;
     double amplitude[GROOVE_LINES_MOST], phase[GROOVE_LINES_MOST];
     const bool falls = fit->shape == GROOVE_SAW && fit->reversed != turned;
     if (fit->shape != GROOVE_HARMONICS && !falls)
-        return field_put_text(grooves, "shape", GROOVE_SHAPE_NAMES[fit->shape]);
+        return field_put_text(grooves, names->shape, GROOVE_SHAPE_NAMES[fit->shape]);
     const size_t count = falls ? lines->count : fit->standing;
     for (size_t h = 0; h < count; h++) {
         amplitude[h] = 2 * cabs(lines->coefficient[h]);
         phase[h] = (turned ? -1 : 1) * carg(lines->coefficient[h]) / DEGREE;
     }
-    return field_put_text(grooves, "shape", GROOVE_SHAPE_NAMES[GROOVE_HARMONICS]) &&
-           field_put(grooves, "amplitudes", json_numbers(amplitude, count)) &&
-           field_put(grooves, "phases", json_numbers(phase, count));
+    return field_put_text(grooves, names->shape, GROOVE_SHAPE_NAMES[GROOVE_HARMONICS]) &&
+           field_put(grooves, names->amplitudes, json_numbers(amplitude, count)) &&
+           field_put(grooves, names->phases, json_numbers(phase, count));
 }
 
-static bool put(cJSON *surface, const struct map_groove *family, const struct made *made,
-                const struct made *cross, double depth, bool profile) {
-    cJSON *grooves = cJSON_AddObjectToObject(surface, "grooves");
-    return grooves != NULL && field_put(grooves, "period", json_number(made->period)) &&
-           field_put(grooves, "depth", json_number(depth)) &&
-           (profile || field_put(grooves, "angle", json_number(made->angle))) &&
-           (cross == NULL || field_put(grooves, "cross_angle", json_number(cross->angle))) &&
-           put_shape(grooves, family, made->turned);
+/* unit: of depths, in that of the map. */
+static bool put_family(cJSON *grooves, const struct names *names, const struct map_groove *family,
+                       const struct made *made, double unit, bool profile) {
+    return field_put(grooves, names->period, json_number(made->period)) &&
+           field_put(grooves, names->depth, json_number(family->fit.depth / unit)) &&
+           (profile || field_put(grooves, names->angle, json_number(made->angle))) &&
+           put_shape(grooves, names, family, made->turned);
 }
 
-/* Both families of a study have one period. On a cell they have whole numbers of periods where one
- * is the mirror image of the other; off: by how many periods the second was not. */
-static int mirror(struct made *cross, const struct made *first, struct error *err) {
-    static const double NEAR = 1; /* periods */
-    const double sign = cross->along_x * first->along_x < 0 ? -1 : 1;
-    const double off_x = fabs(sign * cross->along_x - first->along_x);
-    const double off_y = fabs(sign * cross->along_y + first->along_y);
-    if (off_x > NEAR || off_y > NEAR)
-        return error_set(
-            err, ERROR_INPUT,
-            "the map has crossed grooves, at %.4g and %.4g degrees, which no cell of a study has "
-            "with one period: give \"degroove\": true, which takes them out",
-            first->angle, cross->angle);
-    *cross = *first;
-    cross->along_y = -first->along_y;
-    cross->angle = -first->angle;
-    return 0;
+/* Two families that differ in a map may be one on the cell. */
+static int check_apart(const struct made *first, const struct made *second, struct error *err) {
+    if (fabs(second->along_x) != fabs(first->along_x) ||
+        second->along_y * first->along_x != first->along_y * second->along_x)
+        return 0;
+    return error_set(err, ERROR_INPUT,
+                     "the map has two families of grooves, at %.4g degrees, that are one on the "
+                     "cell of the study: give \"degroove\": true, which takes them out",
+                     first->angle);
 }
 
-/* What was found, and what is made of it; held: beyond the map alone, whose grooves stay. */
-static void write_words(struct like_grooves *grooves, const struct made *made,
-                        const struct like_grooves_of *of) {
-    const struct map_groove *first = &grooves->found.family[0];
-    const bool angled = isfinite(first->angle), crossed = grooves->found.families > 1;
+/* What was found of a family, and what is made of it; held: beyond the map alone. */
+static size_t write_family(char *out, size_t size, const struct map_groove *family,
+                           const struct made *made, const struct like_grooves_of *of) {
+    const bool angled = isfinite(family->angle);
     const char *unit = of->unit, *gap = *unit != '\0' ? " " : "";
     const double period =
-        of->hold ? groove_extension_period(first, of->map) : made->period * of->wavelength;
+        of->hold ? groove_extension_period(family, of->map) : made->period * of->wavelength;
     char from[40] = "", to[40] = "";
     if (angled)
-        snprintf(from, sizeof from, " at %.4g degrees", first->angle / DEGREE);
+        snprintf(from, sizeof from, " at %.4g degrees", family->angle / DEGREE);
     if (angled && !of->hold)
         snprintf(to, sizeof to, " at %.4g degrees", made->angle);
-    snprintf(
-        grooves->words, sizeof grooves->words,
-        "grooves: every %.5g%s%.10s%s, %.3g%s%.10s deep (+- %.2g %%), taken out of the law and "
-        "%s every %.5g%s%.10s%s, as the cell has whole numbers of periods%s",
-        first->period, gap, unit, from, first->fit.depth, gap, unit, 100 * grooves->depth_error,
-        of->hold ? "held as they are, and beyond the map made" : "made", period, gap, unit, to,
-        !crossed || of->hold ? "" : ", and mirrored");
+    const int used = snprintf(
+        out, size, "every %.5g%s%.10s%s, %.3g%s%.10s deep (+- %.2g %%), made every %.5g%s%.10s%s",
+        family->period, gap, unit, from, family->fit.depth, gap, unit,
+        100 * family->fit.depth_error / family->fit.depth, period, gap, unit, to);
+    return used > 0 && (size_t)used < size ? (size_t)used : size - 1;
+}
+
+static void write_words(struct like_grooves *grooves, const struct made *made,
+                        const struct like_grooves_of *of) {
+    char *text = grooves->words;
+    const size_t size = sizeof grooves->words;
+    size_t used = (size_t)snprintf(text, size, "grooves, taken out of the law: ");
+    for (size_t f = 0; f < grooves->found.families; f++) {
+        if (f > 0)
+            used += (size_t)snprintf(text + used, size - used, "; crossed by ");
+        used += write_family(text + used, size - used, &grooves->found.family[f], &made[f], of);
+    }
+    snprintf(text + used, size - used, "%s, as the cell has whole numbers of periods",
+             of->hold ? " beyond the map, which holds them as they are" : "");
 }
 
 int like_grooves_put(cJSON *surface, struct like_grooves *grooves, const struct like_grooves_of *of,
                      struct error *err) {
-    const struct grid *map = of->map;
-    const double wavelength = of->wavelength;
-    const struct map_groove *family = grooves->found.family;
-    const bool crossed = grooves->found.families > 1;
+    const struct map_grooves *found = &grooves->found;
+    struct made made[MAP_GROOVES_MOST] = {{0}};
     struct surface_case read;
     struct moments moments;
     int status = read_surface(&read, surface, err);
     if (status != 0)
         return status;
     status = spectrum_moments(&read.spectrum, &read.grid, &moments, err);
-    const struct made first = make_fit(&family[0], map, wavelength, &read.grid);
-    struct made cross = make_fit(&family[crossed], map, wavelength, &read.grid);
-    if (status == 0 && crossed)
-        status = mirror(&cross, &first, err);
-    const double depth = family[0].fit.depth / wavelength / moments.rms_height;
-    if (status == 0 && !put(surface, &family[0], &first, crossed ? &cross : NULL, depth,
-                            grid_is_profile(&read.grid)))
+    for (size_t f = 0; f < found->families; f++)
+        made[f] = make_fit(&found->family[f], of->map, of->wavelength, &read.grid);
+    if (status == 0 && found->families > 1)
+        status = check_apart(&made[0], &made[1], err);
+    cJSON *object = status == 0 ? cJSON_AddObjectToObject(surface, "grooves") : NULL;
+    bool put = object != NULL;
+    grooves->depth_error = 0;
+    for (size_t f = 0; f < found->families && put; f++) {
+        const struct groove_shape_fit *fit = &found->family[f].fit;
+        put = put_family(object, &NAMES[f], &found->family[f], &made[f],
+                         of->wavelength * moments.rms_height, grid_is_profile(&read.grid));
+        grooves->depth_error = fmax(grooves->depth_error, fit->depth_error / fit->depth);
+    }
+    if (status == 0 && !put)
         status = error_memory(err, sizeof *grooves, "grooves of a study");
-    grooves->depth_error = family[0].fit.depth_error / family[0].fit.depth;
     if (status == 0)
-        write_words(grooves, &first, of);
+        write_words(grooves, made, of);
     surface_case_clear(&read);
     return status;
 }

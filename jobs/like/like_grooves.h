@@ -6,10 +6,10 @@
 #include "core/statistics/grooves/map_grooves.h"
 #include <cjson/cJSON.h>
 
-enum { LIKE_GROOVES_TEXT = 400 };
+enum { LIKE_GROOVES_TEXT = 600 };
 struct like_grooves {
     struct map_grooves found;      /* no families: there are none */
-    double depth_error;            /* standard error of the depth, over the depth */
+    double depth_error;            /* standard error of the depth, over it; of two the larger */
     char words[LIKE_GROOVES_TEXT]; /* what was found, and what is made */
 };
 
@@ -22,8 +22,8 @@ struct like_grooves_of {
 
 /* Writes the found grooves into the object "surface" of a study whose spectrum, scale and cell are
  * there, with whole numbers of periods along its sides, and fills the rest of `grooves`.
- * ERROR_INPUT: two families that are not mirror images of each other on the cell, or what
- * surface_case_read() refuses; ERROR_MEMORY. */
+ * ERROR_INPUT: two families that are one on the cell, or what surface_case_read() refuses;
+ * ERROR_MEMORY. */
 int like_grooves_put(cJSON *surface, struct like_grooves *grooves, const struct like_grooves_of *of,
                      struct error *err);
 

@@ -169,7 +169,7 @@ static const struct parameter ROWS[] = {
      .later = true,
      .example_json = "0.02",
      .help = "a map with grooves, which the study has in /surface/grooves: the standard error of "
-             "their depth, over the depth"},
+             "their depth, over the depth; of two families the larger"},
     {.path = "/surface/like/noise",
      .type = PARAMETER_NUMBER,
      .minimum = 0,

@@ -69,6 +69,9 @@ int map_characterise(struct map_characterisation *out, const struct height_map *
                      const struct spectrum_fit_request *trusted, enum map_extent extent,
                      struct error *err);
 void map_characterisation_clear(struct map_characterisation *characterisation);
+/* Returns whether two laws of heights stand out, that of a plateau above valleys, where no Gaussian
+ * one holds and there are no grooves. */
+bool map_is_stratified(const struct map_characterisation *characterisation);
 
 /* The distribution that fits the heights best, ready to be drawn. */
 struct map_height_law {

@@ -12,14 +12,16 @@ static int grooved_heights(const struct statistics_case *one_case, double *pdf, 
     const struct grooves *grooves = surface->grooves;
     const struct bins *bins = &one_case->height;
     const size_t others = grooves->families > 1 ? POINTS : 1;
-    double height[POINTS];
+    double height[2][POINTS] = {{0}}; /* of each family */
     struct height_moments moments;
     int status = heights_moments(&surface->options.heights, &moments, err);
     if (status != 0)
         return status;
-    for (size_t a = 0; a < POINTS; a++)
-        height[a] =
-            grooves->depth * groove_profile_height(&grooves->profile, ((double)a + 0.5) / POINTS);
+    for (size_t f = 0; f < grooves->families; f++)
+        for (size_t a = 0; a < POINTS; a++)
+            height[f][a] =
+                grooves->family[f].depth *
+                groove_profile_height(&grooves->family[f].profile, ((double)a + 0.5) / POINTS);
     double before = 0;
     for (size_t b = 0; b <= bins->count; b++) {
         const double edge = bins->low + (double)b * bins_width(bins);
@@ -27,7 +29,7 @@ static int grooved_heights(const struct statistics_case *one_case, double *pdf, 
         for (size_t a = 0; a < POINTS; a++)
             for (size_t c = 0; c < others; c++)
                 below += heights_cdf(&surface->options.heights, &moments,
-                                     edge - height[a] - (others > 1 ? height[c] : 0));
+                                     edge - height[0][a] - height[1][c]);
         below /= (double)(POINTS * others);
         if (b > 0) {
             cdf[b - 1] = below;

@@ -2,16 +2,22 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const char PERIOD[] = "/surface/grooves/period", ANGLE[] = "/surface/grooves/angle",
-                  CROSS[] = "/surface/grooves/cross_angle", DEPTH[] = "/surface/grooves/depth",
-                  SHAPE[] = "/surface/grooves/shape", AMPLITUDES[] = "/surface/grooves/amplitudes",
-                  PHASES[] = "/surface/grooves/phases", PHASE[] = "/surface/grooves/phase";
+/* Parameters of a family. */
+enum { PERIOD, ANGLE, DEPTH, SHAPE, AMPLITUDES, PHASES, NAMES };
+static const char *const FIRST[NAMES] = {"/surface/grooves/period",     "/surface/grooves/angle",
+                                         "/surface/grooves/depth",      "/surface/grooves/shape",
+                                         "/surface/grooves/amplitudes", "/surface/grooves/phases"};
+static const char *const CROSS[NAMES] = {
+    "/surface/grooves/cross_period",     "/surface/grooves/cross_angle",
+    "/surface/grooves/cross_depth",      "/surface/grooves/cross_shape",
+    "/surface/grooves/cross_amplitudes", "/surface/grooves/cross_phases"};
+static const char PHASE[] = "/surface/grooves/phase";
 static const double DEGREE = M_PI / 180;
 
 /* Reads one family: whole numbers of periods along both sides, to OFF of a period. A fault names
  * the nearest grooves that have them. */
-static void read_family(const struct grid *grid, struct values *values, const char *path,
-                        double period, double degrees, struct grooves *out) {
+static void read_waves(const struct grid *grid, struct values *values, const char *path,
+                       double period, double degrees, struct groove_family *out) {
     static const double OFF = 1e-3, ROUNDING = 1e-12;
     const bool profile = grid_is_profile(grid);
     const double angle = degrees * DEGREE, ly = profile ? 1 : grid->ly;
@@ -26,8 +32,8 @@ static void read_family(const struct grid *grid, struct values *values, const ch
     }
     const double wave_x = fit.along_x / grid->lx, wave_y = fit.along_y / ly;
     const double near_angle = remainder(atan2(wave_x, -wave_y), M_PI) / DEGREE;
-    out->wave_x[out->families] = wave_x;
-    out->wave_y[out->families++] = wave_y;
+    out->wave_x = wave_x;
+    out->wave_y = wave_y;
     if (fit.off > OFF && profile)
         values_fault(values, path,
                      "%g: the cell, %g lambda_s, has %.6g periods; allowed: whole numbers, the "
@@ -43,59 +49,128 @@ static void read_family(const struct grid *grid, struct values *values, const ch
             1 / hypot(wave_x, wave_y), near_angle, fabs(fit.along_x), fabs(fit.along_y));
 }
 
-static int read_harmonics(struct values *values, struct groove_profile *out, struct error *err) {
+static int read_harmonics(struct values *values, const char *const *names,
+                          struct groove_profile *out, struct error *err) {
     double *amplitude = NULL, *phase = NULL;
     size_t count = 0, phases = 0;
     struct error reason = {0};
-    int status = values_numbers(values, AMPLITUDES, &amplitude, &count, err);
+    int status = values_numbers(values, names[AMPLITUDES], &amplitude, &count, err);
     if (status == 0)
-        status = values_numbers(values, PHASES, &phase, &phases, err);
+        status = values_numbers(values, names[PHASES], &phase, &phases, err);
     for (size_t h = 0; h < phases && phase != NULL; h++)
         phase[h] *= DEGREE;
     if (status == 0 && amplitude == NULL)
-        values_fault(values, AMPLITUDES, "the shape harmonics needs its amplitudes");
+        values_fault(values, names[AMPLITUDES], "the shape harmonics needs its amplitudes");
     else if (status == 0 && phase != NULL && phases != count)
-        values_fault(values, PHASES, "%zu of them, and %zu amplitudes; allowed: as many of each",
-                     phases, count);
+        values_fault(values, names[PHASES],
+                     "%zu of them, and %zu amplitudes; allowed: as many of each", phases, count);
     else if (status == 0) {
         double none[GROOVE_HARMONICS_MOST] = {0};
         if (groove_profile_of_harmonics(out, count, amplitude, phase != NULL ? phase : none,
                                         &reason) != 0)
-            values_fault(values, AMPLITUDES, "%s", reason.text);
+            values_fault(values, names[AMPLITUDES], "%s", reason.text);
     }
     free(amplitude);
     free(phase);
     return status;
 }
 
-/* What belongs to grooves alone is refused without them. */
+static int read_profile(struct values *values, const char *const *names, struct groove_profile *out,
+                        struct error *err) {
+    out->shape = (enum groove_shape)values_choice(values, names[SHAPE]);
+    if (out->shape == GROOVE_HARMONICS)
+        return read_harmonics(values, names, out, err);
+    if (values_is_given(values, names[AMPLITUDES]))
+        values_fault(values, names[AMPLITUDES], "belongs to the shape harmonics");
+    return 0;
+}
+
+static void refuse_all(struct values *values, const char *const *names, const char *reason) {
+    for (size_t n = 0; n < NAMES; n++)
+        if (values_is_given(values, names[n]))
+            values_fault(values, names[n], "%s", reason);
+}
+
+static bool is_crossed(struct values *values) {
+    return values_is_given(values, CROSS[ANGLE]) || values_is_given(values, CROSS[PERIOD]);
+}
+
+/* What belongs to grooves alone is refused without them, and so for the second family. */
 static bool are_asked(struct values *values) {
-    static const char *const PATHS[] = {DEPTH, ANGLE, CROSS, SHAPE, AMPLITUDES, PHASES, PHASE};
-    if (values_is_given(values, PERIOD))
+    static const char REASON[] = "belongs to grooves, which need their period and depth";
+    if (values_is_given(values, FIRST[PERIOD])) {
+        if (!is_crossed(values))
+            refuse_all(values, CROSS,
+                       "belongs to a second family, which needs its cross_angle or cross_period");
         return true;
-    for (size_t p = 0; p < sizeof PATHS / sizeof *PATHS; p++)
-        if (values_is_given(values, PATHS[p]))
-            values_fault(values, PATHS[p], "belongs to grooves, which need their period and depth");
+    }
+    refuse_all(values, FIRST, REASON);
+    refuse_all(values, CROSS, REASON);
+    if (values_is_given(values, PHASE))
+        values_fault(values, PHASE, "%s", REASON);
     return false;
 }
 
-static void check_directions(const struct grid *grid, struct values *values, double angle,
-                             double cross) {
-    if (grid_is_profile(grid) && !isnan(angle))
-        values_fault(values, ANGLE, "%g: profiles have one direction", angle);
-    if (grid_is_profile(grid) && !isnan(cross))
-        values_fault(values, CROSS, "%g: profiles have one direction", cross);
-    if (!isnan(cross) && fabs(remainder(cross - (isnan(angle) ? 90 : angle), 180)) < 1e-6)
-        values_fault(values, CROSS, "%g: both families have the same direction", cross);
+static double or_else(double value, double other) {
+    return isnan(value) ? other : value;
 }
 
-static void check_period(const struct grid *grid, struct values *values, double period) {
+static void check_directions(const struct grid *grid, struct values *values) {
+    const char *const *of[] = {FIRST, CROSS};
+    for (size_t f = 0; f < 2; f++) {
+        const double angle = values_number(values, of[f][ANGLE]);
+        if (grid_is_profile(grid) && !isnan(angle))
+            values_fault(values, of[f][ANGLE], "%g: profiles have one direction", angle);
+    }
+}
+
+static void check_period(const struct grid *grid, struct values *values, const char *path,
+                         double period) {
     static const double POINTS_LEAST = 4;
     const double dx = grid_dx(grid);
     if (!(period >= POINTS_LEAST * dx * (1 - 1e-9)))
-        values_fault(values, PERIOD,
+        values_fault(values, path,
                      "%g: the grid has %g points a period; allowed: at least %g, a period of %g",
                      period, period / dx, POINTS_LEAST, POINTS_LEAST * dx);
+}
+
+/* Reads the first family. */
+static int read_first(struct grooves *out, const struct grid *grid, struct values *values,
+                      struct error *err) {
+    const double period = values_number(values, FIRST[PERIOD]);
+    out->families = 1;
+    out->family[0].depth = values_number(values, FIRST[DEPTH]);
+    check_period(grid, values, FIRST[PERIOD], period);
+    read_waves(grid, values, FIRST[PERIOD], period,
+               or_else(values_number(values, FIRST[ANGLE]), 90), &out->family[0]);
+    return read_profile(values, FIRST, &out->family[0].profile, err);
+}
+
+/* Reads the second one: what it does not give is that of the first. */
+static int read_cross(struct grooves *out, const struct grid *grid, struct values *values,
+                      struct error *err) {
+    static const double SAME = 1e-9;
+    struct groove_family *second = &out->family[1];
+    const double angle = or_else(values_number(values, FIRST[ANGLE]), 90);
+    const double cross = or_else(values_number(values, CROSS[ANGLE]), angle);
+    const double own = values_number(values, CROSS[PERIOD]);
+    const double period = or_else(own, values_number(values, FIRST[PERIOD]));
+    const char *path = isnan(own) ? CROSS[ANGLE] : CROSS[PERIOD];
+    *second = out->family[0];
+    out->families = 2;
+    second->depth = or_else(values_number(values, CROSS[DEPTH]), second->depth);
+    if (fabs(remainder(cross - angle, 180)) < 1e-6 &&
+        fabs(period - values_number(values, FIRST[PERIOD])) < SAME * period)
+        values_fault(values, path, "%g: both families have the same direction and period",
+                     isnan(own) ? cross : own);
+    check_period(grid, values, path, period);
+    read_waves(grid, values, path, period, cross, second);
+    const bool shaped = values_is_given(values, CROSS[SHAPE]);
+    if (shaped)
+        return read_profile(values, CROSS, &second->profile, err);
+    if (values_is_given(values, CROSS[AMPLITUDES]))
+        values_fault(values, CROSS[AMPLITUDES], "belongs to the cross_shape harmonics");
+    return 0;
 }
 
 int surface_grooves_read(struct grooves **out, const struct grid *grid, bool translated,
@@ -103,30 +178,21 @@ int surface_grooves_read(struct grooves **out, const struct grid *grid, bool tra
     const size_t before = values_fault_count(values);
     if (!are_asked(values))
         return 0;
-    const double period = values_number(values, PERIOD), angle = values_number(values, ANGLE);
-    const double cross = values_number(values, CROSS), depth = values_number(values, DEPTH);
-    if (isnan(depth))
-        values_fault(values, DEPTH, "grooves need their depth, in RMS heights of the random part");
-    check_directions(grid, values, angle, cross);
+    if (isnan(values_number(values, FIRST[DEPTH])))
+        values_fault(values, FIRST[DEPTH],
+                     "grooves need their depth, in RMS heights of the random part");
+    check_directions(grid, values);
     if (translated)
         values_fault(values, "/surface/heights/law",
                      "\"translation\": with grooves heights are no function of a Gaussian field; "
                      "allowed: \"iterated\"");
-    check_period(grid, values, period);
     if (values_fault_count(values) != before)
         return 0;
     struct grooves *grooves = array_create(1, sizeof *grooves);
     if (grooves == NULL)
         return error_memory(err, sizeof *grooves, "grooves");
     *out = grooves;
-    *grooves = (struct grooves){.depth = depth, .phase = values_number(values, PHASE)};
-    read_family(grid, values, PERIOD, period, isnan(angle) ? 90 : angle, grooves);
-    if (!isnan(cross))
-        read_family(grid, values, CROSS, period, cross, grooves);
-    grooves->profile.shape = (enum groove_shape)values_choice(values, SHAPE);
-    if (grooves->profile.shape == GROOVE_HARMONICS)
-        return read_harmonics(values, &grooves->profile, err);
-    if (values_is_given(values, AMPLITUDES))
-        values_fault(values, AMPLITUDES, "belongs to the shape harmonics");
-    return 0;
+    grooves->phase = values_number(values, PHASE);
+    int status = read_first(grooves, grid, values, err);
+    return status == 0 && is_crossed(values) ? read_cross(grooves, grid, values, err) : status;
 }

@@ -8,26 +8,27 @@ struct groove_fit groove_fit_cell(double wave_x, double wave_y, double lx, doubl
 
 bool grooves_fit(const struct grooves *grooves, double lx, double ly) {
     static const double ROUNDING = 1e-6;
-    for (size_t f = 0; f < grooves->families; f++)
-        if (groove_fit_cell(grooves->wave_x[f], grooves->wave_y[f], lx, ly).off > ROUNDING)
+    for (size_t f = 0; f < grooves->families; f++) {
+        const struct groove_family *family = &grooves->family[f];
+        if (groove_fit_cell(family->wave_x, family->wave_y, lx, ly).off > ROUNDING)
             return false;
+    }
     return true;
 }
 
 /* Adds one family: whole periods along both sides, so that rounding does not grow along them. */
-static void family_add(const struct grooves *grooves, size_t family, const struct grid *grid,
-                       double phase, double height, double *z) {
+static void family_add(const struct groove_family *family, const struct grid *grid, double phase,
+                       double height, double *z) {
     const bool profile = grid_is_profile(grid);
-    const struct groove_fit fit =
-        groove_fit_cell(grooves->wave_x[family], profile ? 0 : grooves->wave_y[family], grid->lx,
-                        profile ? 1 : grid->ly);
+    const struct groove_fit fit = groove_fit_cell(family->wave_x, profile ? 0 : family->wave_y,
+                                                  grid->lx, profile ? 1 : grid->ly);
     const double by_i = fit.along_x / (double)grid->nx, by_j = fit.along_y / (double)grid->ny;
-    const double depth = height * grooves->depth;
+    const double depth = height * family->depth;
     for (size_t j = 0; j < grid->ny; j++) {
         const double start = phase + by_j * (double)j;
         for (size_t i = 0; i < grid->nx; i++)
             z[j * grid->nx + i] +=
-                depth * groove_profile_height(&grooves->profile, start + by_i * (double)i);
+                depth * groove_profile_height(&family->profile, start + by_i * (double)i);
     }
 }
 
@@ -37,16 +38,17 @@ void grooves_add(const struct grooves *grooves, const struct grid *grid, struct 
         double phase = grooves->phase;
         if (isnan(phase))
             random_uniform(key, STREAM_GROOVES, f, 1, &phase);
-        family_add(grooves, f, grid, phase, height, z);
+        family_add(&grooves->family[f], grid, phase, height, z);
     }
 }
 
 struct groove_moments grooves_cumulants(const struct grooves *grooves) {
-    const struct groove_moments one = groove_profile_moments(&grooves->profile);
-    const double d = grooves->depth, square = d * d;
     struct groove_moments out = {0};
     for (size_t f = 0; f < grooves->families; f++) {
-        const double wave = hypot(grooves->wave_x[f], grooves->wave_y[f]);
+        const struct groove_family *family = &grooves->family[f];
+        const struct groove_moments one = groove_profile_moments(&family->profile);
+        const double d = family->depth, square = d * d;
+        const double wave = hypot(family->wave_x, family->wave_y);
         out.second += square * one.second;
         out.third += square * d * one.third;
         out.fourth += square * square * (one.fourth - 3 * one.second * one.second);

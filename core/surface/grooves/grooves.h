@@ -1,4 +1,4 @@
-/* Families of straight, evenly spaced grooves of one profile, which a machined face has beside its
+/* Families of straight, evenly spaced grooves, which a machined face has beside its
  * random part: FORMULAS.md, F18.71. */
 #ifndef RUGO_CORE_SURFACE_GROOVES_GROOVES_H
 #define RUGO_CORE_SURFACE_GROOVES_GROOVES_H
@@ -8,11 +8,14 @@
 #include "core/surface/grooves/groove_profile.h"
 
 enum { GROOVE_FAMILIES_MOST = 2 };
-struct grooves {
+struct groove_family {
     struct groove_profile profile;
+    double depth;          /* over the RMS height of the random part */
+    double wave_x, wave_y; /* periods a unit length */
+};
+struct grooves {
     size_t families;
-    double depth; /* of each family, over the RMS height of the random part */
-    double wave_x[GROOVE_FAMILIES_MOST], wave_y[GROOVE_FAMILIES_MOST]; /* periods a unit length */
+    struct groove_family family[GROOVE_FAMILIES_MOST];
     double phase; /* at the origin, in periods; NaN: at random for each realisation and family */
 };
 

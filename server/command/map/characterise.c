@@ -34,7 +34,9 @@ static const struct option_row OPTIONS[] = {
     {"trust-to", 0, OPTION_TEXT, 0, 0, AT(trust_to), "LENGTH", NULL,
      "the shortest ones (by the map: where noise, or what the instrument takes, begins)"},
     {"format", 0, OPTION_CHOICE, 0, 0, AT(format), "text|json|svg|study", "text",
-     "what to print; svg: the page of --report; study: one of surfaces like the map"},
+     "what to print; svg: the page of --report; study: one of surfaces like the map, stratified "
+     "ones "
+     "where it is"},
     {"hold", 0, OPTION_FLAG, 0, 0, AT(hold), NULL, NULL,
      "--format study: its surfaces hold the map itself and go on as its law says"},
     {"all", 0, OPTION_FLAG, 0, 0, AT(all), NULL, NULL,
@@ -63,7 +65,9 @@ enum { FORMAT_TEXT, FORMAT_JSON, FORMAT_SVG, FORMAT_STUDY };
 
 static int print_study(const struct map_figure *figure, bool hold, struct error *err) {
     cJSON *study = NULL;
-    int status = like_study_make(&study, 1, figure->map, figure->record, hold, err);
+    const struct plateau_law *strata =
+        !hold && map_is_stratified(figure->measured) ? &figure->measured->functional.plateau : NULL;
+    int status = like_study_make(&study, 1, figure->map, figure->record, strata, hold, err);
     if (status == 0)
         status = output_document(study, err);
     cJSON_Delete(study);

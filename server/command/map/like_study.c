@@ -5,6 +5,7 @@
 #include "jobs/kind.h"
 #include "jobs/like/like_fit.h"
 #include "jobs/like/like_parameters.h"
+#include "jobs/like/like_strata.h"
 #include "jobs/maps/map_artefact_words.h"
 #include "schema/json/field.h"
 #include "schema/json/json.h"
@@ -439,8 +440,21 @@ static bool study_begin(cJSON *study, const char *file, size_t count, bool hold)
            cJSON_AddNumberToObject(study, "realisations", hold ? DRAWS : REALISATIONS) != NULL;
 }
 
+/* Writes both laws of a stratified map, and says so in its steps. */
+static int put_strata(cJSON *surface, const struct height_map *map,
+                      const struct plateau_law *strata, char steps[PREPARATION_STEPS_TEXT],
+                      struct error *err) {
+    char words[LIKE_STRATA_TEXT];
+    int status = like_strata_put(surface, map, strata, words, err);
+    const size_t used = strlen(steps);
+    if (status == 0)
+        snprintf(steps + used, PREPARATION_STEPS_TEXT - used, "%s%s", used > 0 ? "; " : "", words);
+    return status;
+}
+
 int like_study_make(cJSON **out, size_t count, const struct height_map *maps,
-                    const struct preparation_record *records, bool hold, struct error *err) {
+                    const struct preparation_record *records, const struct plateau_law *strata,
+                    bool hold, struct error *err) {
     struct sources {
         struct like_source source[JOINT_PATCHES_MOST];
         char steps[JOINT_PATCHES_MOST][PREPARATION_STEPS_TEXT];
@@ -454,8 +468,11 @@ int like_study_make(cJSON **out, size_t count, const struct height_map *maps,
     }
     if (study != NULL && of != NULL && study_begin(study, of->source[0].file, count, hold))
         surface = cJSON_AddObjectToObject(study, "surface");
-    int status = surface != NULL ? like_fit_together(surface, count, maps, of->source, err)
-                                 : error_memory(err, 0, "a study");
+    int status = surface != NULL ? 0 : error_memory(err, 0, "a study");
+    if (status == 0 && strata != NULL)
+        status = put_strata(surface, &maps[0], strata, of->steps[0], err);
+    if (status == 0)
+        status = like_fit_together(surface, count, maps, of->source, err);
     free(of);
     if (status == 0)
         status = check_study(study, err);

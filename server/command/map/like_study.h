@@ -4,6 +4,7 @@
 #define RUGO_SERVER_COMMAND_MAP_LIKE_STUDY_H
 
 #include "core/map/preparation.h"
+#include "core/statistics/heights/plateau.h"
 #include "server/command/map/map_file.h"
 #include <cjson/cJSON.h>
 #include <stdbool.h>
@@ -24,9 +25,12 @@ int like_study_fit_sent(char **text, size_t *size, const struct map_options *sen
                         struct error *err);
 
 /* Makes a study of statistics of surfaces like one map or several of one surface, each with its
- * record, fitted, for the caller to delete. hold: the surfaces hold the map, which is in the study.
- * ERROR_INPUT where its reader would refuse what was measured. */
+ * record, fitted, for the caller to delete. strata: the law of the heights of one
+ * map that is a stratified face, which the surfaces then are; NULL: they are not. hold: the
+ * surfaces hold the map, which is in the study. ERROR_INPUT where its reader would refuse what was
+ * measured. */
 int like_study_make(cJSON **out, size_t count, const struct height_map *maps,
-                    const struct preparation_record *records, bool hold, struct error *err);
+                    const struct preparation_record *records, const struct plateau_law *strata,
+                    bool hold, struct error *err);
 
 #endif

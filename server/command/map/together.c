@@ -63,7 +63,7 @@ int together_study(const char *const *files, const struct map_options *options, 
         maps->count += status == 0 ? 1 : 0;
     }
     if (status == 0)
-        status = like_study_make(study, maps->count, maps->map, maps->record, hold, err);
+        status = like_study_make(study, maps->count, maps->map, maps->record, NULL, hold, err);
     for (size_t m = 0; maps != NULL && m < maps->count; m++)
         height_map_clear(&maps->map[m]);
     free(maps);

@@ -157,7 +157,7 @@ static void judge_strata(struct verdicts *verdicts, const struct named_values *f
         say(verdicts,
             "Heights: two laws fit better than one: a plateau above valleys, which meet at %.3g %% "
             "of the points (%cmq). Studies make such faces by \"plateau\": {\"rms_ratio\": %.3g, "
-            "\"material_ratio\": %.3g} in /surface.",
+            "\"material_ratio\": %.3g} in /surface; --format study writes one with both spectra.",
             100 * ratio, letter, plateau / valleys, ratio);
 }
 

@@ -1,6 +1,7 @@
 /* Protects: studies of stratified faces give the same curves here and over HTTP, with any number of
  * workers; what does not go with them is refused over both; and a map of such a face is named as
- * one, with the errors of its parameters and the study that makes it again. */
+ * one, with the errors of its parameters and the study that makes it again, with both of its laws.
+ */
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include <signal.h>
@@ -100,6 +101,30 @@ static void map_of_a_face(void **state) {
     assert_true(number_of("face.out", "Sk_error") > 0);
 }
 
+/* The study that is written for a map of a face has both laws, makes faces of which the map may be
+ * one, and goes with the map beside it, which one of a law of its own does not. */
+static void study_of_a_face(void **state) {
+    (void)state;
+    check_shell("\"$RUGO\" characterise face.npy --dx 1 --crop 0,0,192,192 --boundary open "
+                "--format study >like.json");
+    const double valleys = number_of("like.json", "rms_height"); /* over lambda_s, 4 points */
+    const double points = number_of("like.json", "points_per_wavelength");
+    assert_true(points == 4);
+    check_close(valleys * points, 1, 0.25);
+    check_close(number_of("like.json", "rms_ratio"), 0.25, 0.05);
+    assert_true(contains("like.json", "two laws: valleys of RMS height "));
+    assert_true(contains("like.json", "\"spectrum\":\"given\",\"heights\":\"given\""));
+    check_shell("\"$RUGO\" run like.json --db like.db --workers 2 --set realisations=24 >like.txt");
+    assert_true(contains("like.txt", "may be one of them"));
+    check_shell("\"$RUGO\" characterise face.npy --dx 1 --crop 0,0,96,96 --boundary open --format "
+                "study --hold >hold.json");
+    assert_false(contains("hold.json", "\"plateau\""));
+    spit("both.json", "{\"name\":\"both\",\"kind\":\"statistics\",\"realisations\":2,\"surface\":{"
+                      "\"plateau\":{\"rms_ratio\":0.25,\"offset\":0},\"like\":{\"file\":"
+                      "\"face.npy\",\"dx\":1,\"off\":\"stated\"}}}");
+    check_shell_refused("\"$RUGO\" check both.json", "a spectrum (hurst) beside the plateau");
+}
+
 /* Heights of one law have far tails that two would fit better, and are no stratified face. */
 static void tails_are_no_plateau(void **state) {
     (void)state;
@@ -117,8 +142,8 @@ static void tails_are_no_plateau(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_answer),
-                                       cmocka_unit_test(map_of_a_face),
-                                       cmocka_unit_test(tails_are_no_plateau)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(same_answer), cmocka_unit_test(map_of_a_face),
+        cmocka_unit_test(study_of_a_face), cmocka_unit_test(tails_are_no_plateau)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -39,7 +39,17 @@ static void what_does_not_fit_is_refused(void **state) {
         {GROOVES("\"period\": 5"), "has 3.2 periods along x and 0 along y"},
         {GROOVES("\"period\": 5"), "the nearest is period 5.333333333 at 90 degrees (3 along x"},
         {GROOVES("\"period\": 4, \"angle\": 40"), "along x, 3 along y)"},
-        {GROOVES("\"period\": 4, \"cross_angle\": 90"), "both families have the same direction"},
+        {GROOVES("\"period\": 4, \"cross_angle\": 90"),
+         "both families have the same direction and period"},
+        {GROOVES("\"period\": 4, \"cross_depth\": 1"), "needs its cross_angle or cross_period"},
+        {GROOVES("\"period\": 4, \"cross_period\": 5"),
+         "/surface/grooves/cross_period: period 5 at 90"},
+        {GROOVES("\"period\": 4, \"cross_period\": 0.25, \"cross_angle\": 0"),
+         "points a period; allowed: at least 4"},
+        {GROOVES("\"period\": 4, \"cross_angle\": 0, \"cross_shape\": \"harmonics\""),
+         "cross_amplitudes: the shape harmonics needs"},
+        {GROOVES("\"period\": 4, \"cross_angle\": 0, \"cross_amplitudes\": [1]"),
+         "belongs to the cross_shape harmonics"},
         {GROOVES("\"period\": 4, \"angle\": 0, \"cross_angle\": 50"),
          "/surface/grooves/cross_angle: period 4 at 50 degrees"},
         {GROOVES("\"period\": 0.25"), "the grid has 2 points a period; allowed: at least 4"},
@@ -67,12 +77,35 @@ static void what_does_not_fit_is_refused(void **state) {
 static void allowed_values_are_read(void **state) {
     (void)state;
     struct surface_case surface = read(GROOVES("\"period\": 5.333, \"angle\": 90"));
-    check_close(surface.grooves->wave_x[0], 3. / 16, 1e-14);
-    assert_true(surface.grooves->wave_y[0] == 0);
+    check_close(surface.grooves->family[0].wave_x, 3. / 16, 1e-14);
+    assert_true(surface.grooves->family[0].wave_y == 0);
     surface_case_clear(&surface);
     surface = read(GROOVES("\"period\": 3.771236, \"angle\": 45, \"cross_angle\": -45"));
     assert_int_equal(surface.grooves->families, 2);
     assert_true(grooves_fit(surface.grooves, 32, 32) && !grooves_fit(surface.grooves, 8, 8));
+    surface_case_clear(&surface);
+}
+
+/* The second family has what is given of its own, and else what the first has. */
+static void the_second_family_has_its_own(void **state) {
+    (void)state;
+    struct surface_case surface =
+        read(GROOVES("\"period\": 4, \"shape\": \"arcs\", \"cross_period\": 2.743977,"
+                     "\"cross_angle\": -30.96375653, \"cross_depth\": 0.5,"
+                     "\"cross_shape\": \"triangle\""));
+    const struct groove_family *family = surface.grooves->family;
+    assert_int_equal(surface.grooves->families, 2);
+    check_close(family[1].wave_x, -3. / 16, 1e-14);
+    check_close(family[1].wave_y, -5. / 16, 1e-14);
+    assert_true(family[0].depth == 2 && family[1].depth == 0.5);
+    assert_true(family[0].profile.shape == GROOVE_ARCS &&
+                family[1].profile.shape == GROOVE_TRIANGLE);
+    check_close(grooves_cumulants(surface.grooves).second, 4 * 4. / 45 + 0.25 / 12, 1e-12);
+    surface_case_clear(&surface);
+    surface = read(GROOVES("\"period\": 4, \"shape\": \"saw\", \"cross_period\": 2"));
+    family = surface.grooves->family;
+    assert_true(family[1].wave_x == 0.5 && family[1].wave_y == 0 && family[1].depth == 2 &&
+                family[1].profile.shape == GROOVE_SAW);
     surface_case_clear(&surface);
 }
 
@@ -175,8 +208,11 @@ static void deep_sines_are_westergaards(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_does_not_fit_is_refused), cmocka_unit_test(allowed_values_are_read),
-        cmocka_unit_test(meshes_have_the_same_grooves), cmocka_unit_test(moments_add_up),
+        cmocka_unit_test(what_does_not_fit_is_refused),
+        cmocka_unit_test(allowed_values_are_read),
+        cmocka_unit_test(the_second_family_has_its_own),
+        cmocka_unit_test(meshes_have_the_same_grooves),
+        cmocka_unit_test(moments_add_up),
         cmocka_unit_test(deep_sines_are_westergaards),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
