@@ -40,7 +40,7 @@ static void judge_errors(struct verdicts *verdicts, const struct named_values *f
         say(verdicts,
             "Errors: +- one standard error of a patch %.3g correlation lengths wide (95 %%: %.3g "
             "of "
-            "them, of RMS values in logarithms); [ ] a 95 %% interval.",
+            "them); [ ] a 95 %% interval.",
             lengths, named_number(found, GROUP, "factor_95"));
 }
 
