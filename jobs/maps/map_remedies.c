@@ -75,8 +75,11 @@ static void lines_add(const struct map_remedied *found, const struct line_losses
         scale->curvature_error =
             hypot(scale->curvature_error, lost->curvature / 2 * scale->found.curvature);
     }
-    if (found->spectra->has_fit && found->spectra->fit.fitted)
+    if (found->spectra->has_fit && found->spectra->fit.fitted) {
         widen(&found->spectra->fit.rms_height, lost->height / 2);
+        if (isfinite(found->spectra->fit.nayak_alpha.value)) /* which has the mean square height */
+            widen(&found->spectra->fit.nayak_alpha, lost->height);
+    }
 }
 
 /* Relative errors of RMS slope and curvature. */
@@ -147,6 +150,53 @@ static int sides_add(const struct measured_map *map, struct lost_waves *out, str
     return 0;
 }
 
+/* What steps leave in the share of heights below one: 2 cosine cos(2 pi z/step), and so on, beside
+ * 1 in their density. */
+struct ripple {
+    double step, cosine, sine;
+    const struct material_curve *curve; /* borrowed */
+};
+
+static struct ripple ripple_find(const struct measured_map *map, double step,
+                                 const struct material_curve *curve) {
+    struct average cosine = {0}, sine = {0};
+    for (size_t point = 0; point < grid_points(map->grid); point++) {
+        average_add(&cosine, cos(2 * M_PI * map->z[point] / step));
+        average_add(&sine, sin(2 * M_PI * map->z[point] / step));
+    }
+    return (struct ripple){step, average_value(&cosine), average_value(&sine), curve};
+}
+
+/* Returns by how much the height is off that a share of the points lies above. */
+static double ripple_shift(const struct ripple *ripple, double share) {
+    const struct material_curve *curve = ripple->curve;
+    const double phase = 2 * M_PI * (curve->mean + material_height(curve, share)) / ripple->step;
+    return fabs(ripple->cosine * sin(phase) - ripple->sine * cos(phase)) * ripple->step / M_PI;
+}
+
+/* Adds to volumes and heights by share what is left of steps: heights are near the steps where the
+ * map is level. */
+static int steps_add(struct map_functional *out, const struct measured_map *map, double step,
+                     struct error *err) {
+    struct material_curve curve;
+    struct functional *e = &out->errors.found;
+    int status = material_curve_create(&curve, map, err);
+    if (status != 0)
+        return status;
+    const struct ripple ripple = ripple_find(map, step, &curve);
+    const double peaks = 0.1 * ripple_shift(&ripple, 0.1);
+    const double material = 0.8 * ripple_shift(&ripple, 0.8);
+    const double voids = 0.9 * ripple_shift(&ripple, 0.1);
+    const double valleys = 0.2 * ripple_shift(&ripple, 0.8);
+    e->vmp = hypot(e->vmp, peaks);
+    e->vmc = hypot(e->vmc, hypot(peaks, material));
+    e->vvc = hypot(e->vvc, hypot(voids, valleys));
+    e->vvv = hypot(e->vvv, valleys);
+    e->xp = hypot(e->xp, hypot(ripple_shift(&ripple, 0.025), ripple_shift(&ripple, 0.5)));
+    material_curve_clear(&curve);
+    return 0;
+}
+
 /* Summits are as curved as the surface is, and their density goes with (curvature/slope)^2. */
 static void noise_add_summits(const struct lost_waves *lost, struct map_summits *out) {
     struct summit_errors *errors = &out->errors;
@@ -180,5 +230,7 @@ int map_remedies_add(const struct map_remedied *found, const struct measured_map
         lines_add(found, &lost);
     if (status == 0 && record->denoised)
         status = denoised_add(found, map, record, err);
+    if (status == 0 && record->denoised && record->artefacts.steps.step > 0)
+        status = steps_add(found->functional, map, record->artefacts.steps.step, err);
     return status;
 }

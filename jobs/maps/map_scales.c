@@ -34,16 +34,16 @@ static void fill_errors(struct map_scale *scale, const struct measured_map *map,
     const struct grid *grid = map->grid;
     const double side = grid_is_profile(grid) ? grid->lx : fmin(grid->lx, grid->ly);
     const bool known = chance->told && side >= LAGS_INSIDE_LEAST * scale->found.length;
-    const double none = known ? 1 : (double)NAN;
-    const double freedom = known
-                               ? low_modes_freedom_slopes(&chance->modes, chance->correlation, grid,
-                                                          scale->found.length, differences->count)
-                               : (double)chance->modes.count;
-    const double more = sqrt(excess) * low_modes_factor_over(&chance->modes, freedom);
-    const double slope = errors.slope * more * none * sqrt(share_of(map, lag));
+    double more = (double)NAN;
+    if (known) {
+        const double freedom = low_modes_freedom_slopes(&chance->modes, chance->correlation, grid,
+                                                        scale->found.length, differences->count);
+        more = sqrt(excess) * low_modes_factor_over(&chance->modes, freedom);
+    }
+    const double slope = errors.slope * more * sqrt(share_of(map, lag));
     scale->height_error = scale->found.height * slope;
     scale->slope_error = scale->found.slope * slope;
-    scale->curvature_error = scale->found.curvature * errors.curvature * more * none;
+    scale->curvature_error = scale->found.curvature * errors.curvature * more;
 }
 
 static void measure_directions(struct map_scale *scale, const struct map_chance *chance,

@@ -9,10 +9,10 @@ static const double RISE = 3.841;
 /* By how much the rings at an end scatter more than those inside: half of a ring is empty there,
  * and under a window what its modes hold comes from few. */
 static const double EDGE_SCATTER = 2, EDGE_SCATTER_WINDOWED = 1.6;
-/* The same of a sharp end under a window, by its place beyond the middle of a ring, in parts of the
- * distance to the next one (FORMULAS.md, F18.58). */
-enum { PLACES = 8 };
-static const double EDGE_SCATTER_AT[PLACES] = {1.36, 1.42, 1.53, 1.62, 1.61, 1.59, 1.53, 1.46};
+/* The same of a sharp end under a window, by how far it lies beyond the middle of a ring, in
+ * eighths of the distance to the next one (FORMULAS.md, F18.58). */
+enum { EIGHTHS = 8 };
+static const double EDGE_SCATTER_AT[EIGHTHS] = {1.36, 1.42, 1.53, 1.62, 1.61, 1.59, 1.53, 1.46};
 /* Ratio of the variances found over 1500 surfaces of known laws to those estimated without it. */
 static const double OVERDISPERSION = 1.1;
 static const double SCORE = 1.960; /* of a standard deviation, of two ends */
@@ -222,6 +222,20 @@ static int fitted_reconsider(struct fitted *fitted, struct spectrum_range *range
     return status;
 }
 
+/* Returns the same by the sharp end of a law: noise, of which all modes have as much, fills the
+ * rings behind it. */
+static double short_end_scatter(const struct law_problem *problem, const double *p) {
+    static const double NOISE = 0.0035,
+                        POWER = 0.65; /* share of the density at which half is left */
+    const double ring = exp(p[LAW_SHORT]), at = EIGHTHS * (ring - floor(ring));
+    const size_t before = (size_t)at % EIGHTHS;
+    const double part = at - floor(at);
+    const double alone =
+        (1 - part) * EDGE_SCATTER_AT[before] + part * EDGE_SCATTER_AT[(before + 1) % EIGHTHS];
+    const double noise = exp(p[LAW_NOISE]) / law_density(problem, p, p[LAW_SHORT]);
+    return 1 + (alone - 1) / (1 + pow(noise / NOISE, POWER));
+}
+
 /* Returns by how much more than inside the rings at an end scatter. Where those of a sharp end
  * count as one, by their mean, its degrees of freedom are those of its modes as they are. */
 static double edge_scatter(const struct fitted *fitted, enum law_parameter a) {
@@ -231,12 +245,7 @@ static double edge_scatter(const struct fitted *fitted, enum law_parameter a) {
         return 1;
     if (!problem->spectrum->windowed)
         return EDGE_SCATTER;
-    if (a == LAW_LONG)
-        return EDGE_SCATTER_WINDOWED;
-    const double ring = exp(fitted->law.p[a]), at = PLACES * (ring - floor(ring));
-    const size_t before = (size_t)at % PLACES;
-    const double part = at - floor(at);
-    return (1 - part) * EDGE_SCATTER_AT[before] + part * EDGE_SCATTER_AT[(before + 1) % PLACES];
+    return a == LAW_SHORT ? short_end_scatter(problem, fitted->law.p) : EDGE_SCATTER_WINDOWED;
 }
 
 /* Returns an end of an interval in terms of a parameter; NaN: open. */

@@ -111,9 +111,7 @@ void law_problem_put_together(struct law_problem *problem, double low, double hi
         problem->counted += problem->freedom[r] > 0 ? 1 : 0;
 }
 
-/* Returns the density of a law by the logarithm of a wave number, without regard to its ends and to
- * the blur. */
-static double density_at(const struct law_problem *problem, const double *p, double logarithm) {
+double law_density(const struct law_problem *problem, const double *p, double logarithm) {
     double k = logarithm > p[LAW_ROLLOFF] ? logarithm : p[LAW_ROLLOFF];
     return exp(p[LAW_AMPLITUDE] -
                (problem->dimension + 2 * p[LAW_HURST]) * (k - problem->reference_logarithm));
@@ -128,7 +126,7 @@ static void plain_fill(struct law_problem *problem, const double *p) {
     if (same)
         return;
     for (size_t a = 0; a < problem->leakage->nodes; a++)
-        problem->plain[a] = density_at(problem, p, problem->logarithm[a]);
+        problem->plain[a] = law_density(problem, p, problem->logarithm[a]);
     memcpy(problem->plain_of, p, sizeof problem->plain_of);
 }
 

@@ -60,6 +60,10 @@ void law_problem_destroy(struct law_problem **problem);
  * Once a problem. */
 void law_problem_put_together(struct law_problem *problem, double low, double high);
 
+/* Returns the density of a law by the logarithm of a wave number, without regard to its ends and to
+ * the blur. */
+double law_density(const struct law_problem *problem, const double *p, double logarithm);
+
 /* Below so many waves a side a map has no density; a law is taken as constant there. */
 #define LAW_FEWEST_WAVES 0.5
 /* Fills the deviance of a law: twice by how much the likelihood is less than that of rings that are

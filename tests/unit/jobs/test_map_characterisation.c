@@ -56,6 +56,37 @@ static void noise_is_alike_everywhere(void **state) {
     map_characterisation_clear(&found);
 }
 
+/* Heights that are drawn to steps have another volume of valleys than those that are not, by about
+ * what is added to its error where steps were found and noise was taken out. */
+static void steps_are_in_errors_of_volumes(void **state) {
+    (void)state;
+    enum { PLAIN, DRAWN, KNOWN, CASES };
+    static const double STEP = 0.5, DRAW = 0.02;
+    static struct map_characterisation found[CASES];
+    static double z[POINTS];
+    const struct spectrum_fit_request trusted = {0};
+    const struct height_map map = {.grid = {SIDE, SIDE, 32, 32}, .z = z};
+    uint64_t seed = seed_or(15);
+    noise_fill(&seed, POINTS, z);
+    for (int n = PLAIN; n < CASES; n++) {
+        struct preparation_record record = {
+            .boundary = BOUNDARY_OPEN, .window_power = 1, .denoised = true, .denoised_to = 2};
+        record.artefacts.steps.step = n == KNOWN ? STEP : 0;
+        for (size_t point = 0; point < POINTS && n == DRAWN; point++)
+            z[point] += DRAW * sin(2 * M_PI * z[point] / STEP);
+        assert_int_equal(map_characterise(&found[n], &map, &record, &trusted, MAP_WHOLE, NULL), 0);
+    }
+    const double change = found[DRAWN].functional.found.vvv - found[PLAIN].functional.found.vvv;
+    const double known = found[KNOWN].functional.errors.found.vvv;
+    const double unknown = found[DRAWN].functional.errors.found.vvv;
+    check_relative(sqrt(known * known - unknown * unknown), fabs(change), 0.3);
+    assert_true(found[KNOWN].functional.errors.found.xp > found[DRAWN].functional.errors.found.xp);
+    check_close(found[KNOWN].functional.errors.found.line.k,
+                found[DRAWN].functional.errors.found.line.k, 0);
+    for (int n = PLAIN; n < CASES; n++)
+        map_characterisation_clear(&found[n]);
+}
+
 /* One wave: nothing in it is independent. */
 static void too_few_lengths_have_no_errors(void **state) {
     (void)state;
@@ -141,6 +172,7 @@ static void waves_that_are_none_are_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(noise_is_alike_everywhere),
+        cmocka_unit_test(steps_are_in_errors_of_volumes),
         cmocka_unit_test(too_few_lengths_have_no_errors),
         cmocka_unit_test(skewed_heights_have_a_law),
         cmocka_unit_test(profiles_have_no_areal_parameters),
