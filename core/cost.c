@@ -194,7 +194,7 @@ static const struct newton_fit PROFILE_NEWTON = {1.2, 0.18, 4.5, 0.95},
 static const double GENTLE = 0.3, UPRIGHT = 0.3, PROFILE_WIDE = 10, SURFACE_WIDE = 8;
 /* A load further than FAR/h' from the one before it is approached in steps: of lengths l in E* h',
  * FAR_STEPS (l h' - FAR) more loads' work. */
-static const double FAR = 0.11, FAR_STEPS = 33;
+static const double FAR = 0.11, FAR_STEPS = 60;
 static const double USUAL_LOAD = 0.1; /* p/(E* h') */
 /* Steep faces fold and jump, some of them: a realisation does at a normal distribution's share of
  * those below (h' + JUMP_LOAD ln(p/0.1) - jump_slope)/jump_width at the highest load p, and more in
@@ -204,11 +204,12 @@ static const double USUAL_LOAD = 0.1; /* p/(E* h') */
 struct jump_fit {
     double slope, pressures_slope, width, pressures_width, newton, linear, factored;
 };
-static const struct jump_fit PROFILE_JUMP = {0.98, 1, 0.12, 0.3, 300, 20, 160},
+static const struct jump_fit PROFILE_JUMP = {1, 0.97, 0.1, 0.22, 300, 20, 160},
                              SURFACE_JUMP = {1.75, 1.75, 0.25, 0.25, 150, 0, 0};
-static const double JUMP_LOAD = 0.036, JUMP_WAVES = 16;
-/* Fewer jumps a realisation are not counted. */
-static const double RARE = 1e-3;
+static const double JUMP_LOAD = 0.02, JUMP_WAVES = 16;
+/* Variances of the time of a jump over its square, without and with friction. Fewer jumps a
+ * realisation than RARE are not counted. */
+static const double JUMP_SPREAD = 1, SLIDE_SPREAD = 2.2, RARE = 0.01;
 /* Iterations of the linear equations: LINEAR_LEAST + STEEP h' (1 + h') (0.4 min(B, 10))^0.6
  * (nx/SIDE)^SIDE_POWER, with B = 1/(1 - 2 nu), about the bulk over the shear modulus, and at least
  * 1 for the power. With pressures as unknowns it is LINEAR_PRESSURES, and there are PRESSURE_TENS
@@ -260,11 +261,11 @@ static const double STEP_SOLVES = 6.8, SOLVES_STEEP = 0.15, SOLVES_RUBBER = 0.28
 static const double STEP_FACTORED = 0.1, FACTORED_RUBBER = 0.24, FACTORED_FINER = 0.5,
                     FACTORED_STEEP = 1.27, FACTORED_SLOPE = 0.32;
 static const double WAVE_NODES = 4, LEG_STEPS = 20, RUBBER_DECADES = 3.7;
-/* As a face without friction jumps, a profile that is dragged does at such a share of
- * (mu h' (p/0.1)^FRICTION_JUMP_LOAD - FRICTION_JUMP_STEEP)/FRICTION_JUMP_WIDTH. It takes so many
- * iterations of Newton's method, and factorisations in each. */
-static const double FRICTION_JUMP_LOAD = 0.4, FRICTION_JUMP_STEEP = 0.6, FRICTION_JUMP_WIDTH = 0.15,
-                    FRICTION_JUMP_NEWTON = 600, FRICTION_JUMP_FACTORED = 0.3;
+/* A profile that slides jumps so often a path of an RMS height and JUMP_WAVES shortest waves: as a
+ * normal distribution's share below (mu h' (p/0.1)^SLIDE_JUMP_LOAD - SLIDE_JUMP)/SLIDE_JUMP_WIDTH.
+ * A jump takes so many iterations of Newton's method, and factorisations in each. */
+static const double SLIDE_JUMP = 0.38, SLIDE_JUMP_WIDTH = 0.06, SLIDE_JUMP_LOAD = 0.4;
+static const double SLIDE_JUMP_NEWTON = 800, SLIDE_JUMP_FACTORED = 0.02;
 /* Of surfaces, iterations of a step over those of a load without friction: Newton's, and of the
  * linear equations. Bytes of a degree of freedom, more with pressures. */
 static const double SURFACE_FRICTION_NEWTON = 0.8, SURFACE_FRICTION_LINEAR = 1.4;
@@ -345,11 +346,12 @@ static double normal_below(double x) {
     return erfc(-x / sqrt(2)) / 2;
 }
 
-/* Returns what so many jumps take in the mean: each an exponentially distributed time, of this mean
- * and no more than a limit. */
-static struct cost_jumps jumps_of(double number, double seconds, double limit) {
+/* Returns what so many jumps take in the mean: each of these seconds, with a variance of `spread`
+ * times their square, and no more than a limit. */
+static struct cost_jumps jumps_of(double number, double seconds, double spread, double limit) {
     const double each = limit > 0 ? fmin(seconds, limit) : seconds;
-    return (struct cost_jumps){.seconds = number * each, .variance = 2 * number * each * each};
+    return (struct cost_jumps){.seconds = number * each,
+                               .variance = (1 + spread) * number * each * each};
 }
 
 /* Returns how many cells of so many waves a cell is worth. */
@@ -370,7 +372,7 @@ struct cost_jumps cost_full_jumps(const struct grid *grid, const struct full_siz
     return jumps_of(number > RARE && size->folds ? number : 0,
                     fit->newton * (each.newton + within.linear * each.linear) +
                         fit->factored * each.factored,
-                    limit);
+                    JUMP_SPREAD, limit);
 }
 
 double cost_full_contact(const struct grid *grid, const struct full_size *size, double loads) {
@@ -437,19 +439,16 @@ double cost_friction_steps(const struct friction_work *of, double steps) {
                     step.factored * each.factored);
 }
 
-struct cost_jumps cost_friction_jumps(const struct friction_work *of, double limit) {
+struct cost_jumps cost_friction_jumps(const struct friction_work *of, double slid, double limit) {
     const double steep =
-        of->coefficient * of->rms_slope * pow(of->pressure / USUAL_LOAD, FRICTION_JUMP_LOAD);
-    const double number = grid_is_profile(of->grid)
-                              ? normal_below((steep - FRICTION_JUMP_STEEP) / FRICTION_JUMP_WIDTH) *
-                                    cell_share(of->grid->lx)
-                              : 0;
+        of->coefficient * of->rms_slope * pow(of->pressure / USUAL_LOAD, SLIDE_JUMP_LOAD);
+    const double share = normal_below((steep - SLIDE_JUMP) / SLIDE_JUMP_WIDTH);
+    const bool jump = grid_is_profile(of->grid) && of->load->folds && share > RARE;
     const struct full_limit each = cost_friction_limit(of, 0);
-    return jumps_of(number > RARE ? number : 0,
-                    FRICTION_JUMP_NEWTON *
-                        (each.newton + cost_friction_size(of).linear * each.linear +
-                         FRICTION_JUMP_FACTORED * each.factored),
-                    limit);
+    const double newton = each.newton + cost_friction_size(of).linear * each.linear +
+                          SLIDE_JUMP_FACTORED * each.factored;
+    return jumps_of(jump ? share * slid * of->grid->lx / JUMP_WAVES : 0, SLIDE_JUMP_NEWTON * newton,
+                    SLIDE_SPREAD, limit);
 }
 
 double cost_friction_bytes(const struct grid *grid, const struct block *block,

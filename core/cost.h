@@ -109,8 +109,9 @@ struct friction_size cost_friction_size(const struct friction_work *of);
  * trial of one does not show what the others take. Twenty studies took 0.57 to 5.8 of the estimate.
  */
 double cost_friction_steps(const struct friction_work *of, double steps);
-/* As cost_full_jumps, of a path. */
-struct cost_jumps cost_friction_jumps(const struct friction_work *of, double limit);
+/* As cost_full_jumps, of a path; slid: how far all of the flat slides there, over the RMS height.
+ */
+struct cost_jumps cost_friction_jumps(const struct friction_work *of, double slid, double limit);
 /* As cost_full_limit. */
 struct full_limit cost_friction_limit(const struct friction_work *of, double seconds);
 double cost_friction_bytes(const struct grid *grid, const struct block *block,

@@ -259,6 +259,8 @@ double sliding_full_bytes(const struct quantity_scene *scene) {
  * coefficients of 0.1 to 1, loads of 0.02 to 0.4, and 10 to 90 points: within 0.15. */
 static const double SLIP = 1.6, SLIP_POWER = 0.2, SLIP_SHAPE = 0.7, SLIP_CELL = 0.3, CELL_WAVES = 2;
 static const double STEEPER = 0.6, LAST = 2, SURFACE = 1.2;
+/* Nearly all slides from this part of that distance on. */
+static const double SLIP_MOST = 0.6;
 enum { SLIP_PARTS = 32 };
 
 /* Returns the steps from one turn to the next, or from the start: as drag() takes them. span: the
@@ -276,8 +278,13 @@ static double leg_steps(double span, double points, double shear, double slip) {
     return all;
 }
 
-/* Returns the steps along the whole path. */
-static double steps_expected(const struct quantity_scene *scene) {
+/* What the whole path takes: steps, and how far all of the face slides, nearly, over the RMS
+ * height. */
+struct path_expected {
+    double steps, slid;
+};
+
+static struct path_expected path_of(const struct quantity_scene *scene) {
     const struct contact_case *one_case = scene->one_case;
     const size_t steps = one_case->slide_steps;
     const double load = held_load(one_case), slope = one_case->rms_slope;
@@ -286,13 +293,17 @@ static double steps_expected(const struct quantity_scene *scene) {
                          (1 - scene->block.poisson) / one_case->rms_height;
     const double slip = SLIP * one_case->friction * pow(load / USUAL_LOAD, SLIP_POWER) *
                         (1 + SLIP_CELL * fmax(0, log2(waves / CELL_WAVES)));
-    double all = 0, legs = 1;
-    for (size_t turn = 0; turn + 1 < one_case->slide_count; turn += steps, legs = 2)
-        all += leg_steps(fabs(one_case->slide[turn + steps] - one_case->slide[turn]), (double)steps,
-                         legs * shear, legs * slip);
+    struct path_expected path = {0};
+    double legs = 1;
+    for (size_t turn = 0; turn + 1 < one_case->slide_count; turn += steps, legs = 2) {
+        const double span = fabs(one_case->slide[turn + steps] - one_case->slide[turn]);
+        path.steps += leg_steps(span, (double)steps, legs * shear, legs * slip);
+        path.slid += fmax(0, span - SLIP_MOST * legs * slip);
+    }
     const double nu = scene->block.poisson;
     const double more = grid_is_profile(&scene->grid) ? 1 : SURFACE * (1 - nu / 2) / (1 - nu);
-    return all * more * (1 + STEEPER * one_case->rms_slope);
+    path.steps *= more * (1 + STEEPER * slope);
+    return path;
 }
 
 /* CPU seconds until the load is held and along the path, and what jumps take of both. */
@@ -311,9 +322,9 @@ static struct sliding_cost cost_of(const struct quantity_scene *scene) {
     const double load = held_load(one_case), limit = one_case->time_limit;
     const struct cost_jumps held =
         cost_full_jumps(&scene->grid, &size, one_case->rms_slope, load, limit);
-    const struct cost_jumps dragged = cost_friction_jumps(&work, limit);
-    const double steps =
-        cost_friction_steps(&work, steps_expected(scene) + pressing) + dragged.seconds;
+    const struct path_expected path = path_of(scene);
+    const struct cost_jumps dragged = cost_friction_jumps(&work, path.slid, limit);
+    const double steps = cost_friction_steps(&work, path.steps + pressing) + dragged.seconds;
     const double loads = cost_full_loads(one_case->rms_slope, 1, &load) + pressing;
     return (struct sliding_cost){.held =
                                      cost_full_contact(&scene->grid, &size, loads) + held.seconds,
