@@ -185,16 +185,17 @@ double cost_linear_loads(const struct linear_work *of) {
 /* Iterations of Newton's method a load, of profiles and of surfaces: `least`, `doubling` for each
  * doubling of nx, `steep` h' with h' the RMS slope, the share `pressures` of it where these are
  * unknowns. Materials that give sideways, nu below UPRIGHT, have load steps cut on slopes above
- * GENTLE, which takes WIDE (h' - GENTLE)(UPRIGHT - nu) more, a third of it on surfaces. */
+ * GENTLE, which takes `wide` (h' - GENTLE)(UPRIGHT - nu) sqrt(nx/wide_side) more for each 0.1 E* h'
+ * of load. */
 struct newton_fit {
-    double least, doubling, steep, pressures;
+    double least, doubling, steep, pressures, wide, wide_side;
 };
-static const struct newton_fit PROFILE_NEWTON = {1.2, 0.18, 4.5, 0.95},
-                               SURFACE_NEWTON = {0.6, 0.57, 1.8, 0.8};
-static const double GENTLE = 0.3, UPRIGHT = 0.3, PROFILE_WIDE = 10, SURFACE_WIDE = 8;
+static const struct newton_fit PROFILE_NEWTON = {1.2, 0.18, 4.5, 0.95, 85, 128},
+                               SURFACE_NEWTON = {0.6, 0.57, 1.8, 0.8, 125, 16};
+static const double GENTLE = 0.3, UPRIGHT = 0.3;
 /* A load further than FAR/h' from the one before it is approached in steps: of lengths l in E* h',
  * FAR_STEPS (l h' - FAR) more loads' work. */
-static const double FAR = 0.11, FAR_STEPS = 33;
+static const double FAR = 0.11, PROFILE_FAR_STEPS = 60, SURFACE_FAR_STEPS = 15;
 static const double USUAL_LOAD = 0.1; /* p/(E* h') */
 /* Steep faces fold and jump, some of them: a realisation does at a normal distribution's share of
  * those below (h' + JUMP_LOAD ln(p/0.1) - jump_slope)/jump_width at the highest load p, and more in
@@ -204,11 +205,12 @@ static const double USUAL_LOAD = 0.1; /* p/(E* h') */
 struct jump_fit {
     double slope, pressures_slope, width, pressures_width, newton, linear, factored;
 };
-static const struct jump_fit PROFILE_JUMP = {0.98, 1, 0.12, 0.3, 300, 20, 160},
+static const struct jump_fit PROFILE_JUMP = {1, 0.97, 0.15, 0.22, 300, 20, 160},
                              SURFACE_JUMP = {1.75, 1.75, 0.25, 0.25, 150, 0, 0};
-static const double JUMP_LOAD = 0.036, JUMP_WAVES = 16;
-/* Fewer jumps a realisation are not counted. */
-static const double RARE = 1e-3;
+static const double JUMP_LOAD = 0.02, JUMP_WAVES = 16;
+/* Variances of the time of a jump over its square, without and with friction. Fewer jumps a
+ * realisation than RARE are not counted. */
+static const double JUMP_SPREAD = 1, SLIDE_SPREAD = 2.2, RARE = 0.01;
 /* Iterations of the linear equations: LINEAR_LEAST + STEEP h' (1 + h') (0.4 min(B, 10))^0.6
  * (nx/SIDE)^SIDE_POWER, with B = 1/(1 - 2 nu), about the bulk over the shear modulus, and at least
  * 1 for the power. With pressures as unknowns it is LINEAR_PRESSURES, and there are PRESSURE_TENS
@@ -254,29 +256,32 @@ static const double FRICTION_BYTES = 2100;
  * SOLVES e^(SOLVES_STEEP s) solutions, and a step FACTORED factorisations. Rubber, with pressures
  * as unknowns, takes these parts more, and FACTORED_RUBBER (w/4)^FACTORED_FINER e^(FACTORED_STEEP
  * s) h'^FACTORED_SLOPE factorisations more, at a bulk modulus of 10^RUBBER_DECADES shear moduli. */
-static const double STEP_NEWTON = 1.7, NEWTON_FINER = 0.28, NEWTON_STEEP = 0.35, NEWTON_SHORT = 0.2,
+static const double STEP_NEWTON = 1.8, NEWTON_FINER = 0.28, NEWTON_STEEP = 0.2, NEWTON_SHORT = 0.2,
                     NEWTON_LOAD = 0.12, NEWTON_RUBBER = 0.17;
 static const double STEP_SOLVES = 6.8, SOLVES_STEEP = 0.15, SOLVES_RUBBER = 0.28;
 static const double STEP_FACTORED = 0.1, FACTORED_RUBBER = 0.24, FACTORED_FINER = 0.5,
                     FACTORED_STEEP = 1.27, FACTORED_SLOPE = 0.32;
 static const double WAVE_NODES = 4, LEG_STEPS = 20, RUBBER_DECADES = 3.7;
-/* As a face without friction jumps, a profile that is dragged does at such a share of
- * (mu h' (p/0.1)^FRICTION_JUMP_LOAD - FRICTION_JUMP_STEEP)/FRICTION_JUMP_WIDTH. It takes so many
- * iterations of Newton's method, and factorisations in each. */
-static const double FRICTION_JUMP_LOAD = 0.4, FRICTION_JUMP_STEEP = 0.6, FRICTION_JUMP_WIDTH = 0.15,
-                    FRICTION_JUMP_NEWTON = 600, FRICTION_JUMP_FACTORED = 0.3;
+/* A profile that slides jumps so often a path of an RMS height and JUMP_WAVES shortest waves: as a
+ * normal distribution's share below (mu h' (p/0.1)^SLIDE_JUMP_LOAD - SLIDE_JUMP)/SLIDE_JUMP_WIDTH.
+ * A jump takes so many iterations of Newton's method, and factorisations in each. */
+static const double SLIDE_JUMP = 0.38, SLIDE_JUMP_WIDTH = 0.06, SLIDE_JUMP_LOAD = 0.4;
+static const double SLIDE_JUMP_NEWTON = 900, SLIDE_JUMP_FACTORED = 0.02;
 /* Of surfaces, iterations of a step over those of a load without friction: Newton's, and of the
  * linear equations. Bytes of a degree of freedom, more with pressures. */
 static const double SURFACE_FRICTION_NEWTON = 0.8, SURFACE_FRICTION_LINEAR = 1.4;
 static const double SURFACE_FRICTION_BYTES = 510, SURFACE_PRESSURE_BYTES = 100;
 
-static double newton_iterations(const struct grid *grid, double poisson, bool pressures,
-                                double rms_slope) {
-    const struct newton_fit *fit = grid_is_profile(grid) ? &PROFILE_NEWTON : &SURFACE_NEWTON;
-    double wide = grid_is_profile(grid) ? PROFILE_WIDE : SURFACE_WIDE;
-    double cut = wide * fmax(0, rms_slope - GENTLE) * fmax(0, UPRIGHT - poisson);
-    double all = fit->least + fit->doubling * log2(mean_side(grid)) + fit->steep * rms_slope + cut;
+static double newton_iterations(const struct newton_fit *fit, const struct grid *grid,
+                                bool pressures, double rms_slope) {
+    double all = fit->least + fit->doubling * log2(mean_side(grid)) + fit->steep * rms_slope;
     return pressures ? fit->pressures * all : all;
+}
+
+static double wide_iterations(const struct newton_fit *fit, const struct grid *grid, double poisson,
+                              double rms_slope) {
+    return fit->wide * fmax(0, rms_slope - GENTLE) * fmax(0, UPRIGHT - poisson) *
+           sqrt(mean_side(grid) / fit->wide_side);
 }
 
 /* Returns the iterations of the linear equations in one of Newton's. */
@@ -296,11 +301,13 @@ static double linear_iterations(const struct grid *grid, double poisson, bool pr
 struct full_size cost_full_size(const struct grid *grid, const struct block *block,
                                 const struct full_options *options, double rms_slope) {
     bool profile = grid_is_profile(grid);
+    const struct newton_fit *fit = profile ? &PROFILE_NEWTON : &SURFACE_NEWTON;
     struct material material = material_of(block->poisson, options->kinematics);
     bool pressures = gmres_needs_pressures(&material);
     struct full_size size = {
         .degrees_of_freedom = (double)full_degrees_of_freedom(grid, block, options),
-        .newton = newton_iterations(grid, block->poisson, pressures, rms_slope),
+        .newton = newton_iterations(fit, grid, pressures, rms_slope),
+        .wide = wide_iterations(fit, grid, block->poisson, rms_slope),
         .linear = linear_iterations(grid, block->poisson, pressures, rms_slope),
         .pressures = pressures,
         .folds = options->kinematics != KINEMATICS_SMALL};
@@ -331,11 +338,14 @@ struct full_limit cost_full_limit(const struct grid *grid, const struct full_siz
                                .factored = unit * each.factored};
 }
 
-double cost_full_loads(double rms_slope, size_t count, const double *loads) {
-    double all = loads != NULL ? 0 : (double)count;
+double cost_full_loads(const struct grid *grid, const struct full_size *size, double rms_slope,
+                       size_t count, const double *loads) {
+    const double steps = grid_is_profile(grid) ? PROFILE_FAR_STEPS : SURFACE_FAR_STEPS;
+    const double wide = size->folds ? size->wide / size->newton : 0;
+    double all = loads != NULL ? 0 : (double)count * (1 + wide);
     for (size_t l = 0; loads != NULL && l < count; l++) {
         double length = loads[l] - (l > 0 ? loads[l - 1] : 0);
-        all += 1 + FAR_STEPS * fmax(0, length * rms_slope - FAR);
+        all += 1 + steps * fmax(0, length * rms_slope - FAR) + wide * length / USUAL_LOAD;
     }
     return all;
 }
@@ -345,11 +355,12 @@ static double normal_below(double x) {
     return erfc(-x / sqrt(2)) / 2;
 }
 
-/* Returns what so many jumps take in the mean: each an exponentially distributed time, of this mean
- * and no more than a limit. */
-static struct cost_jumps jumps_of(double number, double seconds, double limit) {
+/* Returns what so many jumps take in the mean: each of these seconds, with a variance of `spread`
+ * times their square, and no more than a limit. */
+static struct cost_jumps jumps_of(double number, double seconds, double spread, double limit) {
     const double each = limit > 0 ? fmin(seconds, limit) : seconds;
-    return (struct cost_jumps){.seconds = number * each, .variance = 2 * number * each * each};
+    return (struct cost_jumps){.seconds = number * each,
+                               .variance = (1 + spread) * number * each * each};
 }
 
 /* Returns how many cells of so many waves a cell is worth. */
@@ -370,7 +381,7 @@ struct cost_jumps cost_full_jumps(const struct grid *grid, const struct full_siz
     return jumps_of(number > RARE && size->folds ? number : 0,
                     fit->newton * (each.newton + within.linear * each.linear) +
                         fit->factored * each.factored,
-                    limit);
+                    JUMP_SPREAD, limit);
 }
 
 double cost_full_contact(const struct grid *grid, const struct full_size *size, double loads) {
@@ -437,19 +448,16 @@ double cost_friction_steps(const struct friction_work *of, double steps) {
                     step.factored * each.factored);
 }
 
-struct cost_jumps cost_friction_jumps(const struct friction_work *of, double limit) {
+struct cost_jumps cost_friction_jumps(const struct friction_work *of, double slid, double limit) {
     const double steep =
-        of->coefficient * of->rms_slope * pow(of->pressure / USUAL_LOAD, FRICTION_JUMP_LOAD);
-    const double number = grid_is_profile(of->grid)
-                              ? normal_below((steep - FRICTION_JUMP_STEEP) / FRICTION_JUMP_WIDTH) *
-                                    cell_share(of->grid->lx)
-                              : 0;
+        of->coefficient * of->rms_slope * pow(of->pressure / USUAL_LOAD, SLIDE_JUMP_LOAD);
+    const double share = normal_below((steep - SLIDE_JUMP) / SLIDE_JUMP_WIDTH);
+    const bool jump = grid_is_profile(of->grid) && of->load->folds && share > RARE;
     const struct full_limit each = cost_friction_limit(of, 0);
-    return jumps_of(number > RARE ? number : 0,
-                    FRICTION_JUMP_NEWTON *
-                        (each.newton + cost_friction_size(of).linear * each.linear +
-                         FRICTION_JUMP_FACTORED * each.factored),
-                    limit);
+    const double newton = each.newton + cost_friction_size(of).linear * each.linear +
+                          SLIDE_JUMP_FACTORED * each.factored;
+    return jumps_of(jump ? share * slid * of->grid->lx / JUMP_WAVES : 0, SLIDE_JUMP_NEWTON * newton,
+                    SLIDE_SPREAD, limit);
 }
 
 double cost_friction_bytes(const struct grid *grid, const struct block *block,

@@ -47,6 +47,7 @@ double cost_linear_loads(const struct linear_work *of);
 struct full_size {
     double degrees_of_freedom; /* 0 where the block takes too many layers */
     double newton;             /* iterations of Newton's method a load, evenly spaced loads */
+    double wide;               /* more of them for a load 0.1 E* h' further, where steps are cut */
     double linear;             /* iterations of the linear equations in each of these */
     bool factored;             /* linear is so large that the equations are factorised instead */
     bool pressures; /* elements are nearly incompressible: their pressures are unknowns */
@@ -67,7 +68,8 @@ struct full_size cost_full_size(const struct grid *grid, const struct block *blo
 double cost_full_contact(const struct grid *grid, const struct full_size *size, double loads);
 /* Returns the number of loads near each other whose work these rising ones take, in E* h': those
  * far from the one before are reached in several steps on steep faces. NULL: all are near. */
-double cost_full_loads(double rms_slope, size_t count, const double *loads);
+double cost_full_loads(const struct grid *grid, const struct full_size *size, double rms_slope,
+                       size_t count, const double *loads);
 /* What jumps of steep faces take of a realisation: CPU seconds in the mean, and the variance of it
  * between realisations, of which some jump. Each jump takes the limit at most, unless it is 0. */
 struct cost_jumps {
@@ -109,8 +111,9 @@ struct friction_size cost_friction_size(const struct friction_work *of);
  * trial of one does not show what the others take. Twenty studies took 0.57 to 5.8 of the estimate.
  */
 double cost_friction_steps(const struct friction_work *of, double steps);
-/* As cost_full_jumps, of a path. */
-struct cost_jumps cost_friction_jumps(const struct friction_work *of, double limit);
+/* As cost_full_jumps, of a path; slid: how far all of the flat slides there, over the RMS height.
+ */
+struct cost_jumps cost_friction_jumps(const struct friction_work *of, double slid, double limit);
 /* As cost_full_limit. */
 struct full_limit cost_friction_limit(const struct friction_work *of, double seconds);
 double cost_friction_bytes(const struct grid *grid, const struct block *block,

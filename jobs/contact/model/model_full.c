@@ -148,7 +148,8 @@ static double seconds(const struct contact_case *one_case, size_t model, const s
     struct full_options options = contact_case_full_options(one_case, grid);
     struct full_size size =
         cost_full_size(grid, &one_case->blocks[model], &options, one_case->rms_slope);
-    double loads = cost_full_loads(one_case->rms_slope, one_case->load_count, one_case->loads);
+    double loads =
+        cost_full_loads(grid, &size, one_case->rms_slope, one_case->load_count, one_case->loads);
     double expected = cost_full_contact(grid, &size, loads) + jumps(one_case, model, grid).seconds;
     return one_case->time_limit > 0 ? fmin(expected, one_case->time_limit) : expected;
 }

@@ -254,45 +254,56 @@ double sliding_full_bytes(const struct quantity_scene *scene) {
 /* The flat goes SLIP sqrt(m0) times the coefficient, at a load of 0.1 E* h', until all slides, by
  * this power of the load and this part more a doubling of the cell over CELL_WAVES longest waves.
  * Of the traction q over that of full slip, it goes 1 - (1 - q)^SLIP_SHAPE of this. Steps are by
- * STEEPER h' more, and LAST from there to the turn. Surfaces take SURFACE times as many, and more
- * by their tangential compliance (F14.20). Fitted to profiles with slopes of 0.05 to 0.7,
+ * STEEPER h' more, and LAST from there to the turn. On surfaces it goes SURFACE times as far, and
+ * more by their tangential compliance (F14.20). Fitted to profiles with slopes of 0.05 to 0.7,
  * coefficients of 0.1 to 1, loads of 0.02 to 0.4, and 10 to 90 points: within 0.15. */
 static const double SLIP = 1.6, SLIP_POWER = 0.2, SLIP_SHAPE = 0.7, SLIP_CELL = 0.3, CELL_WAVES = 2;
 static const double STEEPER = 0.6, LAST = 2, SURFACE = 1.2;
+/* Nearly all slides from this part of that distance on. */
+static const double SLIP_MOST = 0.6;
 enum { SLIP_PARTS = 32 };
 
 /* Returns the steps from one turn to the next, or from the start: as drag() takes them. span: the
- * path, shear: how far the far side lags, and slip: how far the flat goes, until all slides, over
- * the RMS height. */
+ * path, which may end before all slides, shear: how far the far side lags, and slip: how far the
+ * flat goes, until all slides, over the RMS height. */
 static double leg_steps(double span, double points, double shear, double slip) {
     const double step = (span + shear) / STEPS_LEAST;
-    double before = 0, all = LAST;
-    for (int part = 1; part <= SLIP_PARTS; part++) {
+    double before = 0, all = 0;
+    for (int part = 1; part <= SLIP_PARTS && before < span; part++) {
         double left = 1 - (double)part / SLIP_PARTS;
         double at = fmin(span, slip * (1 - pow(left, SLIP_SHAPE)));
         all += fmax((at - before + shear / SLIP_PARTS) / step, (at - before) / span * points);
         before = at;
     }
-    return all;
+    return all + (before < span ? LAST : 0);
 }
 
-/* Returns the steps along the whole path. */
-static double steps_expected(const struct quantity_scene *scene) {
+/* What the whole path takes: steps, and how far all of the face slides, nearly, over the RMS
+ * height. */
+struct path_expected {
+    double steps, slid;
+};
+
+static struct path_expected path_of(const struct quantity_scene *scene) {
     const struct contact_case *one_case = scene->one_case;
     const size_t steps = one_case->slide_steps;
     const double load = held_load(one_case), slope = one_case->rms_slope;
     const double waves = surface_case_mean_side(&one_case->surface); /* 0 where not known */
     const double shear = one_case->friction * load * slope * scene->block.height * 2 /
                          (1 - scene->block.poisson) / one_case->rms_height;
-    const double slip = SLIP * one_case->friction * pow(load / USUAL_LOAD, SLIP_POWER) *
-                        (1 + SLIP_CELL * fmax(0, log2(waves / CELL_WAVES)));
-    double all = 0, legs = 1;
-    for (size_t turn = 0; turn + 1 < one_case->slide_count; turn += steps, legs = 2)
-        all += leg_steps(fabs(one_case->slide[turn + steps] - one_case->slide[turn]), (double)steps,
-                         legs * shear, legs * slip);
     const double nu = scene->block.poisson;
     const double more = grid_is_profile(&scene->grid) ? 1 : SURFACE * (1 - nu / 2) / (1 - nu);
-    return all * more * (1 + STEEPER * one_case->rms_slope);
+    const double slip = SLIP * one_case->friction * pow(load / USUAL_LOAD, SLIP_POWER) * more *
+                        (1 + SLIP_CELL * fmax(0, log2(waves / CELL_WAVES)));
+    struct path_expected path = {0};
+    double legs = 1;
+    for (size_t turn = 0; turn + 1 < one_case->slide_count; turn += steps, legs = 2) {
+        const double span = fabs(one_case->slide[turn + steps] - one_case->slide[turn]);
+        path.steps += leg_steps(span, (double)steps, legs * shear, legs * slip);
+        path.slid += fmax(0, span - SLIP_MOST * legs * slip);
+    }
+    path.steps *= 1 + STEEPER * slope;
+    return path;
 }
 
 /* CPU seconds until the load is held and along the path, and what jumps take of both. */
@@ -311,10 +322,11 @@ static struct sliding_cost cost_of(const struct quantity_scene *scene) {
     const double load = held_load(one_case), limit = one_case->time_limit;
     const struct cost_jumps held =
         cost_full_jumps(&scene->grid, &size, one_case->rms_slope, load, limit);
-    const struct cost_jumps dragged = cost_friction_jumps(&work, limit);
-    const double steps =
-        cost_friction_steps(&work, steps_expected(scene) + pressing) + dragged.seconds;
-    const double loads = cost_full_loads(one_case->rms_slope, 1, &load) + pressing;
+    const struct path_expected path = path_of(scene);
+    const struct cost_jumps dragged = cost_friction_jumps(&work, path.slid, limit);
+    const double steps = cost_friction_steps(&work, path.steps + pressing) + dragged.seconds;
+    const double loads =
+        cost_full_loads(&scene->grid, &size, one_case->rms_slope, 1, &load) + pressing;
     return (struct sliding_cost){.held =
                                      cost_full_contact(&scene->grid, &size, loads) + held.seconds,
                                  .dragged = limit > 0 ? fmin(steps, limit) : steps,

@@ -7,9 +7,9 @@
 #include <stdio.h>
 
 /* Nine in ten lie within so many standard deviations. What all realisations take is known within
- * this factor, and what only some take in the mean to this part. A range is given where seconds may
- * be off by more than a factor of RANGE_LEAST. */
-static const double RANGE = 1.645, USUAL_FACTOR = 1.3, RARE_PART = 0.5, RANGE_LEAST = 1.5;
+ * this factor, and what only some take in the mean to this part. There is a range where what only
+ * some take is, at most, above RARE_LEAST of the rest. */
+static const double RANGE = 1.645, USUAL_FACTOR = 1.5, RARE_PART = 0.5, RARE_LEAST = 0.3;
 
 double plan_case_seconds(const struct study_case *one) {
     uint64_t expected[TARGET_PARTS_MOST];
@@ -54,11 +54,11 @@ static struct plan_range range_of(const struct taken *taken) {
     const double variance = taken->variance + RARE_PART * RARE_PART * rare * rare;
     if (!(rare > 0))
         return (struct plan_range){NAN, NAN};
-    const struct plan_range range = {usual / USUAL_FACTOR + gamma_quantile(rare, variance, -RANGE),
-                                     usual * USUAL_FACTOR + gamma_quantile(rare, variance, RANGE)};
-    const bool known =
-        range.most < RANGE_LEAST * taken->seconds && range.least > taken->seconds / RANGE_LEAST;
-    return known ? (struct plan_range){NAN, NAN} : range;
+    const double most = gamma_quantile(rare, variance, RANGE);
+    if (most < RARE_LEAST * usual)
+        return (struct plan_range){NAN, NAN};
+    return (struct plan_range){usual / USUAL_FACTOR + gamma_quantile(rare, variance, -RANGE),
+                               usual * USUAL_FACTOR + most};
 }
 
 struct plan_range plan_case_range(const struct study_case *one) {

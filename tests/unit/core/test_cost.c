@@ -304,6 +304,46 @@ static void elements_take_the_iterations_expected(void **state) {
     }
 }
 
+/* Gentle faces and small strains expect no jumps; steep faces more with the slope, a longer cell
+ * and a longer path, each within a limit, and some realisations far more than the mean. */
+static void steep_faces_expect_jumps(void **state) {
+    (void)state;
+    static const struct grid SHORT = {128, 1, 16, 1}, LONG = {512, 1, 64, 1};
+    const struct block block = {.poisson = 0.3, .height = 24, .layer_growth = 1.1};
+    struct full_options options = FULL_DEFAULTS;
+    double before = 0;
+    for (double slope = 0.1; slope < 1.3; slope += 0.1) {
+        const struct full_size size = cost_full_size(&SHORT, &block, &options, slope);
+        const struct cost_jumps jumps = cost_full_jumps(&SHORT, &size, slope, 0.1, 0);
+        assert_true(slope > 0.6 || jumps.seconds == 0);
+        assert_true(slope < 0.7 || (jumps.seconds > before && jumps.variance > 0));
+        before = jumps.seconds;
+    }
+    const struct full_size size = cost_full_size(&SHORT, &block, &options, 1);
+    const struct full_size more = cost_full_size(&LONG, &block, &options, 1);
+    const struct cost_jumps all = cost_full_jumps(&SHORT, &size, 1, 0.1, 0);
+    const struct cost_jumps limited = cost_full_jumps(&SHORT, &size, 1, 0.1, all.seconds / 10);
+    assert_true(all.variance > all.seconds * all.seconds);
+    assert_true(cost_full_jumps(&LONG, &more, 1, 0.1, 0).seconds > 4 * all.seconds);
+    assert_true(limited.seconds < all.seconds / 10 && limited.variance < all.variance / 100);
+    struct friction_work work = {.grid = &SHORT,
+                                 .load = &size,
+                                 .coefficient = 0.2,
+                                 .rms_slope = 1,
+                                 .poisson = 0.3,
+                                 .pressure = 0.1,
+                                 .wave = 8,
+                                 .leg = 16};
+    assert_true(cost_friction_jumps(&work, 4, 0).seconds == 0);
+    work.coefficient = 1;
+    assert_true(cost_friction_jumps(&work, 0, 0).seconds == 0);
+    const double once = cost_friction_jumps(&work, 1, 0).seconds;
+    assert_true(once > 0 && cost_friction_jumps(&work, 3, 0).seconds > 2.9 * once);
+    options.kinematics = KINEMATICS_SMALL;
+    const struct full_size small = cost_full_size(&SHORT, &block, &options, 1);
+    assert_true(cost_full_jumps(&SHORT, &small, 1, 0.1, 0).seconds == 0);
+}
+
 /* Surfaces that may overhang have room for 120 directions in place of 24. */
 static void overhangs_take_memory(void **state) {
     (void)state;
@@ -329,6 +369,7 @@ int main(void) {
         cmocka_unit_test(sizes_do_not_matter_without_a_tolerance),
         cmocka_unit_test(contact_costs_what_it_takes),
         cmocka_unit_test(elements_take_the_iterations_expected),
+        cmocka_unit_test(steep_faces_expect_jumps),
         cmocka_unit_test(overhangs_take_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
