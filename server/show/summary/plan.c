@@ -3,13 +3,14 @@
 #include "jobs/target.h"
 #include "schema/json/field.h"
 #include "schema/study/study_reader.h"
+#include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdio.h>
 
-/* Nine in ten lie within so many standard deviations. What all realisations take is known within
- * this factor, and what only some take in the mean to this part. There is a range where what only
- * some take is, at most, above RARE_LEAST of the rest. */
-static const double RANGE = 1.645, USUAL_FACTOR = 1.5, RARE_PART = 0.5, RARE_LEAST = 0.3;
+/* Nine in ten lie between these quantiles. What all realisations take is known within this factor,
+ * and what only some take in the mean to this part. There is a range where what only some take is,
+ * at most, above RARE_LEAST of the rest. */
+static const double LOW = 0.05, HIGH = 0.95, USUAL_FACTOR = 1.5, RARE_PART = 0.5, RARE_LEAST = 0.3;
 
 double plan_case_seconds(const struct study_case *one) {
     uint64_t expected[TARGET_PARTS_MOST];
@@ -41,11 +42,12 @@ static struct taken taken_by(const struct study_case *one) {
     return taken;
 }
 
-/* Returns a quantile of a gamma distribution, by so many standard deviations of a normal one
- * (Wilson and Hilferty 1931). */
-static double gamma_quantile(double mean, double variance, double deviations) {
-    const double ninth = variance / (mean * mean) / 9;
-    return mean * pow(fmax(0, 1 - ninth + deviations * sqrt(ninth)), 3);
+/* Returns a quantile of a gamma distribution; 0 where it is below 1e-6 of the mean, where GSL finds
+ * none. */
+static double gamma_quantile(double mean, double variance, double share) {
+    static const double LEAST = -15; /* logarithm of (quantile over scale), about */
+    const double shape = mean * mean / variance;
+    return log(share) / shape > LEAST ? gsl_cdf_gamma_Pinv(share, shape, variance / mean) : 0;
 }
 
 /* FORMULAS.md, F17.4. */
@@ -54,10 +56,10 @@ static struct plan_range range_of(const struct taken *taken) {
     const double variance = taken->variance + RARE_PART * RARE_PART * rare * rare;
     if (!(rare > 0))
         return (struct plan_range){NAN, NAN};
-    const double most = gamma_quantile(rare, variance, RANGE);
+    const double most = gamma_quantile(rare, variance, HIGH);
     if (most < RARE_LEAST * usual)
         return (struct plan_range){NAN, NAN};
-    return (struct plan_range){usual / USUAL_FACTOR + gamma_quantile(rare, variance, -RANGE),
+    return (struct plan_range){usual / USUAL_FACTOR + gamma_quantile(rare, variance, LOW),
                                usual * USUAL_FACTOR + most};
 }
 
