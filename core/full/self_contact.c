@@ -49,11 +49,23 @@ void self_contact_clear(struct self_contact *self) {
     free(self->pair);
     free(self->link);
     free(self->patch);
+    free(self->rubbing);
     free(self->old);
     free(self->bin);
     free(self->next);
     free(self->turning);
     *self = (struct self_contact){0};
+}
+
+int self_contact_add_friction(struct self_contact *self, double friction, struct error *err) {
+    size_t face = self->mesh->face;
+    self->friction = friction;
+    if (self->mesh->dimension == 2 || self->rubbing != NULL)
+        return 0;
+    self->rubbing = array_create(face, sizeof *self->rubbing);
+    return self->rubbing != NULL
+               ? 0
+               : error_memory(err, face * sizeof *self->rubbing, "friction of a face with itself");
 }
 
 double self_contact_bytes(const struct mesh *mesh) {
@@ -292,19 +304,26 @@ static double arcs_from(const struct mesh *mesh, const struct self_pair *pair, d
     return from - face * round(from / face);
 }
 
+static void fill_start(const struct mesh *mesh, struct self_pair *pair) {
+    if (mesh->dimension == 3)
+        self_contact_surface_coordinates(mesh, pair, pair->start);
+    else
+        pair->start[0] = (double)pair->arc + pair->at;
+}
+
 /* A pair goes on with the multipliers of that which its node had, and with where that was; on
  * another fold there is nothing to go on from. */
 static void inherit(const struct mesh *mesh, struct self_pair *pair, const struct self_pair *old) {
     static const double SAME = 3;
-    pair->start = (double)pair->arc + pair->at;
+    fill_start(mesh, pair);
     if (old == NULL)
         return;
     pair->multiplier = old->multiplier;
     if (fabs(arcs_from(mesh, pair, (double)old->arc + old->at)) > SAME)
         return;
-    pair->start = old->start;
-    pair->shear_multiplier = old->shear_multiplier;
-    pair->shear_before = old->shear_before;
+    pair->start[0] = old->start[0];
+    pair->shear_multiplier[0] = old->shear_multiplier[0];
+    pair->shear_before[0] = old->shear_before[0];
 }
 
 /* Adds the pairs of one kind to count others, with the multipliers of the old ones, which begin at
@@ -403,13 +422,20 @@ static struct tangent_link link_of(const struct mesh *mesh, const double *u,
 }
 
 /* Fills what a pair slides and the force along it, within friction of that across. */
-static void measure_shear(const struct self_contact *self, struct self_pair *pair) {
+static void measure_shear(const struct self_contact *self, const double *u,
+                          struct self_pair *pair) {
+    if (self->mesh->dimension == 3) {
+        if (self->friction > 0)
+            self_contact_surface_slide(self->mesh, u, STIFFNESS, self->friction, pair);
+        return;
+    }
     bool slides = self->friction > 0 && pair->kind != SELF_LIPS;
     double bound = self->friction * pair->force;
     double size = hypot(pair->along[0], pair->along[1]);
-    pair->slip = slides ? arcs_from(self->mesh, pair, pair->start) * size : 0;
-    pair->shear =
-        slides ? fmax(-bound, fmin(bound, pair->shear_multiplier - STIFFNESS * pair->slip)) : 0;
+    pair->slip[0] = slides ? arcs_from(self->mesh, pair, pair->start[0]) * size : 0;
+    pair->shear[0] =
+        slides ? fmax(-bound, fmin(bound, pair->shear_multiplier[0] - STIFFNESS * pair->slip[0]))
+               : 0;
 }
 
 /* Fills along, the derivative of the force along the arc over that force, and adds its stiffness.
@@ -421,9 +447,9 @@ static void add_shear(const struct self_contact *self, const double *u,
     struct arc arc = arc_of(self->mesh, u, pair->arc, pair->at);
     const double size = hypot(arc.along.x, arc.along.y);
     const double unit[2] = {arc.along.x / size, arc.along.y / size};
-    const double since = pair->slip / size, bends = unit[0] * arc.bend.x + unit[1] * arc.bend.y;
+    const double since = pair->slip[0] / size, bends = unit[0] * arc.bend.x + unit[1] * arc.bend.y;
     const double bound = self->friction * pair->force;
-    const bool sticks = fabs(pair->shear_multiplier - STIFFNESS * pair->slip) <= bound;
+    const bool sticks = fabs(pair->shear_multiplier[0] - STIFFNESS * pair->slip[0]) <= bound;
     double advance[LINK_MOST], grow[LINK_MOST], turn[LINK_MOST], weight[LINK_MOST];
     double change[LINK_MOST];
     for (size_t i = 0; i < LINK_MOST; i++) {
@@ -436,14 +462,14 @@ static void add_shear(const struct self_contact *self, const double *u,
         grow[i] = slope * unit[k] + bends * advance[i];
         turn[i] = (across + pair->bend * advance[i]) / size;
         change[i] = -STIFFNESS * (sticks ? size * advance[i] + since * grow[i]
-                                         : copysign(self->friction, pair->shear) * by[i]);
+                                         : copysign(self->friction, pair->shear[0]) * by[i]);
     }
     for (size_t i = 0; i < LINK_MOST; i++)
         for (size_t j = 0; j < LINK_MOST; j++) {
             size_t a = i / 2, k = i % 2;
             double moves = a == 0 ? 0 : -arc.slope[a - 1] * unit[k] * advance[j];
             moves += weight[i] * pair->normal[k] * turn[j];
-            link->stiffness[i][j] -= along[i] * change[j] + pair->shear * moves;
+            link->stiffness[i][j] -= along[i] * change[j] + pair->shear[0] * moves;
         }
 }
 
@@ -451,14 +477,20 @@ static void add_shear(const struct self_contact *self, const double *u,
 static void evaluate_surface(struct self_contact *self, bool convex, const double *u, double *force,
                              struct tangent *tangent) {
     tangent->patch = self->patch;
-    tangent->patches = 0;
+    tangent->rubbing = self->rubbing;
+    tangent->patches = tangent->rubbings = 0;
     for (size_t c = 0; c < self->count; c++) {
         struct self_pair *pair = &self->pair[c];
         self_contact_surface_project(self->mesh, u, pair);
         pair->force = fmax(0, pair->multiplier - STIFFNESS * pair->gap);
-        if (pair->force > 0)
-            self_contact_surface_add(self->mesh, u, STIFFNESS, convex, pair, force,
-                                     &self->patch[tangent->patches++]);
+        measure_shear(self, u, pair);
+        if (pair->force == 0)
+            continue;
+        self_contact_surface_add(self->mesh, u, STIFFNESS, convex, pair, force,
+                                 &self->patch[tangent->patches++]);
+        if (self->friction > 0)
+            self_contact_surface_add_friction(self->mesh, u, STIFFNESS, self->friction, pair, force,
+                                              &self->rubbing[tangent->rubbings++]);
     }
 }
 
@@ -477,7 +509,7 @@ void self_contact_evaluate(struct self_contact *self, bool convex, const double 
         else
             project(self->mesh, u, pair);
         pair->force = fmax(0, pair->multiplier - STIFFNESS * pair->gap);
-        measure_shear(self, pair);
+        measure_shear(self, u, pair);
         if (pair->force == 0)
             continue;
         struct tangent_link *link = &self->link[links++];
@@ -486,7 +518,7 @@ void self_contact_evaluate(struct self_contact *self, bool convex, const double 
         if (self->friction > 0 && pair->kind != SELF_LIPS)
             add_shear(self, u, pair, by, along, link);
         for (int i = 0; i < LINK_MOST; i++)
-            force[link->at[i]] -= pair->force * by[i] + pair->shear * along[i];
+            force[link->at[i]] -= pair->force * by[i] + pair->shear[0] * along[i];
     }
     tangent->link = self->link;
     tangent->links = links;
@@ -496,15 +528,17 @@ double self_contact_renew(struct self_contact *self, const double *u, const bool
     double change = 0;
     for (size_t c = 0; c < self->count; c++) {
         self->pair[c].multiplier = self->pair[c].force;
-        self->pair[c].shear_multiplier = self->pair[c].shear;
+        memcpy(self->pair[c].shear_multiplier, self->pair[c].shear, sizeof self->pair[c].shear);
     }
     self_contact_search(self, u, active);
     for (size_t c = 0; c < self->count; c++) {
         struct self_pair *pair = &self->pair[c];
-        double force = pair->multiplier, shear = pair->shear_multiplier;
+        const double *shear = pair->shear_multiplier;
+        double force = pair->multiplier;
         pair->force = fmax(0, force - STIFFNESS * pair->gap);
-        measure_shear(self, pair);
-        change = fmax(change, fmax(fabs(pair->force - force), fabs(pair->shear - shear)));
+        measure_shear(self, u, pair);
+        change = fmax(change, fmax(fabs(pair->force - force),
+                                   hypot(pair->shear[0] - shear[0], pair->shear[1] - shear[1])));
     }
     return change;
 }
@@ -532,16 +566,19 @@ int self_contact_round(struct self_contact *self, const double *u, const bool *a
 void self_contact_settle(struct self_contact *self) {
     for (size_t c = 0; c < self->count; c++) {
         struct self_pair *pair = &self->pair[c];
-        pair->start = (double)pair->arc + pair->at;
-        pair->slip = 0;
-        pair->shear_before = pair->shear;
+        fill_start(self->mesh, pair);
+        memset(pair->slip, 0, sizeof pair->slip);
+        memcpy(pair->shear_before, pair->shear, sizeof pair->shear);
     }
 }
 
 double self_contact_dissipation(const struct self_contact *self) {
     double sum = 0;
-    for (size_t c = 0; c < self->count; c++)
-        sum -= (self->pair[c].shear + self->pair[c].shear_before) / 2 * self->pair[c].slip;
+    for (size_t c = 0; c < self->count; c++) {
+        const struct self_pair *pair = &self->pair[c];
+        for (size_t k = 0; k < SIDEWAYS; k++)
+            sum -= (pair->shear[k] + pair->shear_before[k]) / 2 * pair->slip[k];
+    }
     return sum;
 }
 

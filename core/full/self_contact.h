@@ -29,6 +29,8 @@
 
 int self_contact_create(struct self_contact *out, const struct mesh *mesh, struct error *err);
 void self_contact_clear(struct self_contact *self);
+/* Gives the face this friction with itself. ERROR_MEMORY. */
+int self_contact_add_friction(struct self_contact *self, double friction, struct error *err);
 double self_contact_bytes(const struct mesh *mesh);
 
 /* Find the pairs at displacements u, and how deep the deepest node is in the face. active: by node

@@ -11,6 +11,8 @@ static const double REACH = 1, NEAR = 3, BIN = 4;
 static const double SHARPEST = 1.1 * M_PI;
 /* Cosine between the normals of a node and a point that meet, at most. */
 static const double OPPOSED = -0.5;
+/* Patches along an axis within which a pair is on the same fold as before. */
+static const double SAME = 3;
 static const double MIDDLE = 0.5;
 static const size_t NONE = SIZE_MAX;
 enum { PROJECTIONS = 20, STEPS_LEAST = 2, PATCH_SIDE = 3 };
@@ -373,6 +375,46 @@ static bool overhangs(const struct mesh *mesh, const double *u) {
     return false;
 }
 
+void self_contact_surface_coordinates(const struct mesh *mesh, const struct self_pair *pair,
+                                      double at[SIDEWAYS]) {
+    size_t row = pair->arc / row_of(mesh), column = pair->arc % row_of(mesh);
+    at[0] = (double)column + pair->at;
+    at[1] = (double)row + pair->across;
+}
+
+/* Fills how far a pair is from a point of the face, in patches, across the sides of the cell
+ * where that is shorter. */
+static void fill_since(const struct mesh *mesh, const struct self_pair *pair,
+                       const double from[SIDEWAYS], double since[SIDEWAYS]) {
+    const double size[SIDEWAYS] = {(double)mesh->level[0].nx, (double)mesh->level[0].ny};
+    self_contact_surface_coordinates(mesh, pair, since);
+    for (size_t a = 0; a < SIDEWAYS; a++) {
+        since[a] -= from[a];
+        since[a] -= size[a] * round(since[a] / size[a]);
+    }
+}
+
+/* A pair goes on with what that had which its node had; friction does on the same fold alone. A
+ * pair without friction has not slid. */
+static void inherit(const struct self_contact *self, struct self_pair *pair,
+                    const struct self_pair *old) {
+    const struct mesh *mesh = self->mesh;
+    double before[SIDEWAYS], since[SIDEWAYS];
+    self_contact_surface_coordinates(mesh, pair, pair->start);
+    if (old == NULL)
+        return;
+    pair->multiplier = old->multiplier;
+    if (self->friction == 0)
+        return;
+    self_contact_surface_coordinates(mesh, old, before);
+    fill_since(mesh, pair, before, since);
+    if (fmax(fabs(since[0]), fabs(since[1])) > SAME)
+        return;
+    memcpy(pair->start, old->start, sizeof pair->start);
+    memcpy(pair->shear_multiplier, old->shear_multiplier, sizeof pair->shear_multiplier);
+    memcpy(pair->shear_before, old->shear_before, sizeof pair->shear_before);
+}
+
 void self_contact_surface_search(struct self_contact *self, const double *u) {
     size_t before = self->count, old = 0;
     self->count = 0;
@@ -386,8 +428,7 @@ void self_contact_surface_search(struct self_contact *self, const double *u) {
             old++;
         if (!find(self, u, node, pair))
             continue;
-        if (old < before && self->old[old].node == node)
-            pair->multiplier = self->old[old].multiplier;
+        inherit(self, pair, old < before && self->old[old].node == node ? &self->old[old] : NULL);
         self->count++;
     }
 }
@@ -460,4 +501,171 @@ void self_contact_surface_add(const struct mesh *mesh, const double *u, double p
     for (size_t a = 0; a <= PATCH_NODES; a++)
         for (size_t k = 0; k < 3; k++)
             force[3 * patch->node[a] + k] -= pair->force * patch->vector[BY][3 * a + k];
+}
+
+/* --- friction --- */
+
+/* The axes of friction at a point. */
+static void fill_axes(const struct patch_point *p, struct vector axes[SIDEWAYS]) {
+    double length = sqrt(dot(p->along[0].x, p->along[0].x));
+    for (int k = 0; k < 3; k++)
+        axes[0].x[k] = p->along[0].x[k] / length;
+    axes[1] = cross(p->normal.x, axes[0].x);
+}
+
+/* What a pair slid since it started, in patches and as a vector. */
+struct slide {
+    double since[SIDEWAYS];
+    struct vector by;
+};
+
+static struct slide slide_of(const struct mesh *mesh, const struct self_pair *pair,
+                             const struct patch_point *p) {
+    struct slide slide;
+    fill_since(mesh, pair, pair->start, slide.since);
+    for (int k = 0; k < 3; k++)
+        slide.by.x[k] = slide.since[0] * p->along[0].x[k] + slide.since[1] * p->along[1].x[k];
+    return slide;
+}
+
+/* Fills the force along the axes that a pair would have if it stuck, and returns its size. */
+static double try_force(const struct self_pair *pair, double penalty, double trial[SIDEWAYS]) {
+    for (size_t a = 0; a < SIDEWAYS; a++)
+        trial[a] = pair->shear_multiplier[a] - penalty * pair->slip[a];
+    return hypot(trial[0], trial[1]);
+}
+
+void self_contact_surface_slide(const struct mesh *mesh, const double *u, double penalty,
+                                double friction, struct self_pair *pair) {
+    struct patch_point p = point_of(mesh, u, pair->arc, pair->at, pair->across);
+    struct slide slide = slide_of(mesh, pair, &p);
+    struct vector axes[SIDEWAYS];
+    double trial[SIDEWAYS], bound = friction * pair->force;
+    fill_axes(&p, axes);
+    for (size_t a = 0; a < SIDEWAYS; a++)
+        pair->slip[a] = dot(axes[a].x, slide.by.x);
+    double size = try_force(pair, penalty, trial);
+    for (size_t a = 0; a < SIDEWAYS; a++)
+        pair->shear[a] = size > bound ? bound * trial[a] / size : trial[a];
+}
+
+/* How a point changes with one value of tangent_friction: s and t, the two tangents, the normal,
+ * the axes and the slide. */
+struct point_change {
+    double moves[SIDEWAYS];
+    struct vector along[SIDEWAYS], normal, axes[SIDEWAYS], slid;
+};
+
+/* What the changes of a point are made of. M is G - g k (fill_matrix). */
+struct point_terms {
+    const struct patch_point *point;
+    struct vector axes[SIDEWAYS];
+    struct slide slide;
+    double gap, metric[3], inverse[3]; /* inverses of G and of M */
+};
+
+static struct point_terms terms_of(const struct mesh *mesh, const struct self_pair *pair,
+                                   const struct patch_point *p) {
+    struct point_terms terms = {.point = p, .slide = slide_of(mesh, pair, p), .gap = pair->gap};
+    double metric[3], full[3];
+    fill_axes(p, terms.axes);
+    fill_metric(p, metric);
+    for (int b = 0; b < 3; b++)
+        full[b] = metric[b] - pair->gap * dot(p->normal.x, p->bend[b].x);
+    invert(metric, terms.metric);
+    invert(full, terms.inverse);
+    return terms;
+}
+
+/* Fills how s and t and the tangents change with a value: component k of the move of the node over
+ * the point (vector 0) or of the change of a tangent (1, 2). */
+static void change_tangents(const struct point_terms *terms, size_t vector, size_t k,
+                            struct point_change *out) {
+    const struct patch_point *p = terms->point;
+    double pull[SIDEWAYS];
+    for (size_t a = 0; a < SIDEWAYS; a++)
+        pull[a] = vector == 0       ? p->along[a].x[k]
+                  : vector == a + 1 ? terms->gap * p->normal.x[k]
+                                    : 0;
+    for (size_t a = 0; a < SIDEWAYS; a++)
+        out->moves[a] = terms->inverse[a] * pull[0] + terms->inverse[a + 1] * pull[1];
+    for (size_t a = 0; a < SIDEWAYS; a++)
+        for (size_t i = 0; i < 3; i++)
+            out->along[a].x[i] = (vector == a + 1 && i == k ? 1 : 0) +
+                                 p->bend[a].x[i] * out->moves[0] +
+                                 p->bend[a + 1].x[i] * out->moves[1];
+}
+
+static struct point_change change_of(const struct point_terms *terms, size_t vector, size_t k) {
+    const struct patch_point *p = terms->point;
+    const struct vector *axis = &terms->axes[0];
+    struct point_change c = {.moves = {0}};
+    double turn[SIDEWAYS], length = sqrt(dot(p->along[0].x, p->along[0].x));
+    change_tangents(terms, vector, k, &c);
+    for (size_t a = 0; a < SIDEWAYS; a++)
+        turn[a] = dot(p->normal.x, c.along[a].x);
+    double stretch = dot(axis->x, c.along[0].x);
+    for (size_t i = 0; i < 3; i++) {
+        for (size_t a = 0; a < SIDEWAYS; a++) {
+            c.normal.x[i] -=
+                p->along[a].x[i] * (terms->metric[a] * turn[0] + terms->metric[a + 1] * turn[1]);
+            c.slid.x[i] += terms->slide.since[a] * c.along[a].x[i] + p->along[a].x[i] * c.moves[a];
+        }
+        c.axes[0].x[i] = (c.along[0].x[i] - axis->x[i] * stretch) / length;
+    }
+    struct vector tilted = cross(c.normal.x, axis->x), turned = cross(p->normal.x, c.axes[0].x);
+    for (size_t i = 0; i < 3; i++)
+        c.axes[1].x[i] = tilted.x[i] + turned.x[i];
+    return c;
+}
+
+/* Returns the change of the force along the face. gap: that of the gap. */
+static struct vector change_force(const struct point_terms *terms, const struct self_pair *pair,
+                                  double penalty, double friction, double gap,
+                                  const struct point_change *c) {
+    double trial[SIDEWAYS], change[SIDEWAYS], along = 0, bound = friction * pair->force;
+    double size = try_force(pair, penalty, trial);
+    struct vector out = {{0}};
+    for (size_t a = 0; a < SIDEWAYS; a++) {
+        change[a] =
+            -penalty * (dot(c->axes[a].x, terms->slide.by.x) + dot(terms->axes[a].x, c->slid.x));
+        along += size > bound ? trial[a] / size * change[a] : 0;
+    }
+    for (size_t a = 0; a < SIDEWAYS; a++) {
+        double unit = size > bound ? trial[a] / size : 0;
+        if (size > bound)
+            change[a] = bound / size * (change[a] - unit * along) - friction * penalty * gap * unit;
+        for (size_t i = 0; i < 3; i++)
+            out.x[i] += change[a] * terms->axes[a].x[i] + pair->shear[a] * c->axes[a].x[i];
+    }
+    return out;
+}
+
+void self_contact_surface_add_friction(const struct mesh *mesh, const double *u, double penalty,
+                                       double friction, const struct self_pair *pair, double *force,
+                                       struct tangent_friction *rubbing) {
+    struct patch_point p = point_of(mesh, u, pair->arc, pair->at, pair->across);
+    struct point_terms terms = terms_of(mesh, pair, &p);
+    struct vector borne;
+    rubbing->node[0] = pair->node;
+    memcpy(rubbing->node + 1, p.node, sizeof p.node);
+    for (size_t i = 0; i < 3; i++)
+        borne.x[i] = pair->shear[0] * terms.axes[0].x[i] + pair->shear[1] * terms.axes[1].x[i];
+    for (size_t a = 0; a <= PATCH_NODES; a++) {
+        rubbing->weight[0][a] = a == 0 ? 1 : -p.shape[a - 1];
+        for (size_t b = 0; b < SIDEWAYS; b++)
+            rubbing->weight[b + 1][a] = a == 0 ? 0 : p.slope[b][a - 1];
+        for (size_t i = 0; i < 3; i++)
+            force[3 * rubbing->node[a] + i] -= rubbing->weight[0][a] * borne.x[i];
+    }
+    for (size_t v = 0; v < FRICTION_VALUES; v++) {
+        struct point_change c = change_of(&terms, v / 3, v % 3);
+        struct vector change =
+            change_force(&terms, pair, penalty, friction, v < 3 ? p.normal.x[v] : 0, &c);
+        for (size_t i = 0; i < 3; i++) {
+            rubbing->matrix[i][v] = -change.x[i];
+            for (size_t b = 0; b < SIDEWAYS; b++)
+                rubbing->matrix[3 * (b + 1) + i][v] = borne.x[i] * c.moves[b];
+        }
+    }
 }

@@ -6,7 +6,15 @@
  *   c(s, t) = sum B_a(s) B_b(t) x_(i+a, j+b),  a, b = -1 to 1,  s, t from 0 to 1
  *
  * and a node of either flank meets the nearest point of the nearest patch across air, as in
- * profiles. Lips on the flat are not treated apart. */
+ * profiles. Lips on the flat are not treated apart.
+ *
+ * Friction there (F14.21) has two directions: the axes e_1 along dc/ds and e_2 = n x e_1, which
+ * turn with the face. With s and t counted on from patch to patch, a pair slides by the vector
+ *
+ *   w = dc/ds (s - s0) + dc/dt (t - t0)
+ *
+ * since self_contact_settle, and bears r = P(q' - STIFFNESS w), the nearest vector within friction
+ * times p. Where q' has settled, r is against w, or w is 0, whatever the axes. */
 #ifndef RUGO_CORE_FULL_SELF_CONTACT_SURFACE_H
 #define RUGO_CORE_FULL_SELF_CONTACT_SURFACE_H
 
@@ -25,6 +33,16 @@ void self_contact_surface_project(const struct mesh *mesh, const double *u, stru
 void self_contact_surface_add(const struct mesh *mesh, const double *u, double penalty, bool convex,
                               const struct self_pair *pair, double *force,
                               struct tangent_patch *patch);
+/* Fills where on the face a pair is, in patches along both axes. */
+void self_contact_surface_coordinates(const struct mesh *mesh, const struct self_pair *pair,
+                                      double at[SIDEWAYS]);
+/* Fills what a pair slid, and the force on its node along the face. */
+void self_contact_surface_slide(const struct mesh *mesh, const double *u, double penalty,
+                                double friction, struct self_pair *pair);
+/* Adds that force, and fills its stiffness, which self_contact_surface_add does not have. */
+void self_contact_surface_add_friction(const struct mesh *mesh, const double *u, double penalty,
+                                       double friction, const struct self_pair *pair, double *force,
+                                       struct tangent_friction *rubbing);
 /* Returns the area of the face that belongs to a node, as it stands. */
 double self_contact_surface_area(const struct mesh *mesh, const double *u, size_t node);
 

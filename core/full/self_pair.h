@@ -5,7 +5,8 @@
 
 #include "core/full/tangent.h"
 
-enum { ARC_NODES = 3, PAIRS_A_NODE = 3 };
+/* SIDEWAYS: directions along a face, of which profiles have the first alone. */
+enum { ARC_NODES = 3, PAIRS_A_NODE = 3, SIDEWAYS = 2 };
 
 /* What a pair is: a node of the left or the right flank and an arc of the other one, or two lips
  * on the flat. */
@@ -21,8 +22,10 @@ struct self_pair {
     double multiplier; /* q */
     double gap, force;
     /* With friction: where on the curve it was at self_contact_settle, in arcs, and what it slid
-     * along since then; the force on the node along c', its multiplier, and that force then. */
-    double start, slip, shear, shear_multiplier, shear_before;
+     * along since then; the force on the node along c', its multiplier, and that force then. Of
+     * surfaces s and t, and what is along the two axes of self_contact_surface.h. */
+    double start[SIDEWAYS], slip[SIDEWAYS];
+    double shear[SIDEWAYS], shear_multiplier[SIDEWAYS], shear_before[SIDEWAYS];
 };
 
 struct self_contact {
@@ -32,11 +35,12 @@ struct self_contact {
     struct self_pair *pair; /* owned, as all below: by kind, and of each kind at most one a node, in
                              * their order */
     struct self_pair *old;  /* scratch of the search */
-    struct tangent_link *link;   /* of pairs with a force */
-    struct tangent_patch *patch; /* in their stead, of surfaces */
-    size_t *bin, *next;          /* of the search: arcs by their position along x */
-    double *turning;             /* angle of a segment over that of the first, twice around; of
-                                  * surfaces the middles of patches */
+    struct tangent_link *link;        /* of pairs with a force */
+    struct tangent_patch *patch;      /* in their stead, of surfaces */
+    struct tangent_friction *rubbing; /* of their friction; NULL without */
+    size_t *bin, *next;               /* of the search: arcs by their position along x */
+    double *turning;                  /* angle of a segment over that of the first, twice around; of
+                                       * surfaces the middles of patches */
 };
 
 #endif

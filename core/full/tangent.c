@@ -131,10 +131,25 @@ static void apply_patch(const struct tangent_patch *patch, const double *x, doub
             y[3 * patch->node[a / 3] + a % 3] += patch->vector[v][a] * factor[v];
 }
 
+static void apply_friction(const struct tangent_friction *rubbing, const double *x, double *y) {
+    double by[FRICTION_VALUES] = {0}, factor[FRICTION_VALUES] = {0};
+    for (size_t v = 0; v < FRICTION_VALUES; v++)
+        for (size_t a = 0; a <= PATCH_NODES; a++)
+            by[v] += rubbing->weight[v / 3][a] * x[3 * rubbing->node[a] + v % 3];
+    for (size_t v = 0; v < FRICTION_VALUES; v++)
+        for (size_t w = 0; w < FRICTION_VALUES; w++)
+            factor[v] += rubbing->matrix[v][w] * by[w];
+    for (size_t v = 0; v < FRICTION_VALUES; v++)
+        for (size_t a = 0; a <= PATCH_NODES; a++)
+            y[3 * rubbing->node[a] + v % 3] += rubbing->weight[v / 3][a] * factor[v];
+}
+
 void tangent_apply(const struct tangent *tangent, const double *x, double *y) {
     apply_stencil(tangent, x, y);
     for (size_t p = 0; p < tangent->patches; p++)
         apply_patch(&tangent->patch[p], x, y);
+    for (size_t r = 0; r < tangent->rubbings; r++)
+        apply_friction(&tangent->rubbing[r], x, y);
     for (size_t l = 0; l < tangent->links; l++) {
         const struct tangent_link *link = &tangent->link[l];
         for (int i = 0; i < LINK_MOST; i++)

@@ -25,6 +25,16 @@ struct tangent_patch {
     double matrix[PATCH_VECTORS][PATCH_VECTORS];
 };
 
+/* Beside a patch, where it has friction: V^T C V with the nine values V of how the node moves over
+ * the point of the patch that it meets, and how the two tangents there change with the nodes alone,
+ * three components each. They are sums over the nodes of displacements by weights. */
+enum { FRICTION_VECTORS = 3, FRICTION_VALUES = 3 * FRICTION_VECTORS };
+struct tangent_friction {
+    size_t node[1 + PATCH_NODES];
+    double weight[FRICTION_VECTORS][1 + PATCH_NODES];
+    double matrix[FRICTION_VALUES][FRICTION_VALUES];
+};
+
 /* values[((node*slots + slot)*d + i)*d + j]: force i of the node by displacement j of its
  * neighbour in the slot. The conditions on the far side are not applied here but in gmres.c and
  * factorisation.c. */
@@ -36,6 +46,8 @@ struct tangent {
     size_t links;
     const struct tangent_patch *patch; /* borrowed; not in factorisations */
     size_t patches;
+    const struct tangent_friction *rubbing; /* borrowed; not in factorisations */
+    size_t rubbings;
     struct volumetric
         *volumetric; /* owned: the volumetric part apart, which values hold too; or NULL */
 };

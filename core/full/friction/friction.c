@@ -123,7 +123,6 @@ int friction_create(struct friction **out, const struct grid *grid, const struct
     status = full_create(&f->full, grid, block, options, err);
     if (status == 0) {
         f->mesh = full_mesh(f->full);
-        full_set_overhangs(f->full, f->mesh->dimension == 2);
         f->face = f->mesh->face;
         f->sideways = (size_t)f->mesh->dimension - 1;
         status = friction_newton_create(&f->newton, f->mesh, &material, block->weighting,
@@ -409,7 +408,8 @@ static void leave(void *solver) {
     f->held.work = f->kept.work;
     f->held.dissipation = f->kept.dissipation;
     for (size_t node = 0; node < f->face; node++)
-        f->newton.force[along(f, node, 0)] = f->kept.traction[node];
+        for (size_t k = 0; k < f->sideways; k++)
+            f->newton.force[along(f, node, k)] = f->kept.traction[node * f->sideways + k];
 }
 
 static void land(void *solver, double done, bool rests) {
@@ -442,12 +442,17 @@ static bool is_used_up(const struct friction *f) {
     return f->limit.seconds > 0 && f->used > f->limit.seconds;
 }
 
+/* Of surfaces as CAREFUL_NEWTON_MOST: an iteration takes tens of times as long as of profiles. */
+enum { SURFACE_NEWTON_MOST = 2000 };
+
 static int check(void *solver, struct error *err) {
     const struct following *way = solver;
     if (is_used_up(way->friction))
         return error_set(err, ERROR_NUMERIC, "the time limit of %g s was used up",
                          way->friction->limit.seconds);
-    if (way->friction->careful && way->out->newton > CAREFUL_NEWTON_MOST)
+    const bool surface = way->friction->mesh->dimension == 3;
+    const size_t most = surface ? SURFACE_NEWTON_MOST : CAREFUL_NEWTON_MOST;
+    if (way->friction->careful && way->out->newton > most)
         return error_set(err, ERROR_NUMERIC, "%zu iterations of Newton's were too few",
                          way->out->newton);
     return 0;
@@ -646,6 +651,18 @@ static int press_with(struct friction *f, double pressure, struct friction_state
     return status == 0 && f->careful ? press_full(f, pressure, out, err) : status;
 }
 
+/* Where the face folds there are no gaps along its normals. */
+static int folds_check(const struct friction *f, struct error *err) {
+    if (!f->options.normal_gaps || !f->careful || !face_folds(f->mesh, f->newton.u))
+        return 0;
+    return error_set(
+        err, ERROR_NUMERIC,
+        "contact with friction %g under a mean pressure of %g E* was followed to where "
+        "the face overhangs: its normals do not all meet the flat, and gaps along "
+        "them are none",
+        f->coefficient, f->kept.pressure);
+}
+
 int friction_press(struct friction *f, double pressure, struct friction_state *out,
                    struct error *err) {
     if (!(pressure > 0 && isfinite(pressure)))
@@ -660,6 +677,8 @@ int friction_press(struct friction *f, double pressure, struct friction_state *o
     lift(f);
     int status = f->press_steps > 0 ? press_with(f, pressure, &state, err)
                                     : press_without(f, pressure, &state, err);
+    if (status == 0)
+        status = folds_check(f, err);
     if (status != 0)
         return status;
     f->pressed = true;
@@ -687,6 +706,8 @@ static int move(struct friction *f, struct drive drive, double goal, struct fric
     friction_newton_drive(&f->newton, drive);
     struct friction_goal end = {f->kept.pressure, goal};
     int status = follow(f, &end, &state, err);
+    if (status == 0)
+        status = folds_check(f, err);
     if (status != 0)
         return status;
     fill_state(f, &state);

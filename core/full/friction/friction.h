@@ -6,8 +6,8 @@
  * surfaces also along y, or the mean traction there is taken to values below friction times the
  * pressure. Both may rise and fall; the pressure stays. Across the drag, on surfaces, the flat is
  * free to follow, and the mean traction is 0. Slip of a step is that since the step before: a path
- * is as fine as its steps, and a step that fails is halved. Where a profile does not go on so, its
- * face may overhang, meet itself with the same friction, and jump against a drag (F14.10), whose
+ * is as fine as its steps, and a step that fails is halved. Where a face does not go on so, it
+ * may overhang, meet itself with the same friction, and jump against a drag (F14.10), whose
  * work is none of the works below. Tractions are forces of the flat on the block over the tributary
  * areas of the flat grid, in E* = E/(1 - nu^2), positive where the flat pulls forward.
  *

@@ -82,14 +82,15 @@ void friction_newton_clear(struct friction_newton *n) {
 
 int friction_newton_allow_overhangs(struct friction_newton *n, struct error *err) {
     size_t count = mesh_degrees_of_freedom(n->mesh);
-    if (n->mesh->dimension != 2)
-        return error_set(err, ERROR_INPUT, "surfaces may not overhang");
     if (n->anchor == NULL)
         n->anchor = array_create(count, sizeof *n->anchor);
     if (n->anchor == NULL)
         return error_memory(err, count * sizeof *n->anchor, "displacements");
-    int status = n->self.pair == NULL ? self_contact_create(&n->self, n->mesh, err) : 0;
-    n->self.friction = n->conditions.friction;
+    int status = n->gmres != NULL ? gmres_lengthen(n->gmres, err) : 0;
+    if (status == 0 && n->self.pair == NULL)
+        status = self_contact_create(&n->self, n->mesh, err);
+    if (status == 0)
+        status = self_contact_add_friction(&n->self, n->conditions.friction, err);
     n->overhangs = status == 0;
     return status;
 }
@@ -377,6 +378,8 @@ static int solve(struct friction_newton *n, double tolerance, double *x, struct 
     if (n->gmres != NULL) {
         const struct linear_system system = {.tangent = n->tangent,
                                              .friction = &n->conditions,
+                                             .drag = n->drag,
+                                             .lengthy = n->overhangs,
                                              .most = full_limit_linear(&n->limit, used_by(n, end))};
         return gmres_solve(n->gmres, &system, tolerance, x, &end->work.iterations, err);
     }
@@ -436,7 +439,7 @@ static int newton_step(struct friction_newton *n, const struct friction_goal *go
 
 bool friction_newton_evaluate(struct friction_newton *n) {
     n->evaluated = tangent_evaluate(n->mesh, &n->material, n->u, &n->energy, n->force, n->tangent);
-    n->tangent->links = 0;
+    n->tangent->links = n->tangent->patches = n->tangent->rubbings = 0;
     if (n->evaluated && n->drag > 0)
         tangent_add_drag(n->tangent, n->drag, n->u, n->anchor, n->force);
     if (n->evaluated && n->overhangs)

@@ -38,7 +38,7 @@ struct gmres {
     double *basis[HESSENBERG_MOST + 1]; /* orthonormal residuals */
     double *direction[HESSENBERG_MOST]; /* preconditioned */
     struct material flat;               /* of the flat block */
-    double drag;                        /* of the preconditioner */
+    struct preconditioner_drag drag;    /* of the preconditioner */
     double *load, *moved, *pressures;
     double *face, *target, *forces; /* by node of the face */
     struct hessenberg hessenberg;
@@ -367,8 +367,17 @@ static void give_face(struct gmres *gmres, const struct face_conditions *frictio
     given[d * face + d - 1] = -sum[d - 1];
 }
 
-/* The same with friction. Forces along the far side balance those on the other nodes, so that its
- * mean does not move (preconditioner.h). */
+/* Subtracts the drag's forces from the shears. */
+static void bear_drag(const struct gmres *gmres, const double *x, double *shears) {
+    size_t d = (size_t)gmres->mesh->dimension;
+    for (size_t node = 0; gmres->drag.of > 0 && node < gmres->mesh->nodes; node++)
+        for (size_t k = 0; k + 1 < d; k++)
+            shears[k] -= gmres->drag.of * x[node * d + k];
+}
+
+/* The same with friction. Without drag forces along the far side balance those on the other nodes,
+ * so that its mean does not move (preconditioner.h); with drag it is held. What the drag bears is
+ * left out of what drives the flat's shear. */
 static void precondition_friction(struct gmres *gmres, const struct face_conditions *friction,
                                   const double *r, double *x) {
     const struct mesh *mesh = gmres->mesh;
@@ -396,12 +405,13 @@ static void precondition_friction(struct gmres *gmres, const struct face_conditi
             borne += gmres->borne[k * face + node];
         behind[k] = sum[k] + borne;
         behind[d - 1 + k] = gmres->borne[d * face + k];
-        move[k] = r[gmres->unknowns + k] - borne / nodes;
+        move[k] = r[gmres->unknowns + k] - (gmres->drag.held ? 0 : borne / nodes);
     }
     move[d - 1] = gmres->borne[d * face + d - 1];
     for (size_t node = 0; node < mesh->nodes; node++)
         for (size_t k = 0; k < d; k++)
             x[node * d + k] += move[k];
+    bear_drag(gmres, x, behind);
     if (gmres->volumetric != NULL)
         volumetric_pressures(gmres->volumetric, x, 1, gmres->pressures,
                              x + gmres->degrees_of_freedom);
@@ -489,14 +499,19 @@ static void eliminate_pressures(struct gmres *gmres, const struct linear_system 
 
 /* Gives the flat block the drag of the equations. */
 static int set_drag(struct gmres *gmres, const struct linear_system *system, struct error *err) {
-    if (system->factorisation != NULL || system->drag == gmres->drag)
+    const struct preconditioner_drag drag = {.of = system->drag,
+                                             .held = system->drag > 0 && system->friction != NULL};
+    if (system->factorisation != NULL ||
+        (drag.of == gmres->drag.of && drag.held == gmres->drag.held))
         return 0;
-    int status = preconditioner_set_drag(gmres->preconditioner, &gmres->flat, gmres->volumetric,
-                                         system->drag, err);
+    int status =
+        preconditioner_set_drag(gmres->preconditioner, &gmres->flat, gmres->volumetric, drag, err);
     if (status != 0)
         return status;
-    gmres->drag = system->drag;
+    gmres->drag = drag;
     face_solver_renew(&gmres->face_solver, gmres->mesh, gmres->preconditioner);
+    if (gmres->sliding_face != NULL)
+        sliding_face_renew(gmres->sliding_face, gmres->mesh, gmres->preconditioner);
     return 0;
 }
 

@@ -97,13 +97,15 @@ static void layer_stiffness_add_symbol(int dimension, double block[9][3][3],
 }
 
 enum { ZONES_MOST = 32 };
+/* Stiffness of a node that does not move, over that of others. */
+static const double HELD = 1e8;
 
 /* Arrays by wave hold the waves of a level, innermost, in the layout of transform.h; the levels
  * follow one another. */
 struct preconditioner {
     const struct mesh *mesh; /* borrowed */
     size_t d;
-    double drag;
+    struct preconditioner_drag drag;
     struct transform *transform[ZONES_MOST]; /* by the number of times that columns have doubled */
     size_t *before;  /* [level]: waves of all levels above it; the last entry counts all waves */
     double *inverse; /* [level][i*d + j][wave]: inverse of the level's pivot, into which all levels
@@ -166,13 +168,13 @@ static void invert(int d, double a[3][3], double out[3][3]) {
 }
 
 /* Applies the conditions on the far side: Z is 0 for all waves but the mean; X and Y of the mean
- * wave are not held and get a stiffness of 1. */
-static void hold_far_side(int d, bool mean, double pivot[3][3]) {
+ * wave get a stiffness, `mean_stiffness`. */
+static void hold_far_side(int d, bool mean, double mean_stiffness, double pivot[3][3]) {
     for (int i = 0; i < d; i++)
         for (int j = 0; j < d; j++) {
             bool held = mean ? i < d - 1 && i == j : i == d - 1 || j == d - 1;
             if (held)
-                pivot[i][j] = mean ? pivot[i][j] + 1 : i == j;
+                pivot[i][j] = mean ? pivot[i][j] + mean_stiffness : i == j;
         }
 }
 
@@ -241,9 +243,9 @@ static void eliminate(struct preconditioner *preconditioner, struct layer_stiffn
         add_above(preconditioner, &layers[level - 1], level, wave / rows, wave % rows,
                   share_of(mesh, level - 1), pivot);
     for (int i = 0; i < (wave == 0 ? d - 1 : d); i++)
-        pivot[i][i] += preconditioner->drag;
+        pivot[i][i] += preconditioner->drag.of;
     if (level == last)
-        hold_far_side(d, wave == 0, pivot);
+        hold_far_side(d, wave == 0, preconditioner->drag.held ? HELD : 1, pivot);
     bool floats =
         level == 0 && wave == 0; /* the mean height of the face is not determined by forces */
     for (int i = 0; floats && i < d; i++)
@@ -341,7 +343,8 @@ int preconditioner_create(struct preconditioner **out, const struct mesh *mesh,
 }
 
 int preconditioner_set_drag(struct preconditioner *preconditioner, const struct material *material,
-                            struct volumetric *volumetric, double drag, struct error *err) {
+                            struct volumetric *volumetric, struct preconditioner_drag drag,
+                            struct error *err) {
     preconditioner->drag = drag;
     return eliminate_all(preconditioner, material, volumetric, err);
 }
@@ -601,7 +604,9 @@ void preconditioner_matrices(const struct preconditioner *preconditioner, double
                              double *stiffness) {
     const struct mesh *mesh = preconditioner->mesh;
     size_t n = waves_at(preconditioner, 0), d = preconditioner->d;
-    double given = (double)mesh->face / (double)level_nodes(&mesh->level[mesh->layers]);
+    double given = preconditioner->drag.held
+                       ? 0
+                       : (double)mesh->face / (double)level_nodes(&mesh->level[mesh->layers]);
     memcpy(compliance, inverse_at(preconditioner, 0), d * d * n * sizeof *compliance);
     for (size_t i = 0; i + 1 < d; i++)
         compliance[(i * d + i) * n] -= given;

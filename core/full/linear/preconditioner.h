@@ -21,10 +21,16 @@ struct preconditioner;
 int preconditioner_create(struct preconditioner **out, const struct mesh *mesh,
                           const struct material *material, struct volumetric *volumetric,
                           struct error *err);
-/* Gives each displacement but the mean vertical one of a level a stiffness of its own, `drag` (0 at
- * first). material and volumetric are those of preconditioner_create. */
+/* A drag on the block. */
+struct preconditioner_drag {
+    double of; /* stiffness of each displacement but the mean vertical one of a level; 0 at first */
+    /* Whether the mean of the far side does not move sideways, whatever forces are in balance. */
+    bool held;
+};
+/* material and volumetric are those of preconditioner_create. */
 int preconditioner_set_drag(struct preconditioner *preconditioner, const struct material *material,
-                            struct volumetric *volumetric, double drag, struct error *err);
+                            struct volumetric *volumetric, struct preconditioner_drag drag,
+                            struct error *err);
 void preconditioner_destroy(struct preconditioner **handle);
 double preconditioner_bytes(const struct mesh *mesh);
 
@@ -44,8 +50,8 @@ void preconditioner_displace(struct preconditioner *preconditioner, const double
 
 /* The same for forces and displacements in all directions of the face, as an array for each
  * component, the vertical one last: [component * face + node]. Forces along the face are to be in
- * balance with those on the far side: else the far side gives by their mean there, and the face
- * with it. */
+ * balance with those on the far side, where it is not held: else it gives by their mean there, and
+ * the face with it. */
 void preconditioner_face_all(struct preconditioner *preconditioner, double *face);
 void preconditioner_displace_all(struct preconditioner *preconditioner, const double *forces,
                                  double *displacements);

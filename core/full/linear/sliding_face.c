@@ -80,13 +80,18 @@ int sliding_face_create(struct sliding_face **out, const struct mesh *mesh,
     int status = arrays_create(s, mesh, weighting, err);
     for (size_t i = 0; status == 0 && i < d; i++)
         status = transform_create(&s->plan[i], &grid, nx / 2, ny / 2, err);
-    if (status == 0) {
-        preconditioner_matrices(preconditioner, s->compliance, s->inverse);
-        s->local = local_compliance(s, mesh);
-    } else
+    if (status == 0)
+        sliding_face_renew(s, mesh, preconditioner);
+    else
         sliding_face_destroy(&s);
     *out = s;
     return status;
+}
+
+void sliding_face_renew(struct sliding_face *s, const struct mesh *mesh,
+                        const struct preconditioner *preconditioner) {
+    preconditioner_matrices(preconditioner, s->compliance, s->inverse);
+    s->local = local_compliance(s, mesh);
 }
 
 void sliding_face_destroy(struct sliding_face **handle) {

@@ -16,6 +16,9 @@ struct sliding_face;
 int sliding_face_create(struct sliding_face **out, const struct mesh *mesh,
                         const struct preconditioner *preconditioner, enum gap_weighting weighting,
                         struct error *err);
+/* Takes the matrices of the preconditioner anew, after it has changed. */
+void sliding_face_renew(struct sliding_face *sliding, const struct mesh *mesh,
+                        const struct preconditioner *preconditioner);
 void sliding_face_destroy(struct sliding_face **handle);
 double sliding_face_bytes(const struct mesh *mesh);
 /* Returns the number of values of a vector. */

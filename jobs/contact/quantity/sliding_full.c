@@ -242,11 +242,16 @@ int sliding_full_solve(struct sliding_full *sliding, const struct measure_contex
 
 /* --- cost --- */
 
+/* Of surfaces that are dragged none of lower RMS slopes overhangs. */
+static const double OVERHANG_SLOPE = 0.5;
+
 double sliding_full_bytes(const struct quantity_scene *scene) {
     const struct contact_case *one_case = scene->one_case;
     const struct full_options options = contact_case_full_options(one_case, &scene->grid);
-    const struct full_size size =
+    struct full_size size =
         cost_full_size(&scene->grid, &scene->block, &options, one_case->rms_slope);
+    if (!grid_is_profile(&scene->grid) && one_case->rms_slope > OVERHANG_SLOPE)
+        size.overhangs = options.kinematics != KINEMATICS_SMALL;
     return cost_friction_bytes(&scene->grid, &scene->block, &options, &size) +
            sliding_edges_bytes(&scene->grid);
 }

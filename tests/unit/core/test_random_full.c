@@ -18,6 +18,9 @@
 enum { LOADS_MOST = 4, LEGS_MOST = 3, SCENES = 12 };
 /* Seconds of CPU time of a scene, asked between iterations, and by the clock at all. */
 enum { SECONDS_MOST = 60, CLOCK_MOST = 600 };
+/* Iterations of the linear equations that end a surface with friction, whose folds may take long: 6
+ * s of one of 12 x 12 nodes. */
+enum { LINEAR_MOST = 15000 };
 
 struct random_full {
     uint64_t seed;
@@ -93,6 +96,8 @@ static void draw_block(uint64_t *state, struct random_full *of) {
 static void draw_path(uint64_t *state, struct random_full *of) {
     of->friction.coefficient = happens(state, 0.4) ? 0 : between(state, 0.01, 1);
     of->friction.press_steps = happens(state, 0.3) ? 1 + below(state, 5) : 0;
+    if (!grid_is_profile(&of->grid))
+        of->friction.limit = (struct full_limit){.seconds = LINEAR_MOST, .linear = 1};
     of->traction = happens(state, 0.2);
     of->leg_count = 1 + below(state, LEGS_MOST);
     of->leg_steps = 2 + below(state, 6);

@@ -1,6 +1,8 @@
 /* Protects contact of a surface's face with itself: a fold that is alike in all rows is that of a
  * profile, folds along both axes and across the sides of the cell are alike, forces are the
- * gradient of an energy and balance as do their moments, and their tangent is exact. */
+ * gradient of an energy and balance as do their moments, and their tangent is exact. With friction
+ * a fold that is alike in all rows is that of a profile, too; Coulomb's law in both directions
+ * along the face, its exact tangent, and forces that turn with the face. */
 #include "tests/support/check.h"
 #include "tests/support/fold.h"
 #include <stdlib.h>
@@ -148,12 +150,167 @@ static void forces_and_tangent_are_derivatives(void **state) {
     close_fold(&f);
 }
 
+/* --- friction --- */
+
+static const double FRICTION = 0.4;
+
+/* A fold that is pressed together, with friction, whose left flank then moves over the other. */
+static void rub(struct folded *f, double uneven, double along, double rise) {
+    struct error err = {0};
+    fold(f, FIRST, -0.3, uneven, 1, 0);
+    f->self.count = 0;
+    if (self_contact_add_friction(&f->self, FRICTION, &err) != 0)
+        fail_msg("%s", err.text);
+    self_contact_search(&f->self, f->u, f->active);
+    (void)find(f);
+    self_contact_settle(&f->self);
+    for (size_t row = 0; row < f->mesh->level[0].ny; row++)
+        for (size_t a = 1; a < DEEP; a++) {
+            size_t d = (size_t)f->mesh->dimension, node = row * f->mesh->level[0].nx + FIRST + a;
+            f->u[d * node + d - 1] += rise;
+            if (d == 3)
+                f->u[3 * node + 1] += along;
+        }
+}
+
+static void even_folds_rub_as_those_of_a_profile(void **state) {
+    (void)state;
+    static const double RISES[] = {0.004, -0.1, 0.1};
+    struct folded f, profile;
+    open_fold(&f, NODES, ROWS, 2);
+    open_fold(&profile, NODES, 1, 2);
+    for (size_t r = 0; r < 3; r++) {
+        rub(&f, 0, 0, RISES[r]);
+        rub(&profile, 0, 0, RISES[r]);
+        check_relative(find(&f), ROWS * find(&profile), 1e-10);
+        double friction = self_contact_dissipation(&profile.self);
+        assert_true(friction > 1e-6);
+        check_relative(self_contact_dissipation(&f.self), ROWS * friction, 1e-9);
+        for (size_t node = 0; node < FACE; node++) {
+            check_close(f.force[3 * node], profile.force[2 * (node % NODES)], 1e-10);
+            check_close(f.force[3 * node + 1], 0, 1e-10);
+            check_close(f.force[3 * node + 2], profile.force[2 * (node % NODES) + 1], 1e-10);
+        }
+    }
+    close_fold(&profile);
+    close_fold(&f);
+}
+
+/* Counts the pairs that slide, whose force is at its bound and, where there is no multiplier,
+ * against the slip; and those that stick. */
+static void check_coulomb(const struct folded *f, size_t *slide, size_t *stick) {
+    for (size_t c = 0; c < f->self.count; c++) {
+        const struct self_pair *pair = &f->self.pair[c];
+        double bound = FRICTION * pair->force, size = hypot(pair->shear[0], pair->shear[1]);
+        double slip = hypot(pair->slip[0], pair->slip[1]);
+        assert_true(size <= bound * (1 + 1e-12));
+        *slide += bound > 0 && size >= bound * (1 - 1e-12);
+        *stick += size < bound * (1 - 1e-12);
+        check_close(pair->shear[0] * pair->slip[0] + pair->shear[1] * pair->slip[1], -size * slip,
+                    1e-12 * bound);
+    }
+}
+
+/* Central differences, whose errors are of second order: first without multipliers, then with such
+ * as are across the slip. */
+static void friction_follows_coulomb_and_its_tangent(void **state) {
+    (void)state;
+    static const double STEP = 1e-5, MOVES[][2] = {{0.003, 0.004}, {0.12, -0.05}, {-0.07, 0.1}};
+    enum { VALUES = 3 * FACE };
+    struct folded f;
+    double plus[VALUES], stiffness[VALUES];
+    open_fold(&f, NODES, ROWS, 2);
+    for (size_t m = 0; m < 6; m++) {
+        size_t slide = 0, stick = 0;
+        rub(&f, 0.1, MOVES[m % 3][0], MOVES[m % 3][1]);
+        (void)find(&f);
+        check_coulomb(&f, &slide, &stick);
+        assert_true(m % 3 == 0 ? stick > 0 : slide > 0);
+        assert_true(self_contact_dissipation(&f.self) > 0);
+        for (size_t c = 0; m > 2 && c < f.self.count; c++) {
+            f.self.pair[c].shear_multiplier[0] = 0.3 * f.self.pair[c].force;
+            f.self.pair[c].shear_multiplier[1] = -0.2 * f.self.pair[c].force;
+        }
+        for (size_t i = m; i < VALUES; i += 7) {
+            double here = f.u[i];
+            (void)find(&f);
+            memset(f.change, 0, mesh_degrees_of_freedom(f.mesh) * sizeof *f.change);
+            f.change[i] = 1;
+            tangent_apply(f.tangent, f.change, f.force);
+            memcpy(stiffness, f.force, sizeof stiffness);
+            f.u[i] = here + STEP;
+            (void)find(&f);
+            memcpy(plus, f.force, sizeof plus);
+            f.u[i] = here - STEP;
+            (void)find(&f);
+            f.u[i] = here;
+            for (size_t k = 0; k < VALUES; k++)
+                check_close((plus[k] - f.force[k]) / (2 * STEP), stiffness[k], 1e-4);
+        }
+    }
+    close_fold(&f);
+}
+
+/* Turns a position about an axis that is oblique to all others. */
+static void turn(const double x[3], double out[3]) {
+    static const double MATRIX[3][3] = {
+        {2 / 3.0, -1 / 3.0, 2 / 3.0}, {2 / 3.0, 2 / 3.0, -1 / 3.0}, {-1 / 3.0, 2 / 3.0, 2 / 3.0}};
+    for (size_t i = 0; i < 3; i++)
+        out[i] = MATRIX[i][0] * x[0] + MATRIX[i][1] * x[1] + MATRIX[i][2] * x[2];
+}
+
+/* Rows that are turned about the middle of the face do not reach across its sides: those at its
+ * ends are left out, with the multipliers of a fold that has been rubbed before. */
+static void friction_turns_with_the_face(void **state) {
+    (void)state;
+    struct folded f;
+    double force[3 * FACE], most = 0;
+    open_fold(&f, NODES, ROWS, 2);
+    rub(&f, 0.1, 0.12, -0.05);
+    size_t kept = 0;
+    for (size_t c = 0; c < f.self.count; c++) {
+        size_t row = f.self.pair[c].arc / NODES, own = f.self.pair[c].node / NODES;
+        if (row >= 2 && row <= ROWS - 3 && own >= 2 && own <= ROWS - 3)
+            f.self.pair[kept++] = f.self.pair[c];
+    }
+    f.self.count = kept;
+    for (size_t c = 0; c < kept; c++)
+        f.self.pair[c].shear_multiplier[0] = 0.1;
+    (void)find(&f);
+    memcpy(force, f.force, sizeof force);
+    for (size_t node = 0; node < FACE; node++) {
+        const double middle[3] = {0.5 * NODES, 0.5 * ROWS, 0};
+        size_t row = node / NODES, column = node % NODES;
+        double x[3] = {(double)column, (double)row, f.mesh->height[node]};
+        double from[3], to[3];
+        for (size_t k = 0; k < 3; k++)
+            from[k] = x[k] + f.u[3 * node + k] - middle[k];
+        turn(from, to);
+        for (size_t k = 0; k < 3; k++)
+            f.u[3 * node + k] = to[k] + middle[k] - x[k];
+    }
+    (void)find(&f);
+    for (size_t node = 0; node < FACE; node++) {
+        double expected[3];
+        turn(force + 3 * node, expected);
+        for (size_t k = 0; k < 3; k++) {
+            check_close(f.force[3 * node + k], expected[k], 1e-9);
+            most = fmax(most, fabs(force[3 * node + 1]));
+        }
+    }
+    assert_true(kept > 0 && most > 0.01);
+    close_fold(&f);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(even_folds_are_those_of_a_profile),
         cmocka_unit_test(crests_and_graphs_meet_nothing),
         cmocka_unit_test(axes_and_sides_are_alike),
         cmocka_unit_test(forces_and_tangent_are_derivatives),
+        cmocka_unit_test(even_folds_rub_as_those_of_a_profile),
+        cmocka_unit_test(friction_follows_coulomb_and_its_tangent),
+        cmocka_unit_test(friction_turns_with_the_face),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

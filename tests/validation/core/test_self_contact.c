@@ -2,7 +2,8 @@
  * which is solved here by itself; a rough profile of slope 1 that buckles and overhangs has values
  * beyond, and its flanks do not pass through each other; another that is dragged with friction
  * closes works and energy to second order in the step, folds and all; a surface that is alike
- * in all rows closes as the profile does; and a limit of time ends what a jump takes. */
+ * in all rows closes as the profile does, and is dragged as it is; a groove that winds closes works
+ * and energy, too; and a limit of time ends what a jump takes. */
 #include "tests/support/check.h"
 
 #include "core/full/face.h"
@@ -384,6 +385,103 @@ static void a_surface_alike_in_all_rows_is_a_profile(void **state) {
     check_relative(report[1].stretch, report[0].stretch, 1e-8);
 }
 
+/* --- folded surfaces with friction --- */
+
+enum { GROOVE_MOST = 40, GROOVE_ROWS = 3 };
+
+/* A groove across the drag, whose rows wind by so much. */
+struct groove_shape {
+    size_t nodes, rows;
+    double width, depth, winds, load;
+};
+
+struct groove {
+    struct grid grid;
+    struct friction *friction;
+    struct friction_state now;
+    double z[GROOVE_MOST * GROOVE_ROWS];
+};
+
+/* Closes a groove by a load without friction. */
+static void groove_open(struct groove *g, const struct groove_shape *shape) {
+    const double nodes = (double)shape->nodes, rows = (double)shape->rows;
+    struct full_options options = FULL_DEFAULTS;
+    struct block block = {.model = MODEL_LAYERED,
+                          .poisson = 0.45,
+                          .height = 1,
+                          .layer_growth = 1.4,
+                          .weighting = GAP_DUAL};
+    struct friction_options friction = {.coefficient = 0.05};
+    struct error err = {0};
+    options.transition = INFINITY;
+    options.tolerance = 1e-7;
+    *g =
+        (struct groove){.grid = {shape->nodes, shape->rows, 1, shape->rows > 1 ? rows / nodes : 1}};
+    for (size_t i = 0; i < shape->nodes * shape->rows; i++) {
+        size_t row = i / shape->nodes, column = i % shape->nodes;
+        double middle = 0.5 + shape->winds * sin(2 * M_PI * (double)row / rows);
+        double from = fabs((double)column / nodes - middle);
+        g->z[i] = from < shape->width ? -shape->depth * (1 - from / shape->width) : 0;
+    }
+    if (friction_create(&g->friction, &g->grid, &block, &options, &friction, &err) != 0 ||
+        friction_begin(g->friction, g->z, &err) != 0 ||
+        friction_press(g->friction, shape->load, &g->now, &err) != 0)
+        fail_msg("%s", err.text);
+    assert_true(g->now.self.nodes > 0);
+}
+
+static void groove_drag(struct groove *g, double to) {
+    struct error err = {0};
+    if (friction_drag(g->friction, to, &g->now, &err) != 0)
+        fail_msg("%s", err.text);
+    assert_true(g->now.self.nodes > 0 && g->now.self.penetration < 1e-5);
+}
+
+/* It differs from the profile by how the equations are solved alone. */
+static void a_dragged_surface_alike_in_all_rows_is_a_profile(void **state) {
+    (void)state;
+    struct groove_shape shape = {.nodes = 40, .rows = 1, .width = 0.075, .depth = 0.2, .load = 0.5};
+    struct groove profile, surface;
+    groove_open(&profile, &shape);
+    shape.rows = GROOVE_ROWS;
+    groove_open(&surface, &shape);
+    for (int step = 1; step <= 2; step++) {
+        const struct friction_state *expected = &profile.now, *now = &surface.now;
+        groove_drag(&profile, 0.05 * step);
+        groove_drag(&surface, 0.05 * step);
+        print_message("step %d: %zu nodes of the groove bear %.8g and %.8g, friction takes %.8g "
+                      "and %.8g\n",
+                      step, expected->self.nodes, expected->self.force,
+                      now->self.force / GROOVE_ROWS, expected->dissipation, now->dissipation);
+        assert_int_equal(now->self.nodes, GROOVE_ROWS * expected->self.nodes);
+        assert_int_equal(now->nodes, GROOVE_ROWS * expected->nodes);
+        assert_int_equal(now->stuck, GROOVE_ROWS * expected->stuck);
+        check_relative(now->self.force, GROOVE_ROWS * expected->self.force, 1e-5);
+        check_relative(now->traction, expected->traction, 1e-6);
+        check_relative(now->mean_gap, expected->mean_gap, 1e-6);
+        check_close(now->dissipation, expected->dissipation, 1e-5 * expected->work);
+    }
+    friction_destroy(&profile.friction);
+    friction_destroy(&surface.friction);
+}
+
+/* Where flanks slide along both axes. */
+static void works_close_where_a_surface_folds(void **state) {
+    (void)state;
+    static const struct groove_shape WINDING = {28, GROOVE_ROWS, 0.107, 0.3, 0.018, 0.6};
+    struct groove g;
+    groove_open(&g, &WINDING);
+    for (int step = 1; step <= 2; step++)
+        groove_drag(&g, 0.06 * step);
+    const struct friction_state *now = &g.now;
+    double left = now->work + now->pressing_work - now->dissipation - now->energy;
+    print_message("friction takes %.4g, %.2g of it are left; %zu nodes of the groove bear\n",
+                  now->dissipation, left / now->dissipation, now->self.nodes);
+    assert_true(now->dissipation > 0.1 * now->work);
+    check_close(left, 0, 1e-3 * now->dissipation);
+    friction_destroy(&g.friction);
+}
+
 /* Iterations of Newton's method, and whether a face has been dragged from its last load. */
 struct watched {
     const struct full *full;
@@ -450,6 +548,8 @@ int main(void) {
         cmocka_unit_test(flanks_do_not_pass_through_each_other),
         cmocka_unit_test(works_close_where_the_face_folds),
         cmocka_unit_test(a_surface_alike_in_all_rows_is_a_profile),
+        cmocka_unit_test(a_dragged_surface_alike_in_all_rows_is_a_profile),
+        cmocka_unit_test(works_close_where_a_surface_folds),
         cmocka_unit_test(a_limit_ends_the_rounds_of_a_surface),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
