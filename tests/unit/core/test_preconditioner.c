@@ -152,7 +152,9 @@ static void waves_invert_the_flat_block_with_drag(void **state) {
             for (size_t node = first; node < first + face; node++)
                 w.force[3 * node + k] = held ? 0 : w.force[3 * node + k] - mean;
         }
-    assert_int_equal(preconditioner_set_drag(flat, &w.material, NULL, DRAG, &err), 0);
+    assert_int_equal(preconditioner_set_drag(flat, &w.material, NULL,
+                                             (struct preconditioner_drag){.of = DRAG}, &err),
+                     0);
     preconditioner_load(flat, w.force);
     preconditioner_displace(flat, nothing, w.x);
     tangent_apply(w.tangent, w.x, w.y);
@@ -161,10 +163,50 @@ static void waves_invert_the_flat_block_with_drag(void **state) {
     sum_far_side(w.mesh, w.y);
     for (size_t f = 0; f < w.degrees_of_freedom; f++)
         check_close(w.y[f], w.force[f], 1e-8);
-    assert_int_equal(preconditioner_set_drag(flat, &w.material, NULL, 0, &err), 0);
+    assert_int_equal(preconditioner_set_drag(flat, &w.material, NULL,
+                                             (struct preconditioner_drag){.of = 0}, &err),
+                     0);
     assert_memory_equal(compliance, preconditioner_compliance(flat), waves * sizeof *compliance);
     free(nothing);
     free(compliance);
+    preconditioner_destroy(&flat);
+    close_work(&w);
+}
+
+/* The mean of the far side stays, and bears what the drag leaves of forces along the face, whose
+ * means are others than 0. Bound: one over the stiffness by which it is held, 1e8. */
+static void a_held_far_side_stays(void **state) {
+    (void)state;
+    const struct preconditioner_drag drag = {.of = 0.7, .held = true};
+    struct preconditioner_work w;
+    struct error err = {0};
+    struct preconditioner *flat = NULL;
+    open_work(&w, (struct grid){6, 5, 6, 7}, 0.3, 1.3, 0, EQUAL);
+    assert_int_equal(preconditioner_create(&flat, w.mesh, &w.material, NULL, &err), 0);
+    size_t face = w.mesh->face, far_side = mesh_far_side(w.mesh);
+    double *forces = numbers(3 * face), mean[2] = {0};
+    fill_random(4, w.degrees_of_freedom, w.force);
+    for (size_t node = 0; node < w.mesh->nodes; node++)
+        w.force[3 * node + 2] = 0;
+    assert_int_equal(preconditioner_set_drag(flat, &w.material, NULL, drag, &err), 0);
+    preconditioner_load(flat, w.force);
+    preconditioner_displace_all(flat, forces, w.x);
+    tangent_apply(w.tangent, w.x, w.y);
+    for (size_t f = 0; f < w.degrees_of_freedom; f++)
+        w.y[f] += drag.of * w.x[f];
+    sum_far_side(w.mesh, w.y);
+    for (size_t f = 0; f < 3 * far_side; f++)
+        check_close(w.y[f], w.force[f], 1e-6);
+    for (size_t k = 0; k < 2; k++) {
+        double borne = w.y[3 * far_side + k] - w.force[3 * far_side + k];
+        assert_true(fabs(borne) > 1e-3);
+        for (size_t node = far_side; node < w.mesh->nodes; node++) {
+            check_close(w.y[3 * node + k] - w.force[3 * node + k], borne, 1e-6);
+            mean[k] += w.x[3 * node + k] / (double)face;
+        }
+        check_close(mean[k], 0, 1e-6);
+    }
+    free(forces);
     preconditioner_destroy(&flat);
     close_work(&w);
 }
@@ -437,6 +479,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(waves_invert_the_flat_block),
         cmocka_unit_test(waves_invert_the_flat_block_with_drag),
+        cmocka_unit_test(a_held_far_side_stays),
         cmocka_unit_test(rough_blocks_are_solved),
         cmocka_unit_test(blocks_of_widening_columns_are_solved),
         cmocka_unit_test(rough_meshes_pass_the_patch_test),
