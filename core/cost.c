@@ -194,8 +194,8 @@ static const struct newton_fit PROFILE_NEWTON = {1.2, 0.18, 4.5, 0.95, 85, 128},
                                SURFACE_NEWTON = {0.6, 0.57, 1.8, 0.8, 125, 16};
 static const double GENTLE = 0.3, UPRIGHT = 0.3;
 /* A load further than FAR/h' from the one before it is approached in steps: of lengths l in E* h',
- * FAR_STEPS (l h' - FAR) more loads' work. */
-static const double FAR = 0.11, PROFILE_FAR_STEPS = 60, SURFACE_FAR_STEPS = 15;
+ * FAR_STEPS (l h' - FAR) more loads' work. One nearer than 0.1 takes (l/0.1)^NEAR_POWER. */
+static const double FAR = 0.11, PROFILE_FAR_STEPS = 60, SURFACE_FAR_STEPS = 15, NEAR_POWER = 0.15;
 static const double USUAL_LOAD = 0.1; /* p/(E* h') */
 /* Steep faces fold and jump, some of them: a realisation does at a normal distribution's share of
  * those below (h' + JUMP_LOAD ln(p/0.1) - jump_slope)/jump_width at the highest load p, and more in
@@ -345,7 +345,8 @@ double cost_full_loads(const struct grid *grid, const struct full_size *size, do
     double all = loads != NULL ? 0 : (double)count * (1 + wide);
     for (size_t l = 0; loads != NULL && l < count; l++) {
         double length = loads[l] - (l > 0 ? loads[l - 1] : 0);
-        all += 1 + steps * fmax(0, length * rms_slope - FAR) + wide * length / USUAL_LOAD;
+        all += pow(fmin(1, fmax(0, length) / USUAL_LOAD), NEAR_POWER) +
+               steps * fmax(0, length * rms_slope - FAR) + wide * length / USUAL_LOAD;
     }
     return all;
 }

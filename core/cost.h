@@ -60,11 +60,9 @@ struct full_size cost_full_size(const struct grid *grid, const struct block *blo
  * block takes too many layers. On profiles of 1024 to 65536 points and surfaces of 32 x 32 to
  * 192 x 192, the measured peak, with the surface and the program, was 0.96 to 1.05 of the estimate;
  * 0.45 for steep profiles, not all of which are factorised in the end. Where a surface may
- * overhang, the directions of gmres_lengthen count in full. The time of 17 studies of both
- * dimensions, slopes to 0.7 and Poisson's ratios of 0 to 0.4999 was 0.66 to 1.32 of the estimate,
- * of one of 2048 points and a slope of 0.5 four times it, as one of three profiles had its steps
- * halved. Where slopes are 1 and more some realisations jump, and eleven studies took 0.44 to 12 of
- * it. */
+ * overhang, the directions of gmres_lengthen count in full. Times of studies
+ * stand in jobs/contact/METHODS.md ("Before a study runs"). Without jumps, which come beside them,
+ * 32 of 35 took 0.67 to 1.3 of it. */
 double cost_full_contact(const struct grid *grid, const struct full_size *size, double loads);
 /* Returns the number of loads near each other whose work these rising ones take, in E* h': those
  * far from the one before are reached in several steps on steep faces. NULL: all are near. */
@@ -102,14 +100,12 @@ struct friction_size {
     double factored; /* factorisations; none of surfaces */
 };
 struct friction_size cost_friction_size(const struct friction_work *of);
-/* CPU seconds of so many steps. 48 studies of profiles of 64 to 512 points took 0.68 to 1.6 of the
- * whole estimate, to which they were fitted, 11 of surfaces of 8 x 8 to 32 x 32 points 0.67 to
- * 1.14, and 23 others 0.70 to 1.66: slopes of 0.05 to 1, coefficients of 0.1 to 1, Poisson's ratios
- * of 0 to 0.4999, loads of 0.02 to 0.4. That is where coefficient times slope times
- * (load/0.1)^0.4 stays below 0.29. Beyond, steps are halved and faces jump, in some realisations:
- * six profiles of one case took 42 to 1620 iterations. A
- * trial of one does not show what the others take. Twenty studies took 0.57 to 5.8 of the estimate.
- */
+/* CPU seconds of so many steps, without jumps. 48 studies of profiles of 64 to 512 points took 0.68
+ * to 1.6 of the whole estimate, to which they were fitted, 11 of surfaces of 8 x 8 to 32 x 32
+ * points 0.67 to 1.14, and 23 others 0.70 to 1.66: slopes of 0.05 to 1, coefficients of 0.1 to 1,
+ * Poisson's ratios of 0 to 0.4999, loads of 0.02 to 0.4. Since then Newton's iterations rise less
+ * with the coefficient, and paths that end before all slides take fewer steps: 20 studies took 0.7
+ * to 1.25 of it, one with pressing at a load of 0.3 1.8. */
 double cost_friction_steps(const struct friction_work *of, double steps);
 /* As cost_full_jumps, of a path; slid: how far all of the flat slides there, over the RMS height.
  */

@@ -22,7 +22,7 @@ static int setup(void **state) {
          "{\"name\":\"steep\",\"kind\":\"contact\",\"seed\":3,\"realisations\":8,\"surface\":{"
          "\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":2,\"length_ratio\":2,"
          "\"points_per_wavelength\":6,\"rms_slope\":1.2},\"contact\":{\"model\":[\"full\","
-         "\"layered\"],\"block_height\":{\"lengths\":1},\"cell_error\":\"none\",\"time_limit\":1,"
+         "\"layered\"],\"block_height\":{\"lengths\":1},\"cell_error\":\"none\",\"time_limit\":0.3,"
          "\"pressures\":{\"to\":0.5,\"steps\":3}}}");
     spit("wave.json",
          "{\"name\":\"wave\",\"kind\":\"contact\",\"realisations\":2,\"surface\":{\"dimension\":1,"
@@ -129,7 +129,7 @@ static void the_model_full_is_told_apart(void **state) {
     check_shown((const char *[]){"  full (hencky)  ", "\nfull (hencky): kappa ",
                                  "\nnotes: ", "\ncase 0, realisation ",
                                  ": model full (hencky), level 6: load ", " was reached up to ",
-                                 " E* only: the time limit of 1 s ", "curves.csv\n", NULL});
+                                 " E* only: the time limit of 0.3 s ", "curves.csv\n", NULL});
     shell("steep.db", "$RUGO report --db $DB $ID");
     check_shown((const char *[]){"\nfull (hencky) (", " was reached up to ", NULL});
     shell("steep.db", "$RUGO report --db $DB --format json $ID");
