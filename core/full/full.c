@@ -551,7 +551,7 @@ static int fill_state(struct full *f, const struct newton_end *end, struct conta
                       "the stiffness of contact on the true geometry under a mean pressure of %g "
                       "E*, which was reached, was not found",
                       out->pressure);
-    if (status == 0 && !(compliance > 0)) /* as St. Venant's law may have, which softens */
+    if (status == 0 && !(compliance > 0)) /* as of St. Venant's law under compression */
         status = error_set(err, ERROR_NUMERIC,
                            "contact on the true geometry was reached up to a mean pressure of %g "
                            "E*, where it is unstable: deeper it carries less",
