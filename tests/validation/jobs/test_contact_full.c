@@ -138,7 +138,7 @@ static void what_the_model_tells(void **state) {
     cJSON_Delete(document);
 }
 
-/* RMS slope 1.9: some surfaces are too steep to mesh, or to press in two seconds, the others keep
+/* RMS slope 1.9: some surfaces are too steep to mesh, or to press in the time they have, the others keep
  * their values, a failure lasts, and the linear model beside sees all. */
 static void steep_realisations_have_no_values(void **state) {
     (void)state;
@@ -148,7 +148,7 @@ static void steep_realisations_have_no_values(void **state) {
               "\"length_ratio\":"
               " 2, \"points_per_wavelength\": 6, \"rms_slope\": 1.9}, \"contact\": "
               "{\"cell_error\": \"none\", \"model\":"
-              " [\"halfspace\", \"full\"], \"time_limit\": 2, \"pressures\": {\"values\": [0.01, "
+              " [\"halfspace\", \"full\"], \"time_limit\": 0.7, \"pressures\": {\"values\": [0.01, "
               "0.2, 0.5, 1]}}}",
               COUNT);
     const cJSON *full = curve_of(document, "contact_area", "nodes", "full");
