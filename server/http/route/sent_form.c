@@ -1,6 +1,7 @@
 #include "server/http/route/sent_form.h"
 #include "core/memory_file.h"
 #include "server/http/route/route.h"
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -61,12 +62,25 @@ static bool begins(const struct reading *reading, bool study, const char *name, 
            form->sizes[form->count - 1] > 0 || strcmp(form->names[form->count - 1], name) != 0;
 }
 
+/* Writes the quotes of a name, which browsers and curl send as %22 (the multipart/form-data of
+ * WHATWG's HTML). */
+static void unquote(char *name) {
+    for (char *at = name; (at = strstr(at, "%22")) != NULL;) {
+        *at++ = '"';
+        memmove(at, at + 2, strlen(at + 2) + 1);
+    }
+}
+
 static enum MHD_Result keep(void *context, enum MHD_ValueKind kind, const char *field,
-                            const char *name, const char *media, const char *encoding,
+                            const char *quoted, const char *media, const char *encoding,
                             const char *data, uint64_t offset, size_t size) {
     struct reading *reading = context;
     const bool study = field != NULL && strcmp(field, "study") == 0;
+    char text[SENT_NAME_MOST + 2]; /* of one that is too long, enough to see that */
+    const char *name = quoted != NULL ? text : NULL;
     (void)kind, (void)media, (void)encoding;
+    snprintf(text, sizeof text, "%s", quoted != NULL ? quoted : "");
+    unquote(text);
     if (begins(reading, study, name, offset))
         reading->status = study ? begin_study(reading) : begin_file(reading, name);
     if (reading->status != 0)

@@ -177,10 +177,10 @@ def _document(study):
 
 
 def _form(files, study=None):
-    """Files, and perhaps a study, as a form (RFC 7578): its bytes and their media type."""
+    """Files, and perhaps a study, as a form, as browsers send them: its bytes and their media type."""
     boundary, parts = secrets.token_hex(16), []
     for path in files:
-        name = os.path.basename(os.fspath(path)).replace("\\", "\\\\").replace('"', '\\"')
+        name = os.path.basename(os.fspath(path)).replace('"', "%22")
         with open(path, "rb") as opened:
             parts.append((f'name="map"; filename="{name}"', opened.read()))
     if study is not None:
