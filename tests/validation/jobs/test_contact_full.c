@@ -138,8 +138,8 @@ static void what_the_model_tells(void **state) {
     cJSON_Delete(document);
 }
 
-/* RMS slope 1.9: some surfaces are too steep to mesh, or to press in the time they have, the others keep
- * their values, a failure lasts, and the linear model beside sees all. */
+/* RMS slope 1.9: some surfaces are too steep to mesh, or to press in the time they have, the others
+ * keep their values, a failure lasts, and the linear model beside sees all. */
 static void steep_realisations_have_no_values(void **state) {
     (void)state;
     enum { COUNT = 12 };
