@@ -327,7 +327,7 @@ static int set_grooves(struct like_draw *draw, struct random_key key, struct err
                                                  sqrt(-2 * log1p(-u[0])) * sin(2 * M_PI * u[1])};
     const double error = isnan(draw->like->groove_depth_error) ? 0 : draw->like->groove_depth_error;
     draw->grooves = *base->grooves;
-    for (size_t f = 0; f < draw->grooves.families; f++)
+    for (size_t f = 0; f < draw->grooves.families && f < GROOVE_FAMILIES_MOST; f++)
         draw->grooves.family[f].depth *=
             fmax(1 + error * normal[f], 0) * of_case.rms_height / drawn.rms_height;
     surface->grooves = &draw->grooves;

@@ -154,26 +154,31 @@ static double field_at(const struct correlation_field *field, double x, double y
 enum { OFFSETS_X = 2 * CELLS_PROFILE - 1, OFFSETS_Y = 2 * CELLS_SURFACE - 1 };
 typedef double cell_offsets[OFFSETS_Y][OFFSETS_X];
 
-/* Fills in the mean correlation of points of two cells that are so many cells apart. */
-static void cells_correlate(const struct low_modes *modes, const struct correlation_field *field,
-                            const struct grid *grid, cell_offsets out) {
+/* Returns the mean correlation of points of two cells of these sides, whose middles are x and y
+ * apart. Cells of a profile have no height. */
+static double cells_correlation(const struct correlation_field *field, double width, double height,
+                                double x, double y) {
     enum { PARTS = 4 };
     static const double PART[PARTS] = {-0.75, -0.25, 0.25, 0.75};
     static const double SHARE[PARTS] = {0.125, 0.375, 0.375, 0.125}; /* of pairs so far apart */
-    const bool profile = grid_is_profile(grid);
+    double mean = 0;
+    for (size_t u = 0; u < PARTS; u++)
+        for (size_t v = 0; v < PARTS; v++)
+            mean +=
+                SHARE[u] * SHARE[v] * field_at(field, x + PART[u] * width, y + PART[v] * height);
+    return mean;
+}
+
+/* Fills in the correlations of cells that are so many cells apart. */
+static void cells_correlate(const struct low_modes *modes, const struct correlation_field *field,
+                            const struct grid *grid, cell_offsets out) {
     const double width = grid->lx / (double)modes->cells_x;
-    const double height = profile ? 0 : grid->ly / (double)modes->cells_y;
+    const double height = grid_is_profile(grid) ? 0 : grid->ly / (double)modes->cells_y;
     const long most_x = (long)modes->cells_x - 1, most_y = (long)modes->cells_y - 1;
     for (long y = -most_y; y <= most_y; y++)
-        for (long x = -most_x; x <= most_x; x++) {
-            double mean = 0;
-            for (size_t u = 0; u < PARTS; u++)
-                for (size_t v = 0; v < (profile ? 1 : PARTS); v++)
-                    mean += SHARE[u] * (profile ? 1 : SHARE[v]) *
-                            field_at(field, ((double)x + PART[u]) * width,
-                                     profile ? 0 : ((double)y + PART[v]) * height);
-            out[y + most_y][x + most_x] = mean;
-        }
+        for (long x = -most_x; x <= most_x; x++)
+            out[y + most_y][x + most_x] =
+                cells_correlation(field, width, height, (double)x * width, (double)y * height);
 }
 
 /* Fills in what the sums over cells, each times its weight, have to do with those of all others. */
@@ -216,10 +221,10 @@ double low_modes_freedom_slopes(const struct low_modes *modes,
                                 double lag, const double *counts) {
     const double length = correlation_length(correlation), most = (double)modes->count;
     const size_t cells = modes->cells_x * modes->cells_y;
-    double wave[LOW_MODES_MOST][LOW_CELLS_MOST], spread[LOW_CELLS_MOST];
+    double wave[LOW_MODES_MOST][LOW_CELLS_MOST] = {{0}}, spread[LOW_CELLS_MOST];
     double trace = 0, squares = 0;
     struct correlation_field field;
-    cell_offsets between;
+    cell_offsets between = {{0}};
     if (isnan(length) || !modes->open)
         return most;
     correlation_field_slopes(correlation, grid, length, lag, &field);

@@ -145,9 +145,10 @@ static void grooves_go_on(void **state) {
     double square = 0;
     for (size_t p = 0; p < (size_t)SIDE * SIDE; p++)
         square += map.z[p] * map.z[p] / (SIDE * SIDE);
-    for (size_t p = 0; p < (size_t)SIDE * SIDE; p++)
-        map.z[p] += 1.5 * sqrt(square) *
-                    cos(2 * M_PI * (0.14 * (double)(p % SIDE) + 0.031 * (double)(p / SIDE)));
+    for (size_t y = 0; y < SIDE; y++)
+        for (size_t x = 0; x < SIDE; x++)
+            map.z[y * SIDE + x] +=
+                1.5 * sqrt(square) * cos(2 * M_PI * (0.14 * (double)x + 0.031 * (double)y));
     cJSON *parameters = held(&map, "{}");
     const double length = json_number_at(parameters, "/surface/like/wavelength", NAN);
     const char *prepared = cJSON_GetStringValue(json_at(parameters, "/surface/like/prepared"));
