@@ -2,6 +2,7 @@
 #include "core/full/linear/gmres.h"
 #include "core/statistics/heights/roughness.h"
 #include "core/statistics/summits/refined.h"
+#include <gsl/gsl_cdf.h>
 #include <math.h>
 
 /* --- surfaces --- */
@@ -351,11 +352,6 @@ double cost_full_loads(const struct grid *grid, const struct full_size *size, do
     return all;
 }
 
-/* Returns the share of a standard normal distribution below x. */
-static double normal_below(double x) {
-    return erfc(-x / sqrt(2)) / 2;
-}
-
 /* Returns what so many jumps take in the mean: each of these seconds, with a variance of `spread`
  * times their square, and no more than a limit. */
 static struct cost_jumps jumps_of(double number, double seconds, double spread, double limit) {
@@ -375,7 +371,7 @@ struct cost_jumps cost_full_jumps(const struct grid *grid, const struct full_siz
     const double slope = rms_slope + JUMP_LOAD * log(pressure / USUAL_LOAD);
     const double least = size->pressures ? fit->pressures_slope : fit->slope;
     const double width = size->pressures ? fit->pressures_width : fit->width;
-    const double number = normal_below((slope - least) / width) * cell_share(grid->lx);
+    const double number = gsl_cdf_ugaussian_P((slope - least) / width) * cell_share(grid->lx);
     struct full_size within = *size;
     within.linear = fit->linear > 0 ? fit->linear : size->linear;
     const struct full_limit each = cost_full_limit(grid, &within, 0);
@@ -452,7 +448,7 @@ double cost_friction_steps(const struct friction_work *of, double steps) {
 struct cost_jumps cost_friction_jumps(const struct friction_work *of, double slid, double limit) {
     const double steep =
         of->coefficient * of->rms_slope * pow(of->pressure / USUAL_LOAD, SLIDE_JUMP_LOAD);
-    const double share = normal_below((steep - SLIDE_JUMP) / SLIDE_JUMP_WIDTH);
+    const double share = gsl_cdf_ugaussian_P((steep - SLIDE_JUMP) / SLIDE_JUMP_WIDTH);
     const bool jump = grid_is_profile(of->grid) && of->load->folds && share > RARE;
     const struct full_limit each = cost_friction_limit(of, 0);
     const double newton = each.newton + cost_friction_size(of).linear * each.linear +

@@ -337,8 +337,7 @@ int map_characterise(struct map_characterisation *out, const struct height_map *
 }
 
 bool map_is_stratified(const struct map_characterisation *of) {
-    const struct plateau_law *law = &of->functional.plateau;
     return of->grooves.families == 0 &&
            !(of->height_fits.list[HEIGHTS_GAUSSIAN].p_value >= GAUSSIAN_LEVEL) &&
-           plateau_is_clear(law);
+           plateau_is_clear(&of->functional.plateau);
 }

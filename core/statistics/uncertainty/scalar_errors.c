@@ -1,4 +1,5 @@
 #include "core/statistics/uncertainty/scalar_errors.h"
+#include "core/surface/plateau_face.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -125,48 +126,28 @@ void scalar_errors_by_law(struct scalar_errors *errors, const struct measured_ma
  * parameters that rest on far heights (F18.61). */
 static const double FEW_VALLEYS = 1.1;
 
-/* Heights of a stratified face in equal steps, with the share of each. */
-enum { STRATA_STEPS = 4000 };
-struct strata {
-    double height[STRATA_STEPS], share[STRATA_STEPS];
-};
-
-static void strata_fill(const struct plateau_law *law, struct strata *out) {
-    static const double REACH = 8;
-    const double low = fmin(law->valley_mean - REACH * law->valley_rms,
-                            law->plateau_mean - REACH * law->plateau_rms);
-    const double high = law->plateau_mean + REACH * law->plateau_rms;
-    const double step = (high - low) / STRATA_STEPS;
-    double above = 1;
-    for (size_t n = 0; n < STRATA_STEPS; n++) {
-        const double next = plateau_ratio(law, low + ((double)n + 1) * step);
-        out->height[n] = low + ((double)n + 0.5) * step;
-        out->share[n] = above - next;
-        above = next;
-    }
-}
-
-static double strata_moment(const struct strata *strata, double mean, double rms, int power) {
-    double moment = 0;
-    for (size_t n = 0; n < STRATA_STEPS; n++)
-        moment += strata->share[n] * pow((strata->height[n] - mean) / rms, power);
-    return moment;
-}
-
 void scalar_errors_by_strata(struct scalar_errors *errors, const struct measured_map *map,
                              const struct plateau_law *law) {
-    struct strata strata;
-    strata_fill(law, &strata);
-    const double mean = strata_moment(&strata, 0, 1, 1);
-    const double rms = sqrt(strata_moment(&strata, mean, 1, 2));
-    const double skewness = strata_moment(&strata, mean, rms, 3);
-    const double kurtosis = strata_moment(&strata, mean, rms, 4);
-    double factor[INFLUENCES] = {0};
-    for (size_t n = 0; n < STRATA_STEPS; n++) {
+    enum { STEPS = 4000 };
+    static const double REACH = 8; /* RMS heights of either */
+    const struct stratified_heights heights = stratified_heights_of(
+        law->valley_rms, law->plateau_rms, law->plateau_mean - law->valley_mean);
+    const struct height_moments moments = stratified_moments(&heights);
+    const double most =
+        (heights.offset + REACH * heights.plateau - heights.mean) / heights.deviation;
+    const double least =
+        (fmin(-REACH * heights.valley, heights.offset - REACH * heights.plateau) - heights.mean) /
+        heights.deviation;
+    const double step = (most - least) / STEPS;
+    double factor[INFLUENCES] = {0}, below = 0;
+    for (size_t n = 0; n < STEPS; n++) {
+        const double next = stratified_cdf(&heights, least + ((double)n + 1) * step);
         double influences[INFLUENCES];
-        influences_at((strata.height[n] - mean) / rms, skewness, kurtosis, influences);
+        influences_at(least + ((double)n + 0.5) * step, moments.skewness, moments.kurtosis,
+                      influences);
         for (size_t q = 0; q < INFLUENCES; q++)
-            factor[q] += strata.share[n] * influences[q] * influences[q];
+            factor[q] += (next - below) * influences[q] * influences[q];
+        below = next;
     }
     law_apply(errors, map, factor);
     errors->ssk *= FEW_VALLEYS * factor[1];

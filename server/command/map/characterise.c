@@ -35,8 +35,7 @@ static const struct option_row OPTIONS[] = {
      "the shortest ones (by the map: where noise, or what the instrument takes, begins)"},
     {"format", 0, OPTION_CHOICE, 0, 0, AT(format), "text|json|svg|study", "text",
      "what to print; svg: the page of --report; study: one of surfaces like the map, stratified "
-     "ones "
-     "where it is"},
+     "ones where it is"},
     {"hold", 0, OPTION_FLAG, 0, 0, AT(hold), NULL, NULL,
      "--format study: its surfaces hold the map itself and go on as its law says"},
     {"all", 0, OPTION_FLAG, 0, 0, AT(all), NULL, NULL,
@@ -405,7 +404,7 @@ const struct command COMMAND_CHARACTERISE = {
     .arguments = "FILE [FILE...]",
     .summary = "parameters and summits of a height map in a file",
     .least = 1,
-    .most = 16,
+    .most = JOINT_PATCHES_MOST,
     .options = OPTIONS,
     .options_size = sizeof(struct characterise_options),
     .run = run,

@@ -24,7 +24,7 @@ int sent_files_take(struct sent_files *out, char *text, size_t size, const char 
     *out = (struct sent_files){.text = text, .size = size};
     size_t at = 0;
     int status = 0;
-    while (status == 0 && names[out->count] != NULL && out->count < SENT_FILES_MOST) {
+    while (status == 0 && names[out->count] != NULL && out->count < JOINT_PATCHES_MOST) {
         size_t of_file;
         status = read_size(&sizes, size - at, &of_file, err);
         if (status == 0) {
@@ -35,7 +35,7 @@ int sent_files_take(struct sent_files *out, char *text, size_t size, const char 
     }
     if (status == 0 && (*sizes != '\0' || names[out->count] != NULL))
         status = error_set(err, ERROR_INPUT, "--sent has a size for each of up to %d files",
-                           (int)SENT_FILES_MOST);
+                           (int)JOINT_PATCHES_MOST);
     return status;
 }
 

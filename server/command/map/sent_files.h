@@ -4,17 +4,16 @@
 #define RUGO_SERVER_COMMAND_MAP_SENT_FILES_H
 
 #include "core/error.h"
+#include "core/statistics/spectra/joint_fit.h"
 #include <stddef.h>
-
-enum { SENT_FILES_MOST = 16 };
 
 /* Initialise with {0}. Names are borrowed; all else lies in `text`. */
 struct sent_files {
     size_t count;
-    const char *names[SENT_FILES_MOST];
-    size_t ends[SENT_FILES_MOST]; /* bytes of text to the end of each */
-    size_t size;                  /* of text; behind the last file stands a study, or nothing */
-    char *text;                   /* owned */
+    const char *names[JOINT_PATCHES_MOST];
+    size_t ends[JOINT_PATCHES_MOST]; /* bytes of text to the end of each */
+    size_t size;                     /* of text; behind the last file stands a study, or nothing */
+    char *text;                      /* owned */
 };
 /* Cuts text[size] into the files of these names, ended by NULL, by their sizes, a list of numbers
  * of bytes such as "120,77"; text belongs to the files from then on. ERROR_INPUT where the sizes

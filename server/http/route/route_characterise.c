@@ -16,7 +16,7 @@ enum {
     MEMORY_FACTOR = 16,       /* of the largest file that is taken */
     MEMORY_LEAST = 512 << 20, /* for small ones */
     ANSWER_MOST = 64 << 20,   /* bytes: tables of large maps are a few */
-    ARGUMENTS_MOST = 40 + SENT_FILES_MOST,
+    ARGUMENTS_MOST = 40 + JOINT_PATCHES_MOST,
     OPTION_SIZE = 320,
 };
 
@@ -56,7 +56,7 @@ struct command_line {
     size_t count;
     const char *arguments[ARGUMENTS_MOST];
     char texts[OPTION_COUNT][OPTION_SIZE];
-    char sent[SENT_FILES_MOST * 21 + 8];
+    char sent[JOINT_PATCHES_MOST * 21 + 8];
 };
 
 /* Words of the query stay in their options whatever they begin with: "--name=-x". */

@@ -37,9 +37,9 @@ static int begin_file(struct reading *reading, const char *name) {
         return error_set(reading->err, ERROR_INPUT,
                          "a file of a form has a name, such as a.x3p, of up to %d bytes",
                          (int)SENT_NAME_MOST);
-    if (form->count == SENT_FILES_MOST)
+    if (form->count == JOINT_PATCHES_MOST)
         return error_set(reading->err, ERROR_INPUT, "more than %d files in a form",
-                         (int)SENT_FILES_MOST);
+                         (int)JOINT_PATCHES_MOST);
     for (size_t f = 0; f < form->count; f++)
         if (strcmp(form->names[f], name) == 0)
             return error_set(reading->err, ERROR_INPUT,

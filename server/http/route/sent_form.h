@@ -3,15 +3,16 @@
 #ifndef RUGO_SERVER_HTTP_ROUTE_SENT_FORM_H
 #define RUGO_SERVER_HTTP_ROUTE_SENT_FORM_H
 
+#include "core/statistics/spectra/joint_fit.h"
 #include "server/http/exchange.h"
 
-enum { SENT_FILES_MOST = 16, SENT_NAME_MOST = 300 };
+enum { SENT_NAME_MOST = 300 };
 
 /* Initialise with {0}. */
 struct sent_form {
     size_t count;
-    char *names[SENT_FILES_MOST]; /* owned; no two alike */
-    size_t sizes[SENT_FILES_MOST];
+    char *names[JOINT_PATCHES_MOST]; /* owned; no two alike */
+    size_t sizes[JOINT_PATCHES_MOST];
 };
 /* Whether the body is a form, by its media type. */
 bool sent_form_is(const struct exchange *exchange);
