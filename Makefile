@@ -73,7 +73,7 @@ BELOW_jobs   = jobs schema core
 BELOW_worker = worker jobs schema core
 BELOW_server = server worker jobs schema core
 MAIN     = server/command/main.c
-sources  = $(filter-out $(MAIN) core/example.c,$(wildcard $(1)/*.c $(1)/*/*.c $(1)/*/*/*.c))
+sources  = $(filter-out $(MAIN) core/example.c,$(wildcard $(1)/*.c $(1)/*/*.c $(1)/*/*/*.c $(1)/*/*/*/*.c))
 objects  = $(patsubst %,$(BUILD)/%.o,$(1))
 archive  = $(patsubst %,$(BUILD)/lib%.a,$(1))
 

@@ -1,6 +1,6 @@
 #include "core/error.h"
-#include "core/plain_text.h"
-#include "core/point_locale.h"
+#include "core/file/plain_text.h"
+#include "core/file/point_locale.h"
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* Implements the height maps of rugo.h. */
+#include "core/file/whole_file.h"
 #include "core/map/height_map_file.h"
 #include "core/rugo_shared.h"
-#include "core/whole_file.h"
 #include <errno.h>
 #include <stdint.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* Implements the statistics of open maps of rugo.h. */
-#include "core/map/detrend.h"
+#include "core/map/preparation/detrend.h"
 #include "core/rugo_shared.h"
 #include "core/statistics/heights/areal.h"
 #include "core/statistics/heights/roughness.h"

@@ -1,6 +1,6 @@
 #include "core/instrument/unit_of.h"
+#include "core/file/plain_text.h"
 #include "core/map/length_unit.h"
-#include "core/plain_text.h"
 #include <string.h>
 
 bool unit_is_length(const char *name, double *metres) {

@@ -1,5 +1,5 @@
 #include "core/map/form.h"
-#include "core/map/detrend.h"
+#include "core/map/preparation/detrend.h"
 #include "core/statistics/spectra/spectrum_fit.h"
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_sf_bessel.h>

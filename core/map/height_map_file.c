@@ -1,7 +1,7 @@
 #include "core/map/height_map_file.h"
+#include "core/file/point_locale.h"
 #include "core/map/height_map.h"
 #include "core/map/height_map_npy.h"
-#include "core/point_locale.h"
 #include <errno.h>
 #include <math.h>
 #include <stdint.h>

@@ -1,5 +1,5 @@
 #include "core/nodal/step_folder.h"
-#include "core/file.h"
+#include "core/file/file.h"
 #include "core/nodal/map_vtu.h"
 #include "core/nodal/node_table.h"
 #include <stdlib.h>

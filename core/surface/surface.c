@@ -1,7 +1,7 @@
 #include "core/surface/surface.h"
 #include "core/surface/counter_face.h"
 #include "core/surface/grooves/grooves.h"
-#include "core/surface/nongaussian.h"
+#include "core/surface/iteration/nongaussian.h"
 #include "core/surface/plateau_face.h"
 #include "core/surface/surface_options.h"
 #include "core/surface/transform.h"

@@ -3,7 +3,7 @@
 #define RUGO_JOBS_CONTACT_COATED_THEORY_H
 
 #include "core/surface/modes.h"
-#include "jobs/contact/contact_case.h"
+#include "jobs/contact/case/contact_case.h"
 
 /* Returns what loads and pressures p/(E* h') are to be multiplied by, before they are those of a
  * block without a coating: the deviation of the pressure of full contact there, over that on the

@@ -1,13 +1,13 @@
 /* The kind "contact": rough elastic blocks pressed on a rigid flat, by one or several models
  * (model.h). */
-#include "jobs/contact/contact_case_read.h"
+#include "jobs/contact/case/contact_case_read.h"
+#include "jobs/contact/case/contact_loads.h"
+#include "jobs/contact/case/contact_tolerance.h"
 #include "jobs/contact/contact_curves.h"
-#include "jobs/contact/contact_loads.h"
 #include "jobs/contact/contact_measure.h"
 #include "jobs/contact/contact_scalars.h"
 #include "jobs/contact/contact_scene.h"
 #include "jobs/contact/contact_steps.h"
-#include "jobs/contact/contact_tolerance.h"
 #include "jobs/contact/quantity/quantity_scalars.h"
 #include "jobs/contact/target/contact_target.h"
 #include "schema/json/field.h"

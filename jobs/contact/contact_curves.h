@@ -2,7 +2,7 @@
 #ifndef RUGO_JOBS_CONTACT_CONTACT_CURVES_H
 #define RUGO_JOBS_CONTACT_CONTACT_CURVES_H
 
-#include "jobs/contact/contact_tally.h"
+#include "jobs/contact/tally/contact_tally.h"
 #include "schema/result/result.h"
 
 /* Appends all curves to the result, whose arena owns them, those of one quantity together: the

@@ -5,7 +5,7 @@
 #define RUGO_JOBS_CONTACT_CONTACT_ERRORS_H
 
 #include "jobs/contact/contact_error.h"
-#include "jobs/contact/contact_tally.h"
+#include "jobs/contact/tally/contact_tally.h"
 #include "schema/result/result.h"
 
 /* Estimates the error of a measure below MEASURE_PAIRED at every load, or

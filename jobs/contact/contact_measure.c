@@ -1,7 +1,7 @@
 #include "jobs/contact/contact_measure.h"
 #include "core/contact/stretch.h"
 #include "core/statistics/fit.h"
-#include "jobs/contact/contact_case.h"
+#include "jobs/contact/case/contact_case.h"
 #include "jobs/contact/quantity/quantity.h"
 #include <math.h>
 #include <stdio.h>

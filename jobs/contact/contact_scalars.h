@@ -4,7 +4,7 @@
 #define RUGO_JOBS_CONTACT_CONTACT_SCALARS_H
 
 #include "core/statistics/heights/roughness.h"
-#include "jobs/contact/contact_tally.h"
+#include "jobs/contact/tally/contact_tally.h"
 #include "jobs/realisations.h"
 #include "schema/result/result.h"
 

@@ -3,7 +3,7 @@
 #define RUGO_JOBS_CONTACT_CONTACT_STEPS_H
 
 #include "core/nodal/nodal_step.h"
-#include "jobs/contact/contact_case.h"
+#include "jobs/contact/case/contact_case.h"
 
 /* As press_steps of a kind has it, of a struct contact_case. ERROR_INPUT for a model that the case
  * lacks; ERROR_NUMERIC, with the load, where a model finds no solution: the steps before have been

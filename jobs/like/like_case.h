@@ -3,7 +3,7 @@
 #ifndef RUGO_JOBS_LIKE_LIKE_CASE_H
 #define RUGO_JOBS_LIKE_LIKE_CASE_H
 
-#include "core/map/detrend.h"
+#include "core/map/preparation/detrend.h"
 #include "core/statistics/patch.h"
 #include "core/statistics/spectra/joint_fit.h"
 #include "jobs/like/like_parameters.h"

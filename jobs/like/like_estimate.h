@@ -3,7 +3,7 @@
 #ifndef RUGO_JOBS_LIKE_LIKE_ESTIMATE_H
 #define RUGO_JOBS_LIKE_LIKE_ESTIMATE_H
 
-#include "core/map/detrend.h"
+#include "core/map/preparation/detrend.h"
 #include "core/statistics/patch.h"
 #include "core/statistics/spectra/spectrum_fit.h"
 #include "core/surface/heights.h"

@@ -3,7 +3,7 @@
 #ifndef RUGO_JOBS_LIKE_LIKE_EXPECTATION_H
 #define RUGO_JOBS_LIKE_LIKE_EXPECTATION_H
 
-#include "core/map/detrend.h"
+#include "core/map/preparation/detrend.h"
 #include "core/statistics/spectra/map_spectrum.h"
 
 struct like_expectation;

@@ -2,8 +2,8 @@
 #ifndef RUGO_JOBS_LIKE_LIKE_FIT_H
 #define RUGO_JOBS_LIKE_LIKE_FIT_H
 
-#include "core/map/detrend.h"
 #include "core/map/height_map.h"
+#include "core/map/preparation/detrend.h"
 #include "jobs/like/like_parameters.h"
 #include <cjson/cJSON.h>
 

@@ -1,6 +1,6 @@
 /* The rows of /surface/like/... */
 #include "jobs/like/like_parameters.h"
-#include "core/map/detrend.h"
+#include "core/map/preparation/detrend.h"
 #include "core/statistics/patch.h"
 #include "core/statistics/spectra/joint_fit.h"
 

@@ -2,7 +2,7 @@
 #ifndef RUGO_JOBS_LIKE_LIKE_SPECTRUM_H
 #define RUGO_JOBS_LIKE_LIKE_SPECTRUM_H
 
-#include "core/map/detrend.h"
+#include "core/map/preparation/detrend.h"
 #include "core/statistics/spectra/map_spectrum.h"
 #include "core/surface/spectrum.h"
 #include "jobs/like/like_expectation.h"

@@ -3,7 +3,7 @@
 #ifndef RUGO_JOBS_MAPS_MAP_ARTEFACT_WORDS_H
 #define RUGO_JOBS_MAPS_MAP_ARTEFACT_WORDS_H
 
-#include "core/map/preparation.h"
+#include "core/map/preparation/preparation.h"
 
 enum { ARTEFACT_SENTENCES_MOST = 5, ARTEFACT_SENTENCE_SIZE = 240, ARTEFACT_NAMES_SIZE = 80 };
 

@@ -3,7 +3,7 @@
 #define RUGO_JOBS_MAPS_MAP_CHARACTERISATION_H
 
 #include "core/map/form.h"
-#include "core/map/preparation.h"
+#include "core/map/preparation/preparation.h"
 #include "core/statistics/grooves/map_grooves.h"
 #include "core/statistics/heights/areal.h"
 #include "core/statistics/heights/height_fit.h"

@@ -3,7 +3,7 @@
 #define RUGO_JOBS_MAPS_MAP_PREPARATION_H
 
 #include "core/instrument/formats.h"
-#include "core/map/preparation.h"
+#include "core/map/preparation/preparation.h"
 
 /* A file of a map; borrows. */
 struct map_source {

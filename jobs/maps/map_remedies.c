@@ -1,5 +1,5 @@
 #include "jobs/maps/map_remedies.h"
-#include "core/map/line_losses.h"
+#include "core/map/preparation/line_losses.h"
 #include "core/statistics/heights/roughness.h"
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #ifndef RUGO_JOBS_MAPS_MAP_REMEDIES_H
 #define RUGO_JOBS_MAPS_MAP_REMEDIES_H
 
-#include "core/map/preparation.h"
+#include "core/map/preparation/preparation.h"
 #include "core/statistics/heights/areal.h"
 #include "core/statistics/uncertainty/map_directions.h"
 #include "jobs/maps/map_functional.h"

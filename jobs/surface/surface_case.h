@@ -2,7 +2,7 @@
 #ifndef RUGO_JOBS_SURFACE_SURFACE_CASE_H
 #define RUGO_JOBS_SURFACE_SURFACE_CASE_H
 
-#include "core/map/extend.h"
+#include "core/map/preparation/extend.h"
 #include "core/surface/counter_face.h"
 #include "core/surface/grooves/grooves.h"
 #include "core/surface/height_moments.h"
@@ -12,7 +12,8 @@
 #include "schema/study/values.h"
 #include <math.h>
 
-/* A measured patch that surfaces hold in their first rows and columns (core/map/extend.h). */
+/* A measured patch that surfaces hold in their first rows and columns
+ * (core/map/preparation/extend.h). */
 struct held_patch {
     struct height_map map;       /* owned, in lambda_s */
     enum detrend trend;          /* that was taken out of it */

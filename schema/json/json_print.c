@@ -2,7 +2,7 @@
  * within a relative 2^-52, which may be another double. */
 #include "schema/json/json.h"
 
-#include "core/memory_file.h"
+#include "core/file/memory_file.h"
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>

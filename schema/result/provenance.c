@@ -1,5 +1,5 @@
 #include "schema/result/provenance.h"
-#include "core/plain_text.h"
+#include "core/file/plain_text.h"
 #include "schema/json/field.h"
 
 static void put_known(FILE *file, const char *before, const cJSON *object, const char *key) {

@@ -1,6 +1,6 @@
 /* Publication: writes a case's result as rows for the views, its curves as bytes, its report as
  * JSON. */
-#include "core/memory_file.h"
+#include "core/file/memory_file.h"
 #include "schema/result/curve_bytes.h"
 #include "schema/result/packed_bytes.h"
 #include "schema/result/result_json.h"

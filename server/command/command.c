@@ -1,5 +1,5 @@
 #include "server/command/command.h"
-#include "core/plain_text.h"
+#include "core/file/plain_text.h"
 #include "jobs/kind.h"
 #include "server/command/input_file.h"
 #include "server/command/map/like_study.h"

@@ -1,5 +1,5 @@
 #include "server/command/input_file.h"
-#include "core/whole_file.h"
+#include "core/file/whole_file.h"
 #include <string.h>
 #include <unistd.h>
 

@@ -1,6 +1,6 @@
 #include "server/command/output_file.h"
-#include "core/file.h"
-#include "core/memory_file.h"
+#include "core/file/file.h"
+#include "core/file/memory_file.h"
 #include "server/command/rasterise.h"
 #include "server/show/map/map_png.h"
 #include <errno.h>

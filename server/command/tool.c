@@ -1,5 +1,5 @@
 #include "server/command/tool.h"
-#include "core/whole_file.h"
+#include "core/file/whole_file.h"
 #include "server/child.h"
 #include <errno.h>
 #include <stdio.h>

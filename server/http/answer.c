@@ -1,5 +1,5 @@
 /* Answers of the routes: documents, texts, problems. */
-#include "core/plain_text.h"
+#include "core/file/plain_text.h"
 #include "core/rugo.h"
 #include "schema/json/field.h"
 #include "server/http/compress.h"

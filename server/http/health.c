@@ -1,6 +1,6 @@
 /* Whether a service can do its work, and its figures as Prometheus reads them. */
 #include "server/http/health.h"
-#include "core/memory_file.h"
+#include "core/file/memory_file.h"
 #include "server/http/service.h"
 #include "worker/clock.h"
 #include <inttypes.h>

@@ -1,6 +1,6 @@
 #include "server/http/service.h"
-#include "core/file.h"
-#include "core/part_file.h"
+#include "core/file/file.h"
+#include "core/file/part_file.h"
 #include "server/http/waiting_room.h"
 #include "worker/checker.h"
 #include "worker/clock.h"

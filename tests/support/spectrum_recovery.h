@@ -3,7 +3,7 @@
 #ifndef RUGO_TESTS_SUPPORT_SPECTRUM_RECOVERY_H
 #define RUGO_TESTS_SUPPORT_SPECTRUM_RECOVERY_H
 
-#include "core/map/detrend.h"
+#include "core/map/preparation/detrend.h"
 #include "core/statistics/spectra/spectrum_fit.h"
 #include "core/statistics/uncertainty/map_directions.h"
 #include "core/surface/surface.h"

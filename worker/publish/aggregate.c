@@ -1,5 +1,5 @@
 #include "worker/publish/aggregate.h"
-#include "core/memory_file.h"
+#include "core/file/memory_file.h"
 #include "jobs/merger.h"
 #include "jobs/realisations.h"
 #include "jobs/units.h"

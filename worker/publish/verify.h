@@ -2,7 +2,7 @@
 #ifndef RUGO_WORKER_PUBLISH_VERIFY_H
 #define RUGO_WORKER_PUBLISH_VERIFY_H
 
-#include "schema/store/store_verify.h"
+#include "schema/store/upkeep/store_verify.h"
 
 struct verify_report {
     struct verify_counts counts;

@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 #include "core/map/artefacts/differences.h"
-#include "core/map/scan_lines.h"
+#include "core/map/preparation/scan_lines.h"
 
 #define LINE_OFFSETS_LEVEL 1e-4 /* of the test */
 

@@ -1,5 +1,5 @@
 #include "core/map/artefacts/map_artefacts.h"
-#include "core/map/despike.h"
+#include "core/map/preparation/despike.h"
 #include "core/statistics/grooves/map_grooves.h"
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #include "core/statistics/heights/functional.h"
 #include "core/statistics/lanes.h"
 #include "core/statistics/summits/hills.h"
-#include "core/surface/rank.h"
+#include "core/surface/iteration/rank.h"
 #include "core/vectors.h"
 #include <math.h>
 #include <stdlib.h>

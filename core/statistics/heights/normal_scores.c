@@ -1,5 +1,5 @@
 #include "core/statistics/heights/normal_scores.h"
-#include "core/surface/target_heights.h"
+#include "core/surface/iteration/target_heights.h"
 #include <math.h>
 #include <stdlib.h>
 

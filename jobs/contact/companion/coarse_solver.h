@@ -2,7 +2,7 @@
 #ifndef RUGO_JOBS_CONTACT_COMPANION_COARSE_SOLVER_H
 #define RUGO_JOBS_CONTACT_COMPANION_COARSE_SOLVER_H
 
-#include "jobs/contact/contact_case.h"
+#include "jobs/contact/case/contact_case.h"
 
 /* Called before each load: non-zero stops. */
 struct contact_stopper {

@@ -10,7 +10,7 @@
 #include "core/surface/surface.h"
 #include "jobs/contact/companion/coarse_solver.h"
 #include "jobs/contact/contact_error.h"
-#include "jobs/contact/contact_tally.h"
+#include "jobs/contact/tally/contact_tally.h"
 #include "schema/result/result.h"
 
 /* The surface of a realisation; all borrowed. */

@@ -9,8 +9,8 @@
  * are so cheap that the first realisations have many, and the difference a small statistical error.
  */
 #include "core/cost.h"
+#include "jobs/contact/case/contact_loads.h"
 #include "jobs/contact/companion/companion.h"
-#include "jobs/contact/contact_loads.h"
 #include "jobs/contact/contact_measure.h"
 #include <gsl/gsl_cdf.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #ifndef RUGO_JOBS_CONTACT_COMPANION_COMPANION_LAW_H
 #define RUGO_JOBS_CONTACT_COMPANION_COMPANION_LAW_H
 
-#include "jobs/contact/contact_tally.h"
+#include "jobs/contact/tally/contact_tally.h"
 
 /* Estimates a measure of a model on the finest level under the other law less the measure, at every
  * load, into out[load_count]; NaN where it is not known. False, and nothing in out, for a measure

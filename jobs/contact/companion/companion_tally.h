@@ -3,7 +3,7 @@
 #ifndef RUGO_JOBS_CONTACT_COMPANION_COMPANION_TALLY_H
 #define RUGO_JOBS_CONTACT_COMPANION_COMPANION_TALLY_H
 
-#include "jobs/contact/contact_sums.h"
+#include "jobs/contact/tally/contact_sums.h"
 
 struct companion_tally {
     double *values; /* owned: by draw, series, measure below measure_paired and load; NaN: none */

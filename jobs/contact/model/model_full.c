@@ -2,7 +2,7 @@
 #include "core/contact/patches.h"
 #include "core/cost.h"
 #include "core/full/full.h"
-#include "jobs/contact/contact_case.h"
+#include "jobs/contact/case/contact_case.h"
 #include <math.h>
 #include <stdlib.h>
 

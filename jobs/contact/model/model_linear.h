@@ -2,7 +2,7 @@
 #ifndef RUGO_JOBS_CONTACT_MODEL_MODEL_LINEAR_H
 #define RUGO_JOBS_CONTACT_MODEL_MODEL_LINEAR_H
 
-#include "jobs/contact/contact_case.h"
+#include "jobs/contact/case/contact_case.h"
 
 /* Functions of a struct contact_model. */
 double linear_bytes(const struct contact_case *one_case, size_t model, const struct grid *grid);

@@ -8,7 +8,7 @@
 #define RUGO_JOBS_CONTACT_QUANTITY_QUANTITY_H
 
 #include "core/cost.h"
-#include "jobs/contact/contact_case.h"
+#include "jobs/contact/case/contact_case.h"
 
 /* All quantities: NAME and how many measures it has. NAME_QUANTITY is its struct, NAME_PARAMETERS
  * its table of parameters. Partial results hold measures in this order, so that an entry comes

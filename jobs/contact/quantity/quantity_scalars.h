@@ -2,7 +2,7 @@
 #ifndef RUGO_JOBS_CONTACT_QUANTITY_QUANTITY_SCALARS_H
 #define RUGO_JOBS_CONTACT_QUANTITY_QUANTITY_SCALARS_H
 
-#include "jobs/contact/contact_tally.h"
+#include "jobs/contact/tally/contact_tally.h"
 #include "schema/result/result.h"
 
 /* Appends them, of the first model on its finest level, with their standard errors; those that no

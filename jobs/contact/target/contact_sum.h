@@ -4,7 +4,7 @@
 #define RUGO_JOBS_CONTACT_TARGET_CONTACT_SUM_H
 
 #include "jobs/contact/contact_errors.h"
-#include "jobs/contact/contact_tally.h"
+#include "jobs/contact/tally/contact_tally.h"
 #include "jobs/kind.h"
 #include "jobs/target.h"
 

@@ -1,5 +1,5 @@
 #include "jobs/contact/target/contact_target.h"
-#include "jobs/contact/contact_case.h"
+#include "jobs/contact/case/contact_case.h"
 #include "jobs/contact/model/model.h"
 #include "jobs/contact/target/contact_sum.h"
 #include "jobs/target.h"

@@ -1,5 +1,5 @@
 #include "server/command/cluster/pilots.h"
-#include "core/memory_file.h"
+#include "core/file/memory_file.h"
 #include "server/command/command.h"
 #include "server/command/exit_status.h"
 #include "server/command/input_file.h"

@@ -1,5 +1,5 @@
 #include "server/command/cluster/slurm_inside.h"
-#include "core/memory_file.h"
+#include "core/file/memory_file.h"
 #include "server/command/command.h"
 #include "server/command/tool.h"
 #include "worker/clock.h"

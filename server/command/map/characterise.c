@@ -7,7 +7,7 @@
 #include "server/command/map/map_output.h"
 #include "server/command/map/together.h"
 #include "server/command/output_file.h"
-#include "server/show/map/map_figure.h"
+#include "server/show/map/figure/map_figure.h"
 #include "server/show/map/map_report.h"
 #include "server/show/map/map_summary.h"
 #include <math.h>

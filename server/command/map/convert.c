@@ -1,5 +1,5 @@
 /* rugo convert FILE OUT: a height map in a file, prepared, into another file. */
-#include "core/file.h"
+#include "core/file/file.h"
 #include "server/command/command.h"
 #include "server/command/map/map_file.h"
 

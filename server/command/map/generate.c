@@ -1,6 +1,6 @@
 /* rugo generate STUDY.json: surfaces of a study, or a block meshed on one and pressed, to look at
  * or to use elsewhere. */
-#include "core/file.h"
+#include "core/file/file.h"
 #include "core/map/height_map_file.h"
 #include "jobs/kind.h"
 #include "jobs/surface/realisation_map.h"

@@ -1,8 +1,8 @@
 #include "server/command/map/gwyddion.h"
-#include "core/file.h"
+#include "core/file/file.h"
+#include "core/file/plain_text.h"
+#include "core/file/whole_file.h"
 #include "core/instrument/foreign.h"
-#include "core/plain_text.h"
-#include "core/whole_file.h"
 #include "server/bounded_program.h"
 #include <ctype.h>
 #include <errno.h>

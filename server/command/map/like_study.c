@@ -1,6 +1,6 @@
 #include "server/command/map/like_study.h"
 #include "core/map/height_map.h"
-#include "core/map/preparation.h"
+#include "core/map/preparation/preparation.h"
 #include "core/statistics/spectra/joint_fit.h"
 #include "jobs/kind.h"
 #include "jobs/like/like_fit.h"

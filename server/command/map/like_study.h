@@ -3,7 +3,7 @@
 #ifndef RUGO_SERVER_COMMAND_MAP_LIKE_STUDY_H
 #define RUGO_SERVER_COMMAND_MAP_LIKE_STUDY_H
 
-#include "core/map/preparation.h"
+#include "core/map/preparation/preparation.h"
 #include "core/statistics/heights/plateau.h"
 #include "server/command/map/map_file.h"
 #include <cjson/cJSON.h>

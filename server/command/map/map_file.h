@@ -5,7 +5,7 @@
 
 #include "core/instrument/formats.h"
 #include "core/map/height_map_file.h"
-#include "core/map/preparation_words.h"
+#include "core/map/preparation/preparation_words.h"
 #include "server/command/map/sent_files.h"
 #include "server/command/options.h"
 

@@ -1,5 +1,5 @@
 #include "server/command/map/map_output.h"
-#include "core/file.h"
+#include "core/file/file.h"
 #include "core/map/height_map_file.h"
 #include <string.h>
 

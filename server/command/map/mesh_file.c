@@ -1,5 +1,5 @@
 #include "server/command/map/mesh_file.h"
-#include "core/file.h"
+#include "core/file/file.h"
 #include "core/full/file/mesh_msh.h"
 #include "core/nodal/step_folder.h"
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* `rugo prune`: deletes studies that ended long ago, for a timer to call. */
-#include "core/plain_text.h"
+#include "core/file/plain_text.h"
 #include "schema/json/field.h"
 #include "server/command/access/access.h"
 #include <stdio.h>

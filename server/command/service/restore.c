@@ -1,5 +1,5 @@
 /* `rugo restore`: a backup becomes the store, and what was there is kept in a folder beside it. */
-#include "schema/store/store_restore.h"
+#include "schema/store/upkeep/store_restore.h"
 #include "server/command/command.h"
 #include "server/command/service/kept_name.h"
 #include "server/command/service/verify.h"

@@ -2,7 +2,7 @@
 #ifndef RUGO_SERVER_COMMAND_SERVICE_SECRET_FILE_H
 #define RUGO_SERVER_COMMAND_SERVICE_SECRET_FILE_H
 
-#include "core/whole_file.h"
+#include "core/file/whole_file.h"
 #include <stdbool.h>
 #include <sys/stat.h>
 

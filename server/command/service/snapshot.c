@@ -1,5 +1,5 @@
 /* `rugo snapshot`: a consistent copy of the results database, also while others write to it. */
-#include "core/file.h"
+#include "core/file/file.h"
 #include "server/command/access/access.h"
 #include "server/command/service/kept_name.h"
 #include "server/command/service/verify.h"

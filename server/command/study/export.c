@@ -1,5 +1,5 @@
 /* `rugo export`: all of a study in one archive or folder, fit to be published beside a paper. */
-#include "core/file.h"
+#include "core/file/file.h"
 #include "server/command/access/access.h"
 #include "server/command/output_file.h"
 #include "server/command/study/export_folder.h"

@@ -1,5 +1,5 @@
 #include "server/command/study/kept_nodes.h"
-#include "core/file.h"
+#include "core/file/file.h"
 #include "core/nodal/step_folder.h"
 #include "jobs/surface/realisation_map.h"
 #include "jobs/surface/surface_case.h"

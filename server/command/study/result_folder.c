@@ -1,6 +1,6 @@
 #include "server/command/study/result_folder.h"
-#include "core/file.h"
-#include "core/whole_file.h"
+#include "core/file/file.h"
+#include "core/file/whole_file.h"
 #include "schema/json/json.h"
 #include <dirent.h>
 #include <errno.h>

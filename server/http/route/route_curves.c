@@ -1,6 +1,6 @@
 /* Curves and reports over HTTP. A study of ten thousand cases has gigabytes of them: as JSON they
  * are read and sent case by case, and end early when the server does. */
-#include "core/memory_file.h"
+#include "core/file/memory_file.h"
 #include "schema/result/csv.h"
 #include "schema/result/result_json.h"
 #include "server/http/accept.h"

@@ -1,7 +1,7 @@
 /* A realisation of a study as a map, or its nodes under loads: computed when it is asked for, a few
  * at a time, and the same for ever. */
+#include "core/file/memory_file.h"
 #include "core/map/height_map_file.h"
-#include "core/memory_file.h"
 #include "core/nodal/node_table.h"
 #include "core/nodal/step_folder.h"
 #include "jobs/surface/realisation_map.h"

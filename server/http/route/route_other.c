@@ -1,5 +1,5 @@
 /* Health, metrics, snapshot, and the schema of studies. */
-#include "core/part_file.h"
+#include "core/file/part_file.h"
 #include "jobs/kind.h"
 #include "schema/json/field.h"
 #include "server/http/health.h"

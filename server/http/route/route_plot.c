@@ -1,5 +1,5 @@
 /* Pictures and tables of a study of the store over HTTP. */
-#include "core/memory_file.h"
+#include "core/file/memory_file.h"
 #include "server/http/accept.h"
 #include "server/http/route/route.h"
 #include "server/show/plot/picture.h"

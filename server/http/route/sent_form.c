@@ -1,5 +1,5 @@
 #include "server/http/route/sent_form.h"
-#include "core/memory_file.h"
+#include "core/file/memory_file.h"
 #include "server/http/route/route.h"
 #include <stdio.h>
 #include <stdlib.h>

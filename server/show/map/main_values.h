@@ -3,8 +3,8 @@
 #ifndef RUGO_SERVER_SHOW_MAP_MAIN_VALUES_H
 #define RUGO_SERVER_SHOW_MAP_MAIN_VALUES_H
 
-#include "server/show/map/map_figure.h"
-#include "server/show/map/map_figure_internal.h"
+#include "server/show/map/figure/map_figure.h"
+#include "server/show/map/figure/map_figure_internal.h"
 
 enum { MAIN_VALUES_MOST = 32, MAIN_VALUE_SIZE = 96 };
 

@@ -1,8 +1,8 @@
 #include "server/show/map/map_verdicts.h"
 #include "jobs/maps/map_artefact_words.h"
+#include "server/show/map/figure/map_figure_internal.h"
 #include "server/show/map/groove_report.h"
 #include "server/show/map/main_values.h"
-#include "server/show/map/map_figure_internal.h"
 #include "server/show/plot/plot_words.h"
 #include <math.h>
 #include <stdarg.h>

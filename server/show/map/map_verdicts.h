@@ -4,7 +4,7 @@
 #ifndef RUGO_SERVER_SHOW_MAP_MAP_VERDICTS_H
 #define RUGO_SERVER_SHOW_MAP_MAP_VERDICTS_H
 
-#include "server/show/map/map_figure.h"
+#include "server/show/map/figure/map_figure.h"
 
 enum { VERDICTS_MOST = 18, VERDICT_SIZE = 240 };
 

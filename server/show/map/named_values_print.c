@@ -1,5 +1,5 @@
+#include "core/file/memory_file.h"
 #include "core/map/length_unit.h"
-#include "core/memory_file.h"
 #include "schema/json/json.h"
 #include "server/show/map/named_values.h"
 #include "server/show/plot/plot_words.h"

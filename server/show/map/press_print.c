@@ -1,6 +1,6 @@
 #include "server/show/map/press_print.h"
 #include "core/map/length_unit.h"
-#include "jobs/maps/map_press_curves.h"
+#include "jobs/maps/press/map_press_curves.h"
 #include "schema/json/json.h"
 #include "server/show/map/press_slip.h"
 #include "server/show/quantity.h"

@@ -2,8 +2,8 @@
 #ifndef RUGO_SERVER_SHOW_MAP_PRESS_REPORT_H
 #define RUGO_SERVER_SHOW_MAP_PRESS_REPORT_H
 
-#include "core/map/preparation.h"
-#include "jobs/maps/map_press.h"
+#include "core/map/preparation/preparation.h"
+#include "jobs/maps/press/map_press.h"
 
 /* The loads of one map; borrows all. */
 struct press_report {

@@ -1,5 +1,5 @@
 #include "server/show/plot/picture.h"
-#include "core/memory_file.h"
+#include "core/file/memory_file.h"
 #include "server/show/plot/plot_density.h"
 #include "server/show/plot/plot_layout.h"
 #include "server/show/table/case_table.h"

@@ -1,5 +1,5 @@
 #include "server/show/plot/plot_pen.h"
-#include "core/memory_file.h"
+#include "core/file/memory_file.h"
 #include "schema/json/json.h"
 #include "schema/result/result_json.h"
 #include <stdio.h>

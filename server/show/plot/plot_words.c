@@ -1,5 +1,5 @@
 #include "server/show/plot/plot_words.h"
-#include "core/plain_text.h"
+#include "core/file/plain_text.h"
 #include "jobs/kind.h"
 #include "schema/study/parameter.h"
 #include "server/show/table/shown_cases.h"

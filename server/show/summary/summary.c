@@ -1,5 +1,5 @@
 #include "server/show/summary/summary.h"
-#include "core/plain_text.h"
+#include "core/file/plain_text.h"
 #include "schema/result/result.h"
 #include "schema/result/view.h"
 #include "server/show/summary/summary_cells.h"

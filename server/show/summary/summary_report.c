@@ -1,5 +1,5 @@
 /* Speed against error. */
-#include "core/plain_text.h"
+#include "core/file/plain_text.h"
 #include "server/show/summary/report_series.h"
 #include "server/show/summary/summary.h"
 #include "server/show/summary/summary_cells.h"

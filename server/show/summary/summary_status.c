@@ -1,5 +1,5 @@
 #include "server/show/summary/summary_status.h"
-#include "core/plain_text.h"
+#include "core/file/plain_text.h"
 #include "schema/json/field.h"
 #include "server/show/summary/summary_cells.h"
 #include <math.h>

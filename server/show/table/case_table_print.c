@@ -1,5 +1,5 @@
-#include "core/memory_file.h"
-#include "core/plain_text.h"
+#include "core/file/memory_file.h"
+#include "core/file/plain_text.h"
 #include "schema/json/json.h"
 #include "schema/result/provenance.h"
 #include "schema/result/result_json.h"

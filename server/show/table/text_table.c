@@ -1,6 +1,6 @@
 #include "server/show/table/text_table.h"
 #include "core/error.h"
-#include "core/plain_text.h"
+#include "core/file/plain_text.h"
 #include <ctype.h>
 #include <math.h>
 #include <stdarg.h>

@@ -8,7 +8,7 @@
  *   bench_nongaussian drift [n]  n (16) surfaces: C = 1, H = 0.8, ratio 4, more iterations, against
  *                                6000 plain ones */
 #include "core/statistics/summits/summits.h"
-#include "core/surface/rank.h"
+#include "core/surface/iteration/rank.h"
 #include "core/surface/surface.h"
 #include "tests/support/timing.h"
 #include <math.h>

@@ -1,7 +1,7 @@
 /* Protects: a map with a hole is prepared by all steps (a crop without giving memory back), or
  * refused for want of memory, whichever allocation fails; nothing leaks, and the next attempt gives
  * the same. */
-#include "core/map/preparation_words.h"
+#include "core/map/preparation/preparation_words.h"
 #include "tests/support/check.h"
 #include "tests/support/failing/each_allocation.h"
 #include <stdlib.h>

@@ -5,8 +5,8 @@
 #include "jobs/maps/map_characterisation.h"
 #include "jobs/maps/map_counter.h"
 #include "jobs/maps/map_preparation.h"
-#include "jobs/maps/map_press_curves.h"
-#include "jobs/maps/map_press_error.h"
+#include "jobs/maps/press/map_press_curves.h"
+#include "jobs/maps/press/map_press_error.h"
 #include "tests/support/failing/each_allocation.h"
 #include "tests/support/noise.h"
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #include "tests/support/check.h"
 
 #include "schema/store/store.h"
-#include "schema/store/store_verify.h"
+#include "schema/store/upkeep/store_verify.h"
 #include "schema/study/study_reader.h"
 #include "tests/support/failing/each_allocation.h"
 #include "tests/support/failing/failing_allocator.h"

@@ -3,7 +3,7 @@
  */
 #include "tests/support/check.h"
 
-#include "core/memory_file.h"
+#include "core/file/memory_file.h"
 #include "schema/result/csv.h"
 #include "tests/support/failing/each_allocation.h"
 #include "tests/unit/worker/small_study.h"

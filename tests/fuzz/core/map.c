@@ -1,7 +1,7 @@
 /* Height maps out of files, the format by the first byte: what is read is written and read again as
  * the same heights. */
+#include "core/file/memory_file.h"
 #include "core/map/height_map_file.h"
-#include "core/memory_file.h"
 #include "tests/support/fuzz/fuzz.h"
 
 static void cross(const struct height_map *map, enum height_map_format format) {

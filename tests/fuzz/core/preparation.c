@@ -1,6 +1,6 @@
 /* Options of a map's preparation: any words are refused, or lead to a map that is whole where it
  * says so, or to a refusal. */
-#include "core/map/preparation_words.h"
+#include "core/map/preparation/preparation_words.h"
 #include "tests/support/fuzz/fuzz.h"
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* Results as JSON: what is read prints, and reads and prints again the same; and as a table. Curves
  * of it as bytes: read back and written again the same. Other bytes are refused, or
  * written as what they mean. Packed bytes likewise, which never take more memory than they may. */
-#include "core/memory_file.h"
+#include "core/file/memory_file.h"
 #include "schema/json/json.h"
 #include "schema/result/bytes.h"
 #include "schema/result/csv.h"

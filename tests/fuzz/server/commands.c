@@ -2,9 +2,9 @@
  * a peer asks for them in a query: drawn by the bytes, run in this process. A command ends with one
  * of its statuses; where it fails it says why, and not that it is broken or wants memory; where it
  * does not, what it prints and writes is there, and can be read. */
-#include "core/map/preparation_words.h"
-#include "core/memory_file.h"
-#include "core/plain_text.h"
+#include "core/file/memory_file.h"
+#include "core/file/plain_text.h"
+#include "core/map/preparation/preparation_words.h"
 #include "jobs/kind.h"
 #include "schema/json/json.h"
 #include "server/command/command.h"

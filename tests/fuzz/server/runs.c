@@ -1,6 +1,6 @@
 /* Studies that are drawn and taken run whole: each case ends with curves, or says why it has none,
  * and no result of one's own is refused. Those that are thought to take long are left out. */
-#include "core/memory_file.h"
+#include "core/file/memory_file.h"
 #include "jobs/runner.h"
 #include "jobs/target.h"
 #include "schema/result/csv.h"

@@ -1,5 +1,5 @@
 #include "tests/support/fuzz/draw_query.h"
-#include "core/memory_file.h"
+#include "core/file/memory_file.h"
 #include "jobs/kind.h"
 #include "schema/json/json.h"
 #include "server/http/route/route.h"

@@ -1,5 +1,5 @@
 #include "tests/support/fuzz/draw_request.h"
-#include "core/memory_file.h"
+#include "core/file/memory_file.h"
 #include "jobs/kind.h"
 #include "tests/support/fuzz/draw_message.h"
 #include "tests/support/fuzz/draw_query.h"

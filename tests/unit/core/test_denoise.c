@@ -1,7 +1,7 @@
 /* Protects: noise is taken out of a map so that it has the RMS height, slope and curvature that it
  * had before the noise came, open and periodic, of surfaces with a lay or none, and of profiles; a
  * map without noise stays bit for bit. */
-#include "core/map/denoise.h"
+#include "core/map/preparation/denoise.h"
 #include "core/statistics/heights/roughness.h"
 #include "core/surface/surface.h"
 #include "tests/support/check.h"

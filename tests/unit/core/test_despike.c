@@ -3,8 +3,8 @@
  * white noise, none is taken for a spike; 60 spikes of 8 RMS heights in 400 x 400 points are all
  * found, and nothing else. Pairs, sides, holes,
  * profiles and heights in steps likewise. */
-#include "core/map/despike.h"
-#include "core/map/preparation_words.h"
+#include "core/map/preparation/despike.h"
+#include "core/map/preparation/preparation_words.h"
 #include "core/surface/surface.h"
 #include "tests/support/check.h"
 #include "tests/support/effort.h"

@@ -1,6 +1,6 @@
 /* Protects: the trend that is taken out of a height map is the one of least squares, in the unit of
  * the grid, whatever its size; holes have no part in it. */
-#include "core/map/detrend.h"
+#include "core/map/preparation/detrend.h"
 #include "tests/support/check.h"
 #include "tests/support/seed.h"
 #include <string.h>

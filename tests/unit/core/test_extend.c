@@ -1,7 +1,7 @@
 /* Protects: an extended map holds the patch to its noise, fills its holes by the law, has the RMS
  * slope of the surface that the patch was cut from, without the noise, everywhere, with a lay too,
  * and its skewness; one number is one draw; a map without a law is refused and stays. */
-#include "core/map/extend.h"
+#include "core/map/preparation/extend.h"
 #include "core/statistics/heights/roughness.h"
 #include "core/surface/surface.h"
 #include "tests/support/check.h"

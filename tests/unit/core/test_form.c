@@ -2,8 +2,8 @@
  * quadratic form, and surfaces without one are taken for such as seldom as the p-value says: with
  * and without roll-off, with a lay, noise, holes, on oblong maps and profiles. Periodic maps and
  * maps without a quadratic form are not judged. Without RUGO_EFFORT few maps of each are tried. */
-#include "core/map/detrend.h"
 #include "core/map/form.h"
+#include "core/map/preparation/detrend.h"
 #include "core/surface/surface.h"
 #include "tests/support/check.h"
 #include "tests/support/effort.h"

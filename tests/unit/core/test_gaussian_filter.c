@@ -1,7 +1,7 @@
 /* Protects: Gaussian filters leave of each wave what the standard says, half of it at the cut-off,
  * by transforms as by plain sums; sides and holes have no part in the means; robust ones keep
  * clear of spikes. */
-#include "core/map/gaussian_filter.h"
+#include "core/map/preparation/gaussian_filter.h"
 #include "tests/support/check.h"
 #include "tests/support/seed.h"
 #include <stdlib.h>

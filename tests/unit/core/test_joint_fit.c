@@ -1,7 +1,7 @@
 /* Protects: several patches of one surface determine one law together, each in its own band: the
  * law's intervals hold the truth, and are narrower than those of one patch; patches that differ
  * more than their waves explain are found; one patch alone is refused. */
-#include "core/map/detrend.h"
+#include "core/map/preparation/detrend.h"
 #include "core/statistics/spectra/joint_fit.h"
 #include "core/surface/surface.h"
 #include "tests/support/check.h"

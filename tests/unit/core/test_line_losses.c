@@ -1,7 +1,7 @@
 /* Protects: what levelling takes of scan lines without offsets is known from waves along them:
  * of independent heights as much as a mean of so many, of a polynomial so many terms; nothing where
  * no lines were levelled. */
-#include "core/map/line_losses.h"
+#include "core/map/preparation/line_losses.h"
 #include "tests/support/check.h"
 #include "tests/support/noise.h"
 

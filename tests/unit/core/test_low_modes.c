@@ -1,7 +1,7 @@
 /* Protects: the slow waves that estimate the variance of a mean are independent of each other and
  * of the mean. They estimate the variance of the mean of independent numbers, and heights are
  * counted in cells as they are. */
-#include "core/map/detrend.h"
+#include "core/map/preparation/detrend.h"
 #include "core/statistics/uncertainty/cell_heights.h"
 #include "tests/support/check.h"
 #include "tests/support/noise.h"

@@ -1,6 +1,6 @@
 /* Protects: a map on other points is the same surface: of a periodic map to rounding, of an open
  * one as its spline; waves that wider points cannot show do not come back as others. */
-#include "core/map/map_resample.h"
+#include "core/map/preparation/map_resample.h"
 #include "tests/support/check.h"
 #include <stdlib.h>
 #include <string.h>

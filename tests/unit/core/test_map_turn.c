@@ -2,7 +2,7 @@
  * direction. By other angles a map has the heights of its surface at the turned points, in the
  * largest rectangle inside, to what a spline of degree 7 leaves of waves of 4 points and more;
  * planes come back to rounding, holes stay holes, and the change of slopes covers the error. */
-#include "core/map/map_turn.h"
+#include "core/map/preparation/map_turn.h"
 #include "core/statistics/measured_map.h"
 #include "tests/support/check.h"
 #include <stdlib.h>

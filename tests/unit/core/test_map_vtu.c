@@ -1,5 +1,5 @@
 /* Protects: a map as a VTU file has all its points, cells and fields, to the last bit. */
-#include "core/memory_file.h"
+#include "core/file/memory_file.h"
 #include "core/nodal/map_vtu.h"
 #include "tests/support/check.h"
 #include <nettle/base64.h>

@@ -1,6 +1,6 @@
 /* Protects: holes are filled with the heights that solve Laplace's equation between their rims,
  * whatever the shape and size of the hole, and no other height changes. */
-#include "core/map/membrane.h"
+#include "core/map/preparation/membrane.h"
 #include "tests/support/check.h"
 #include "tests/support/seed.h"
 #include <stdlib.h>

@@ -1,10 +1,10 @@
 /* Protects the files of meshed blocks for other finite element programs: a Gmsh mesh whose sides
  * are whole and linked to their images, and a CalculiX model in which every point that is no node
  * follows nodes, with the sets, surfaces and steps that it names. */
+#include "core/file/memory_file.h"
 #include "core/full/file/mesh_inp.h"
 #include "core/full/file/mesh_msh.h"
 #include "core/full/file/mesh_points.h"
-#include "core/memory_file.h"
 #include "tests/support/check.h"
 #include <stdlib.h>
 #include <string.h>

@@ -1,11 +1,11 @@
 /* Protects: what non-Gaussian generation promises of every surface: the exact spectrum or the exact
  * heights, errors that are those of the returned pair, an end for every tolerance, refusals instead
  * of NaN. */
-#include "core/surface/height_error.h"
-#include "core/surface/nongaussian.h"
-#include "core/surface/rank.h"
+#include "core/surface/iteration/height_error.h"
+#include "core/surface/iteration/nongaussian.h"
+#include "core/surface/iteration/rank.h"
+#include "core/surface/iteration/target_heights.h"
 #include "core/surface/surface.h"
-#include "core/surface/target_heights.h"
 #include "tests/support/check.h"
 #include <stdio.h>
 #include <stdlib.h>

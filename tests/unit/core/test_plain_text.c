@@ -1,6 +1,6 @@
 /* Protects: a text from outside has nothing that a terminal obeys or that makes XML malformed, and
  * keeps every character that people write. */
-#include "core/plain_text.h"
+#include "core/file/plain_text.h"
 #include "tests/support/check.h"
 #include "tests/support/seed.h"
 #include <string.h>

@@ -1,6 +1,6 @@
 /* Protects: what is asked for of a map's preparation in words is read as it says or refused by
  * name; each step does that and no more, in the stated order, and reports it. */
-#include "core/map/preparation_words.h"
+#include "core/map/preparation/preparation_words.h"
 #include "tests/support/check.h"
 #include <stdio.h>
 #include <stdlib.h>

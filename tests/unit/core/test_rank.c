@@ -1,6 +1,6 @@
 /* Protects: ranks are those of a stable comparison sort for every input, whatever the distribution
  * of the keys, and no input makes ranking slow out of proportion. */
-#include "core/surface/rank.h"
+#include "core/surface/iteration/rank.h"
 #include "tests/support/check.h"
 #include "tests/support/seed.h"
 #include <float.h>

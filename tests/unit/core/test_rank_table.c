@@ -1,8 +1,8 @@
 /* Protects: ranks by a table are those of the keys but for the order within a bin, in any blocks;
  * keys out of range, ties and what is no number end in heights that exist. */
 #include "core/random.h"
-#include "core/surface/rank.h"
-#include "core/surface/rank_table.h"
+#include "core/surface/iteration/rank.h"
+#include "core/surface/iteration/rank_table.h"
 #include "tests/support/check.h"
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* Protects: each scan line loses its own mean, median or polynomial and nothing else, along either
  * axis, beside holes and where heights are few; the RMS of what was subtracted is stated. */
-#include "core/map/scan_lines.h"
+#include "core/map/preparation/scan_lines.h"
 #include "tests/support/check.h"
 #include <stdlib.h>
 

@@ -1,7 +1,7 @@
 /* Protects: the scatter of a spectrum beyond that of a Gaussian surface is seen in surfaces whose
  * waves rise and fall together, and widens the intervals of what is fitted; that of Gaussian ones
  * hardly does. */
-#include "core/map/detrend.h"
+#include "core/map/preparation/detrend.h"
 #include "core/statistics/spectra/spectrum_fit.h"
 #include "core/statistics/uncertainty/map_chance.h"
 #include "core/surface/surface.h"

@@ -1,7 +1,7 @@
 /* Protects: the erosion of an image by a paraboloid tip is the lowest envelope that its definition
  * says, on maps and profiles, beside holes and sides; parabolas and rough surfaces come back from
  * their images where the tip touched, and what it did not reach is counted and marked. */
-#include "core/map/tip.h"
+#include "core/map/preparation/tip.h"
 #include "core/surface/surface.h"
 #include "tests/support/check.h"
 #include <stdlib.h>

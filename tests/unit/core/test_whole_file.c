@@ -1,6 +1,6 @@
 /* Protects: a file of any length up to its bound, from the disk, a pipe or the kernel, is read to
  * its last byte with a NUL behind it, and a longer one is refused by its bound. */
-#include "core/whole_file.h"
+#include "core/file/whole_file.h"
 #include "tests/support/check.h"
 #include <fcntl.h>
 #include <stdlib.h>

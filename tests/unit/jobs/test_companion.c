@@ -1,8 +1,8 @@
 /* Protects: the table of companions is whole, so that whoever walks it needs no exceptions; each
  * source of error has one row that estimates it; plans of cases are consistent; and the subsets of
  * realisations that side solves take. */
+#include "jobs/contact/case/contact_case_read.h"
 #include "jobs/contact/companion/companion.h"
-#include "jobs/contact/contact_case_read.h"
 #include "tests/support/check.h"
 
 static void rows_are_whole(void **state) {

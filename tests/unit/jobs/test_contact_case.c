@@ -1,8 +1,8 @@
 /* A contact case is read as it was meant: defaults, models, blocks, loads, meshes; and what does
  * not fit together is refused, with its pointer. */
 #include "core/surface/spectrum.h"
+#include "jobs/contact/case/contact_case_read.h"
 #include "jobs/contact/coated_theory.h"
-#include "jobs/contact/contact_case_read.h"
 #include "jobs/contact/contact_scene.h"
 #include "schema/study/fault.h"
 #include <math.h>

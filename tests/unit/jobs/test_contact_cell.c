@@ -1,7 +1,7 @@
 /* Surfaces of other lengths: what stands in their cells of the tally is what a case of that
  * length gives for the same random numbers, solved by itself; and which cases have them, on which
  * realisations, for how much time and memory. */
-#include "jobs/contact/contact_case_read.h"
+#include "jobs/contact/case/contact_case_read.h"
 #include "jobs/contact/contact_scene.h"
 #include "tests/support/check.h"
 #include "tests/support/effort.h"

@@ -1,7 +1,7 @@
 /* Protects: two rough faces of a contact study are read as one surface in one cell, and what they
  * cannot have is refused, with its pointer. */
 #include "core/surface/spectrum.h"
-#include "jobs/contact/contact_case_read.h"
+#include "jobs/contact/case/contact_case_read.h"
 #include "jobs/contact/contact_scene.h"
 #include "tests/support/check.h"
 #include <string.h>

@@ -2,8 +2,8 @@
  * of the differences of single realisations, also where few realisations have things in a bin; its
  * sums do not depend on the order of merging, and are refused where no realisations could have
  * them; the error of the model that follows is the difference of the two curves. */
-#include "jobs/contact/contact_case_read.h"
-#include "jobs/contact/contact_tally.h"
+#include "jobs/contact/case/contact_case_read.h"
+#include "jobs/contact/tally/contact_tally.h"
 #include "tests/support/contact_document.h"
 #include "tests/support/seed.h"
 #include <stdlib.h>

@@ -2,7 +2,7 @@
  * were put in, a finite block and missing realisations have errors, and what is not known has
  * none. */
 #include "core/statistics/uncertainty/richardson.h"
-#include "jobs/contact/contact_case_read.h"
+#include "jobs/contact/case/contact_case_read.h"
 #include "jobs/contact/contact_errors.h"
 #include "jobs/contact/target/contact_sum.h"
 #include "tests/support/check.h"

@@ -2,9 +2,9 @@
  * of that law has, pressed in their own units; that differences follow from the pairs, with their
  * sign; that curves over loads, scalars at a load and densities of pressure have it, but not with
  * Gaussian heights; and that values do not depend on whether it is probed. */
+#include "jobs/contact/case/contact_case_read.h"
 #include "jobs/contact/companion/companion.h"
 #include "jobs/contact/companion/companion_law.h"
-#include "jobs/contact/contact_case_read.h"
 #include "jobs/merger.h"
 #include "jobs/runner.h"
 #include "jobs/surface/other_law.h"

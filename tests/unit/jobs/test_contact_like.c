@@ -1,7 +1,7 @@
 /* Protects: a measured surface is pressed, to the bit, as sub-maps of random surfaces are: one of
  * them, given as the measured one, is found equal to itself at each load; its percentile is that of
  * the counts; loads that are not those of the case leave it out. */
-#include "core/map/detrend.h"
+#include "core/map/preparation/detrend.h"
 #include "jobs/surface/realisation_map.h"
 #include "jobs/surface/surface_case.h"
 #include "tests/support/contact_document.h"

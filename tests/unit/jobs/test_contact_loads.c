@@ -1,7 +1,7 @@
 /* Protects: loads are the numbers that a person would write, are printed with all digits, and those
  * of studies that an older program stored stay as they were. */
-#include "jobs/contact/contact_case_read.h"
-#include "jobs/contact/contact_loads.h"
+#include "jobs/contact/case/contact_case_read.h"
+#include "jobs/contact/case/contact_loads.h"
 #include "schema/json/json.h"
 #include "tests/support/check.h"
 #include <stdio.h>

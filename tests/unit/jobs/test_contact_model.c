@@ -1,8 +1,8 @@
 /* A contact model is one struct: a fourth one, springs without neighbours (Winkler's foundation),
  * stands in this file alone, and goes from parameters to curves beside a half-space. */
-#include "jobs/contact/contact_case_read.h"
-#include "jobs/maps/map_press_curves.h"
-#include "jobs/maps/map_press_error.h"
+#include "jobs/contact/case/contact_case_read.h"
+#include "jobs/maps/press/map_press_curves.h"
+#include "jobs/maps/press/map_press_error.h"
 #include "tests/support/check.h"
 #include "tests/support/contact_document.h"
 #include <stdlib.h>

@@ -5,7 +5,7 @@
  * with a note, and changes none before it. */
 #include "core/contact/area.h"
 #include "core/contact/patches.h"
-#include "jobs/contact/contact_case_read.h"
+#include "jobs/contact/case/contact_case_read.h"
 #include "jobs/contact/contact_scene.h"
 #include "tests/support/check.h"
 #include "tests/support/contact_document.h"

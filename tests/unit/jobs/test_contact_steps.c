@@ -1,6 +1,6 @@
 /* Protects the steps of a case's surface: each load of the model that is asked for, in order; the
  * pressures carry the load, and at each node gap, height and displacement belong together. */
-#include "jobs/contact/contact_case_read.h"
+#include "jobs/contact/case/contact_case_read.h"
 #include "jobs/contact/contact_steps.h"
 #include "jobs/surface/realisation_map.h"
 #include "tests/support/check.h"

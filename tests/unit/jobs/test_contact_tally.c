@@ -1,8 +1,8 @@
 /* Sums of contact realisations: values at very light loads keep their digits, and realisations
  * without a value are left out and counted. Pressures lie on the area in contact. The rows of
  * single realisations are the same however they were merged. */
-#include "jobs/contact/contact_case_read.h"
-#include "jobs/contact/contact_tally.h"
+#include "jobs/contact/case/contact_case_read.h"
+#include "jobs/contact/tally/contact_tally.h"
 #include "jobs/partial.h"
 #include "tests/support/check.h"
 #include "tests/support/seed.h"

@@ -1,9 +1,9 @@
 /* Protects: a study without a tolerance gets one by its finest mesh, in its parameters, whatever
  * its number of realisations; cases that an older program stored keep theirs. Bounds of the
  * solver's error fall with the tolerance and with the number of nodes. */
-#include "jobs/contact/contact_case_read.h"
+#include "jobs/contact/case/contact_case_read.h"
+#include "jobs/contact/case/contact_tolerance.h"
 #include "jobs/contact/contact_errors.h"
-#include "jobs/contact/contact_tolerance.h"
 #include "jobs/kind.h"
 #include "schema/json/json.h"
 #include "schema/study/study_reader.h"

@@ -127,7 +127,7 @@ static void readers_and_rows_agree(void **state) {
                                           "jobs/surface/surface_counter.c",
                                           "jobs/surface/surface_plateau.c",
                                           "jobs/surface/surface_grooves.c",
-                                          "jobs/contact/contact_case_read.c",
+                                          "jobs/contact/case/contact_case_read.c",
                                           "jobs/statistics/statistics_case.c",
                                           "jobs/target.c",
                                           "jobs/like/like_case.c",

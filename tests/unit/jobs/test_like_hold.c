@@ -3,7 +3,7 @@
  * digits however they are divided; what such a study excludes is refused by name. How often the
  * error holds the truth is in tests/validation/jobs/test_hold_coverage.c. */
 #include "core/statistics/grooves/map_grooves.h"
-#include "jobs/contact/contact_case.h"
+#include "jobs/contact/case/contact_case.h"
 #include "jobs/contact/contact_level.h"
 #include "jobs/like/like_fit.h"
 #include "jobs/like/like_hold.h"

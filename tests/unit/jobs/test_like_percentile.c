@@ -1,7 +1,7 @@
 /* Protects: sub-maps of surfaces are measured as a map is, to the bit; the percentile of a surface
  * that is drawn from the same ensemble is uniform; it does not depend on how realisations are cut
  * into blocks; counts below, equal and above, and their ends. */
-#include "core/map/detrend.h"
+#include "core/map/preparation/detrend.h"
 #include "jobs/like/like_percentile.h"
 #include "jobs/statistics/statistics_scalars.h"
 #include "jobs/surface/realisation_map.h"

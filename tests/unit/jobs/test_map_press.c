@@ -1,9 +1,9 @@
 /* Protects: the contact of one map by the models of studies: against Hertz, mirrored and open; its
  * error by the points; what is refused; its curves; that what a model asks for is as in studies. */
 #include "core/full/full.h"
-#include "jobs/contact/contact_loads.h"
-#include "jobs/maps/map_press_curves.h"
-#include "jobs/maps/map_press_error.h"
+#include "jobs/contact/case/contact_loads.h"
+#include "jobs/maps/press/map_press_curves.h"
+#include "jobs/maps/press/map_press_error.h"
 #include "tests/support/check.h"
 #include <stdlib.h>
 #include <string.h>

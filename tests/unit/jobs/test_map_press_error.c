@@ -1,8 +1,8 @@
 /* Protects: errors of the contact of one map by source, as a study has them. Each is compared with
  * the change that it is an estimate of: another height, another model, another tolerance. */
 #include "jobs/contact/contact_errors.h"
-#include "jobs/maps/map_press_curves.h"
-#include "jobs/maps/map_press_error.h"
+#include "jobs/maps/press/map_press_curves.h"
+#include "jobs/maps/press/map_press_error.h"
 #include "tests/support/check.h"
 #include "tests/support/effort.h"
 #include <stdlib.h>

@@ -3,11 +3,11 @@
  * mesh that are asked for; loads without a solution leave those before; the flat slides, with
  * errors; what it takes is estimated, and the largest map that fits does. */
 #include "core/full/full.h"
-#include "jobs/contact/contact_case_read.h"
+#include "jobs/contact/case/contact_case_read.h"
 #include "jobs/contact/contact_steps.h"
-#include "jobs/maps/map_press_cost.h"
-#include "jobs/maps/map_press_curves.h"
-#include "jobs/maps/map_press_error.h"
+#include "jobs/maps/press/map_press_cost.h"
+#include "jobs/maps/press/map_press_curves.h"
+#include "jobs/maps/press/map_press_error.h"
 #include "jobs/surface/realisation_map.h"
 #include "tests/support/check.h"
 #include <stdlib.h>

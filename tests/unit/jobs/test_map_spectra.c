@@ -1,6 +1,6 @@
 /* Protects: where skewed heights hide the sharp end of a spectrum, their normal scores show it,
  * with the law before it; Gaussian heights, and waves that an instrument took, have no such end. */
-#include "core/map/detrend.h"
+#include "core/map/preparation/detrend.h"
 #include "core/surface/surface.h"
 #include "jobs/maps/map_characterisation.h"
 #include "tests/support/check.h"

@@ -1,7 +1,7 @@
 /* Protects: /surface/plateau is read as a stratified face in one cell, has the moments, curves and
  * contact of one, and what it cannot have is refused, with its pointer. */
 #include "core/surface/plateau_face.h"
-#include "jobs/contact/contact_case_read.h"
+#include "jobs/contact/case/contact_case_read.h"
 #include "jobs/kind.h"
 #include "jobs/merger.h"
 #include "jobs/runner.h"

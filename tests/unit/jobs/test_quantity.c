@@ -5,8 +5,8 @@
  * and close where free space does. All have the errors of other curves and do not depend on how
  * realisations are cut into blocks. A case that does not ask for them keeps the bytes of its
  * partial results. */
-#include "jobs/contact/contact_case_read.h"
-#include "jobs/contact/contact_loads.h"
+#include "jobs/contact/case/contact_case_read.h"
+#include "jobs/contact/case/contact_loads.h"
 #include "jobs/contact/contact_measure.h"
 #include "jobs/contact/quantity/quantity.h"
 #include "tests/support/check.h"

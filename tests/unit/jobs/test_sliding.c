@@ -4,7 +4,7 @@
  * nodes that slide and less area; a realisation that ends early has a note and no values from there
  * on; curves do not depend on how realisations are cut into blocks; what cannot be computed is
  * refused. */
-#include "jobs/contact/contact_case_read.h"
+#include "jobs/contact/case/contact_case_read.h"
 #include "jobs/contact/quantity/quantity.h"
 #include "tests/support/check.h"
 #include "tests/support/contact_document.h"

@@ -2,7 +2,7 @@
  * workers, people and publishers do to a store, with commits that fail and processes that die at
  * any point, are done to a store and to a model of the states without SQL (life_model.h); after
  * each sequence the views say what the model says, and nothing is left due. */
-#include "schema/store/store_verify.h"
+#include "schema/store/upkeep/store_verify.h"
 #include "tests/support/effort.h"
 #include "tests/unit/schema/life_merge.h"
 #include "tests/unit/schema/life_views.h"

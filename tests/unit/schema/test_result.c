@@ -1,6 +1,6 @@
 /* A result comes back from each of its formats as it went in: JSON, bytes; and its table and report
  * say what it holds. */
-#include "core/memory_file.h"
+#include "core/file/memory_file.h"
 #include "schema/result/bytes.h"
 #include "schema/result/csv.h"
 #include "schema/result/curve_bytes.h"

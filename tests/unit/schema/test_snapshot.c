@@ -1,7 +1,7 @@
 /* Protects: a snapshot is the store of one moment, whole, and under its name only then; it ends
  * though others write all the while; what ends it before, a full disk, a stop or a kill, leaves
  * nothing, or something that the next one takes away; no file that was there is touched. */
-#include "core/part_file.h"
+#include "core/file/part_file.h"
 #include "schema/store/store.h"
 #include "tests/support/check.h"
 #include "tests/support/count_files.h"

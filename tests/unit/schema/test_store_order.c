@@ -1,6 +1,6 @@
 /* Protects: that no order of claims, results of whole jobs and of parts of them, failures,
  * releases, losses, cancellations and retries leaves a realisation out or does one twice. */
-#include "schema/store/store_verify.h"
+#include "schema/store/upkeep/store_verify.h"
 #include "tests/support/seed.h"
 #include "tests/unit/schema/spans.h"
 

@@ -2,7 +2,7 @@
  * says what the characterisation says; names are text, never markup; and maps that have nothing to
  * draw, or holes, or one row, are drawn all the same. */
 #include "schema/json/json.h"
-#include "server/show/map/map_figure.h"
+#include "server/show/map/figure/map_figure.h"
 #include "server/show/map/map_report.h"
 #include "tests/support/check.h"
 #include "tests/support/count_of.h"

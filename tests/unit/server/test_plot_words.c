@@ -1,5 +1,5 @@
 /* Protects: labels are set as people write them, and nothing of them becomes markup. */
-#include "core/memory_file.h"
+#include "core/file/memory_file.h"
 #include "server/show/plot/plot_words.h"
 #include "tests/support/check.h"
 #include <stdlib.h>

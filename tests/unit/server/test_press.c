@@ -1,8 +1,8 @@
 /* Protects: quantities with units are read and printed as people write them; the loads of `press`
  * in each of their forms, the path of the flat, and what is refused. */
-#include "server/command/map/press_coating.h"
-#include "server/command/map/press_loads.h"
-#include "server/command/map/press_path.h"
+#include "server/command/map/press/press_coating.h"
+#include "server/command/map/press/press_loads.h"
+#include "server/command/map/press/press_path.h"
 #include "server/show/quantity.h"
 #include "tests/support/check.h"
 #include <math.h>

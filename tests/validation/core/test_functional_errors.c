@@ -3,7 +3,7 @@
  * stratified faces and exponential heights, which end at a bound, the 95 % intervals hold the true
  * values as often as they say (FORMULAS.md, F18.61, F18.52). RUGO_EFFORT=20 makes 320 patches of
  * each kind. */
-#include "core/map/detrend.h"
+#include "core/map/preparation/detrend.h"
 #include "core/statistics/uncertainty/functional_errors.h"
 #include "core/surface/plateau_face.h"
 #include "core/surface/surface.h"

@@ -3,7 +3,7 @@
  * often as they say. The p-values of the fit of heights, of isotropy and of stationarity are
  * uniform where the hypothesis holds, and small where it does not. RUGO_EFFORT=20 makes 320 patches
  * of each kind; the figures in FORMULAS.md, F18.16 to F18.19, are of those. */
-#include "core/map/detrend.h"
+#include "core/map/preparation/detrend.h"
 #include "core/statistics/heights/height_fit.h"
 #include "core/statistics/heights/roughness.h"
 #include "core/statistics/summits/open_summits.h"

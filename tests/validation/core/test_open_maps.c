@@ -3,7 +3,7 @@
  * exact derivatives, and the refined summits, of the periodic whole at the same positions.
  * Differences are compared with the scatter of the four quarters of the whole, each of which is
  * such a sub-map. Taken as periodic, as a control, the sub-maps are far off. */
-#include "core/map/detrend.h"
+#include "core/map/preparation/detrend.h"
 #include "core/statistics/heights/roughness.h"
 #include "core/statistics/summits/local_wave.h"
 #include "core/statistics/summits/open_summits.h"

@@ -1,6 +1,6 @@
 /* Protects contact studies of coated blocks: equal constants change nothing, both models agree, the
  * errors by mesh and block come true, and Persson's theory is that of the coated block. */
-#include "jobs/contact/contact_case_read.h"
+#include "jobs/contact/case/contact_case_read.h"
 #include "jobs/contact/contact_scene.h"
 #include "tests/support/contact_document.h"
 #include <stdio.h>

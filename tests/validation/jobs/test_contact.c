@@ -2,7 +2,7 @@
  * touch; and what must hold for rough blocks: errors of discretisation that come true, theories on
  * their sides, the same curves in any units. */
 #include "core/theory/contact.h"
-#include "jobs/contact/contact_case_read.h"
+#include "jobs/contact/case/contact_case_read.h"
 #include "jobs/contact/contact_scene.h"
 #include "tests/support/contact_document.h"
 #include "tests/support/effort.h"

@@ -1,6 +1,6 @@
 /* Reported errors cover the truth, against meshes, blocks and solvers that are far better, on the
  * same realisations: by source, at every load, for both weightings, in profiles and surfaces. */
-#include "jobs/contact/contact_tolerance.h"
+#include "jobs/contact/case/contact_tolerance.h"
 #include "tests/support/contact_document.h"
 #include "tests/support/effort.h"
 #include <stdio.h>

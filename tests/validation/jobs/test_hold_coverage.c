@@ -3,7 +3,7 @@
  * surfaces of known laws, four times as long, which are pressed whole to the same pressures.
  * Measured on 31 patches of the first law: 100 %, 100 % and 97 % of the intervals hold the truth at
  * the three pressures. Without RUGO_EFFORT two patches of that law are tried. */
-#include "core/map/detrend.h"
+#include "core/map/preparation/detrend.h"
 #include "jobs/like/like_fit.h"
 #include "jobs/merger.h"
 #include "jobs/runner.h"

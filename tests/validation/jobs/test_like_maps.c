@@ -4,7 +4,7 @@
  * not fitted. Patches of another class are refused, or found by the verdict. Without RUGO_EFFORT
  * one map of some kinds is tried, with few surfaces each; RUGO_EFFORT=1 tries 24, and RUGO_TABLE=1
  * prints each. RUGO_SIDE=256 takes maps of so many points a side. */
-#include "core/map/detrend.h"
+#include "core/map/preparation/detrend.h"
 #include "core/statistics/patch.h"
 #include "schema/json/json.h"
 #include "tests/support/check.h"

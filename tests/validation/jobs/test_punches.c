@@ -1,7 +1,7 @@
 /* Protects: the contact of shapes with plateaus, sides and tips in free space, wherever they lie
  * between the points: areas of flat square and round punches, approaches of cones and spheres, each
  * within the reported errors, and within bounds of what points can know. */
-#include "jobs/maps/map_press_error.h"
+#include "jobs/maps/press/map_press_error.h"
 #include "tests/support/check.h"
 #include "tests/support/effort.h"
 #include "tests/support/seed.h"
