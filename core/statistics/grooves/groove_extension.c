@@ -15,27 +15,24 @@ static double side_of(size_t n, size_t cell_count, size_t map_count) {
 }
 
 /* Returns the height of the lines, t periods from the middle of the map. */
-static double lines_height(size_t count, const double complex *coefficient, double t) {
+static double lines_height(const struct groove_lines *lines, double t) {
     const double complex turn = cos(2 * M_PI * t) + sin(2 * M_PI * t) * I;
     double complex sum = 0;
-    for (size_t h = count; h-- > 0;)
-        sum = (sum + coefficient[h]) * turn;
+    for (size_t h = lines->count; h-- > 0;)
+        sum = (sum + lines->coefficient[h]) * turn;
     return 2 * creal(sum);
 }
 
 static void family_add(const struct map_groove *family, const double *along_x,
                        const double *along_y, const struct grid *cell, double times, double *z) {
     const struct groove_shape_fit *fit = &family->fit;
-    const bool named = fit->shape != GROOVE_HARMONICS && fit->shape != GROOVE_SINE;
-    double complex beyond[GROOVE_LINES_MOST]; /* lines beyond those of the shape */
-    for (size_t h = 1; h <= family->lines.count; h++)
-        beyond[h - 1] =
-            family->lines.coefficient[h - 1] - (named ? groove_shape_line(fit, h, 0) : 0);
+    const bool endless = groove_shape_endless(fit);
+    const struct groove_lines beyond = groove_lines_beyond(&family->lines, fit, 0);
     for (size_t j = 0; j < cell->ny; j++)
         for (size_t i = 0; i < cell->nx; i++) {
             const double t = along_x[i] + along_y[j];
-            const double shape = named ? groove_shape_height(fit, t, 0) : 0;
-            z[j * cell->nx + i] += times * (shape + lines_height(family->lines.count, beyond, t));
+            const double shape = endless ? groove_shape_height(fit, t, 0) : 0;
+            z[j * cell->nx + i] += times * (shape + lines_height(&beyond, t));
         }
 }
 

@@ -8,21 +8,11 @@
 
 /* --- heights --- */
 
-/* Returns the lines as they are beyond those of the shape. */
-static struct groove_lines lines_beyond(const struct groove_lines *lines,
-                                        const struct groove_shape_fit *fit, double jump) {
-    struct groove_lines out = *lines;
-    for (size_t h = 1; h <= lines->count; h++)
-        out.coefficient[h - 1] -= groove_shape_line(fit, h, jump);
-    return out;
-}
-
 void groove_family_add(const struct groove_lines *lines, const struct groove_shape_fit *fit,
                        const struct grid *grid, double times, double jump, double *z) {
     const double nx = (double)grid->nx, ny = (double)grid->ny;
-    /* a sine is its first line */
-    const bool named = fit->shape != GROOVE_HARMONICS && fit->shape != GROOVE_SINE;
-    const struct groove_lines beyond = named ? lines_beyond(lines, fit, jump) : *lines;
+    const bool endless = groove_shape_endless(fit);
+    const struct groove_lines beyond = groove_lines_beyond(lines, fit, jump);
     for (size_t first = 0; first < grid->nx; first += GROOVE_TURNS) {
         const size_t points = grid->nx - first < GROOVE_TURNS ? grid->nx - first : GROOVE_TURNS;
         const struct groove_turns turns = groove_turns_of(lines->mx, first, points, grid->nx);
@@ -30,7 +20,7 @@ void groove_family_add(const struct groove_lines *lines, const struct groove_sha
             const double y = ((double)j + 0.5) / ny - 0.5;
             double height[GROOVE_TURNS], *row = z + j * grid->nx + first;
             groove_lines_heights(&beyond, &turns, y, height);
-            for (size_t p = 0; p < points && named; p++) {
+            for (size_t p = 0; p < points && endless; p++) {
                 const double x = ((double)(first + p) + 0.5) / nx - 0.5;
                 height[p] += groove_shape_height(fit, lines->mx * x + lines->my * y, jump);
             }

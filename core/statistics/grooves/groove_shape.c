@@ -141,3 +141,15 @@ double groove_shape_height(const struct groove_shape_fit *fit, double t, double 
                               : groove_profile_height(&profile, u);
     return fit->of[fit->shape].depth * height;
 }
+
+bool groove_shape_endless(const struct groove_shape_fit *fit) {
+    return fit->shape != GROOVE_HARMONICS && fit->shape != GROOVE_SINE;
+}
+
+struct groove_lines groove_lines_beyond(const struct groove_lines *lines,
+                                        const struct groove_shape_fit *fit, double jump) {
+    struct groove_lines out = *lines;
+    for (size_t h = 1; h <= lines->count && groove_shape_endless(fit); h++)
+        out.coefficient[h - 1] -= groove_shape_line(fit, h, jump);
+    return out;
+}

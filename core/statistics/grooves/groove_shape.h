@@ -26,6 +26,12 @@ void groove_shape_forget(struct groove_shape_fit *fit, const struct groove_lines
 /* Returns the coefficient of exp(2 pi i h t), t = 0 in the middle of the map, that harmonic h of
  * the shape has; 0 of GROOVE_HARMONICS. A saw falls within the share `jump` of its period. */
 double complex groove_shape_line(const struct groove_shape_fit *fit, size_t h, double jump);
+/* Whether the shape has lines without end, so that its heights come from groove_shape_height: a
+ * sine is its first line, and GROOVE_HARMONICS are the lines themselves. */
+bool groove_shape_endless(const struct groove_shape_fit *fit);
+/* Returns the lines beyond those of an endless shape; all of another. */
+struct groove_lines groove_lines_beyond(const struct groove_lines *lines,
+                                        const struct groove_shape_fit *fit, double jump);
 /* Returns the height of such a shape but GROOVE_HARMONICS at t periods from the middle. */
 double groove_shape_height(const struct groove_shape_fit *fit, double t, double jump);
 
