@@ -23,23 +23,23 @@ struct press_block {
     double lengths; /* height of the block in lengths of the map as it is pressed; 0: the model's */
     double tolerance;       /* of a solution, as in studies; 0: the model's */
     double hardness;        /* over E*; 0: it is elastic */
-    bool conducts, leaks;   /* these quantities are asked for */
     double friction, angle; /* coefficient, 0: none; of the tangential load from x, radians */
-    bool coupled, pressing; /* slip is solved with tractions and pressures coupled; friction acts
-                               while pressing */
-    bool two_faces;         /* the map is the sum of two (map_counter.h) */
     struct coating coating; /* thickness in the map's length */
     /* Of elements: where the gap is taken, the law of strains, and the depth from which columns
      * widen, in their widths, as in studies; 0: the usual one. */
     enum gap_weighting weighting;
     enum kinematics kinematics;
     double transition;
-    bool current_areas, normal_gaps; /* as of struct contact_case */
     /* With friction, where a model has it at finite strain: where the flat is, over the RMS height,
      * at so many points, so many to each turn, all of it at the last load. Borrowed; NULL: nothing
      * slides, and friction is that of lighter loads. */
     double *slide;
     size_t slide_count, slide_steps;
+    bool conducts, leaks;   /* these quantities are asked for */
+    bool coupled, pressing; /* slip is solved with tractions and pressures coupled; friction acts
+                               while pressing */
+    bool two_faces;         /* the map is the sum of two (map_counter.h) */
+    bool current_areas, normal_gaps; /* as of struct contact_case */
 };
 
 /* Values of a load have the numbers of the measures of studies and of the model's own; these
