@@ -27,10 +27,10 @@ static bool is_one_wave(const struct contact_case *one_case, const struct modes 
     return one_case->surface.dimension == 1 && modes->count <= 2;
 }
 
-/* Returns whether Persson's theory is not known: of a wave, and of a coating on a stratified face,
- * whose slopes are known but not its spectrum. */
+/* Returns whether Persson's theory is not known: of a wave, of grooves beside a random part, and of
+ * a coating on a stratified face, whose slopes are known but not its spectrum. */
 static bool lacks_theory(const struct contact_case *one_case, const struct modes *modes) {
-    return is_one_wave(one_case, modes) ||
+    return is_one_wave(one_case, modes) || one_case->surface.grooves != NULL ||
            (contact_case_is_coated(one_case) && one_case->surface.plateau != NULL);
 }
 
@@ -166,8 +166,6 @@ static int theories_make(struct theories *out, const struct contact_case *one_ca
         return error_memory(err, THEORIES_MOST * one_case->load_count * sizeof(double), "theories");
     /* No theory here has the mean of a wave of random amplitude. */
     bool coated = contact_case_is_coated(one_case);
-    if (one_case->surface.grooves != NULL)
-        return 0; /* none has them */
     if (is_one_wave(one_case, modes) && surface_case_exact(&one_case->surface) && !coated)
         put_wave(&list);
     if (lacks_theory(one_case, modes))

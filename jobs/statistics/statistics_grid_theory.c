@@ -115,7 +115,8 @@ static int add_spectrum(const struct statistics_case *one_case, const struct sur
     return status;
 }
 
-/* Moments by differences follow from the spectrum, whatever the heights. */
+/* Moments by differences follow from the spectrum, whatever the heights; those of grooves do not.
+ */
 static void set_moments(const struct statistics_case *one_case, const struct modes *modes,
                         struct case_result *out) {
     struct sampled_moments moments;
@@ -135,7 +136,8 @@ int statistics_grid_theory(const struct statistics_case *one_case,
     struct sampled_summits summits;
     if (one_case->surface.plateau != NULL)
         return 0; /* kinks change with the grid whatever differences see */
-    set_moments(one_case, basis->modes, out);
+    if (one_case->surface.grooves == NULL)
+        set_moments(one_case, basis->modes, out);
     int status = add_spectrum(one_case, basis, out, err);
     if (!statistics_grid_theory_applies(one_case))
         return status;

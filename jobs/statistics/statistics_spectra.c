@@ -2,6 +2,7 @@
 #include "core/statistics/heights/roughness.h"
 #include "core/statistics/spectra/prescribed.h"
 #include "core/statistics/uncertainty/richardson.h"
+#include "jobs/statistics/statistics_theory.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -192,11 +193,13 @@ static int columns_create(struct case_result *result, struct spectrum_columns *o
     return 0;
 }
 
-/* known: whether the theory is. */
-static int add_curve(struct case_result *result, struct curve *curve, const double *theory,
-                     bool known, struct error *err) {
-    if (known)
-        curve->theories[curve->theory_count++] = (struct theory){"prescribed", theory};
+/* theory: of the spectrum asked for, which is that of the random part beside grooves; a stratified
+ * face has none, as its slopes alone are known. */
+static int add_curve(const struct surface_case *surface, struct case_result *result,
+                     struct curve *curve, const double *theory, struct error *err) {
+    if (surface->plateau == NULL)
+        curve->theories[curve->theory_count++] =
+            (struct theory){surface->grooves != NULL ? STATISTICS_REST : "prescribed", theory};
     return result_add_curve(result, curve, err);
 }
 
@@ -368,8 +371,7 @@ static int density_curve(const struct statistics_case *one_case, const struct mo
     status = density_error(one_case, tally, reference.y, result, &curve, err);
     if (status != 0)
         return status;
-    const bool known = one_case->surface.plateau == NULL; /* of a stratified face: slopes alone */
-    return add_curve(result, &curve, columns.theory + 1, known, err);
+    return add_curve(&one_case->surface, result, &curve, columns.theory + 1, err);
 }
 
 static size_t correlation_side(size_t side, size_t band) {
@@ -453,7 +455,7 @@ static int correlation_curve(const struct statistics_case *one_case, const struc
     status = correlation_error(&columns, n, result, &curve, err);
     if (status != 0)
         return status;
-    return add_curve(result, &curve, columns.theory, one_case->surface.plateau == NULL, err);
+    return add_curve(&one_case->surface, result, &curve, columns.theory, err);
 }
 
 int spectra_curves(const struct statistics_case *one_case, const struct modes *modes,

@@ -205,12 +205,43 @@ static void drawn_spectra_are_as_measured(void **state) {
                    &options);
 }
 
+/* With grooves the spectrum asked for is that of the random part, and nothing is known of what
+ * differences see. */
+static void grooves_are_beside_the_random_part(void **state) {
+    (void)state;
+    static const char *const SPECTRA[] = {"psd", "acf"};
+    static const enum statistics_scalar OF_GRID[] = {SCALAR_RMS_SLOPE, SCALAR_RMS_CURVATURE,
+                                                     SCALAR_M2_DIFFERENCE,
+                                                     SCALAR_NAYAK_ALPHA_DIFFERENCE};
+    cJSON *parameters;
+    struct case_result result =
+        result_of("2, \"grooves\": {\"period\": 4, \"depth\": 2}", &parameters);
+    for (int s = 0; s < 2; s++) {
+        const struct curve *curve = result_curve(&result, SPECTRA[s]);
+        assert_non_null(curve);
+        assert_int_equal(curve->theory_count, 1);
+        assert_string_equal(curve->theories[0].name, "random_part");
+    }
+    for (size_t a = 0; a < sizeof OF_GRID / sizeof *OF_GRID; a++) {
+        const char *name = statistics_scalar_name(OF_GRID[a]);
+        const struct scalar *found = NULL;
+        for (size_t n = 0; n < result.scalar_count; n++)
+            if (strcmp(result.scalars[n].name, name) == 0)
+                found = &result.scalars[n];
+        assert_non_null(found);
+        assert_true(isnan(found->grid));
+    }
+    cJSON_Delete(parameters);
+    result_clear(&result);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rings_are_near_circles),
         cmocka_unit_test(profiles_have_no_rings),
         cmocka_unit_test(waves_beyond_the_grid_are_folded),
         cmocka_unit_test(drawn_spectra_are_as_measured),
+        cmocka_unit_test(grooves_are_beside_the_random_part),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -206,6 +206,27 @@ static void deep_sines_are_westergaards(void **state) {
     cJSON_Delete(document);
 }
 
+/* Theories of contact are of random faces. */
+static void contact_has_no_theory(void **state) {
+    (void)state;
+    cJSON *document =
+        solve("{\"surface\": {\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 4, "
+              "\"length_ratio\": 4, \"points_per_wavelength\": 4, \"grooves\": {\"period\": 4, "
+              "\"depth\": 1}}, \"contact\": {\"cell_error\": \"none\", \"model\": \"halfspace\", "
+              "\"levels\": [4], \"pressure_pdf\": {\"at\": [0.1]}, "
+              "\"pressures\": {\"values\": [0.1]}}}",
+              2);
+    const cJSON *curve;
+    int seen = 0;
+    cJSON_ArrayForEach(curve, json_at(document, "/curves")) {
+        seen += text_is(curve, "/quantity", "contact_pressure_pdf");
+        if (cJSON_GetArraySize(json_at(curve, "/theory")) > 0)
+            fail_msg("%s has a theory", json_at(curve, "/quantity")->valuestring);
+    }
+    assert_true(seen > 0);
+    cJSON_Delete(document);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_does_not_fit_is_refused),
@@ -214,6 +235,7 @@ int main(void) {
         cmocka_unit_test(meshes_have_the_same_grooves),
         cmocka_unit_test(moments_add_up),
         cmocka_unit_test(deep_sines_are_westergaards),
+        cmocka_unit_test(contact_has_no_theory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
