@@ -460,11 +460,10 @@ static void put_escaped(FILE *file, const char *value) {
 
 /* Makes the path of a table; the caller frees. NULL when out of memory. */
 static char *table_path(const char *id, const struct table_request *request, int format) {
-    static const char *const FORMATS[] = {"text", "csv", "json"};
     struct memory_file path;
     if (!memory_file_open(&path))
         return NULL;
-    fprintf(path.file, "/v1/studies/%s/table?format=%s", id, FORMATS[format]);
+    fprintf(path.file, "/v1/studies/%s/table?format=%s", id, TABLE_FORMAT_NAMES[format]);
     if (request->columns != NULL) {
         fputs("&columns=", path.file);
         put_escaped(path.file, request->columns);

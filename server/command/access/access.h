@@ -14,22 +14,28 @@ struct access_options {
     const char *database, *server, *token_file; /* as given; database NULL: DATABASE */
     struct client_trust trust;
 };
-/* The rows of its options, for a command's struct that holds it under the name in the offsets. */
+/* The rows of its options, for a command's struct that holds it under the name in the offsets: of
+ * commands that ask a store or a server, and of those that ask servers alone. */
 #define ACCESS_ROWS(options)                                                                       \
     {"db",   0,    OPTION_TEXT,                                                                    \
      0,      0,    offsetof(options, place.database),                                              \
      "FILE", NULL, "the local store (" DATABASE ")"},                                              \
         {"server", 0,    OPTION_TEXT,       0, 0, offsetof(options, place.server),                 \
          "URL",    NULL, "a server instead"},                                                      \
-        {"ca-file",                                                                                \
-         0,                                                                                        \
-         OPTION_TEXT,                                                                              \
-         0,                                                                                        \
-         0,                                                                                        \
-         offsetof(options, place.trust.ca_file),                                                   \
-         "FILE",                                                                                   \
-         NULL,                                                                                     \
-         "certificates of authorities that sign it, PEM, or RUGO_CA_FILE; else the system's"},     \
+        ACCESS_TRUST_ROWS(options)
+#define ACCESS_SERVER_ROWS(options)                                                                \
+    {"server", 0, OPTION_TEXT, 0, 0, offsetof(options, place.server), "URL", NULL, "the server"},  \
+        ACCESS_TRUST_ROWS(options)
+#define ACCESS_TRUST_ROWS(options)                                                                 \
+    {"ca-file",                                                                                    \
+     0,                                                                                            \
+     OPTION_TEXT,                                                                                  \
+     0,                                                                                            \
+     0,                                                                                            \
+     offsetof(options, place.trust.ca_file),                                                       \
+     "FILE",                                                                                       \
+     NULL,                                                                                         \
+     "certificates of authorities that sign it, PEM, or RUGO_CA_FILE; else the system's"},         \
         {"fingerprint",                                                                            \
          0,                                                                                        \
          OPTION_TEXT,                                                                              \

@@ -22,7 +22,7 @@ struct options {
 };
 #define AT(member) offsetof(struct options, member)
 static const struct option_row OPTIONS[] = {
-    ACCESS_ROWS(struct options),
+    ACCESS_SERVER_ROWS(struct options),
     {"max", 0, OPTION_COUNT, 1, 100000, AT(most), "N", "1", "most pilots, one on a node each"},
     {"jobs", 0, OPTION_COUNT, 1, 1000000, AT(jobs), "N", "1",
      "a thread of a pilot for so many jobs that wait or run"},
@@ -161,7 +161,7 @@ static int run(const void *values, const char *const *arguments) {
     struct keeper keeper = {.options = values};
     const struct access_options *place = &keeper.options->place;
     struct error err = {0};
-    if (place->server == NULL || place->database != NULL)
+    if (place->server == NULL)
         return usage_error("slurm pilots", "pilots work for a server: --server URL is needed");
     if (strpbrk(place->server, "\r\n") != NULL)
         return usage_error("slurm pilots", "--server has more than one line");

@@ -7,7 +7,7 @@
 struct options {
     struct access_options place;
 };
-static const struct option_row OPTIONS[] = {ACCESS_ROWS(struct options), {0}};
+static const struct option_row OPTIONS[] = {ACCESS_SERVER_ROWS(struct options), {0}};
 
 static int ask(struct access *access, const char *id, const void *options, cJSON **out,
                struct error *err) {
@@ -27,8 +27,6 @@ static int run(const void *values, const char *const *arguments) {
     const struct options *options = values;
     struct options own = *options;
     (void)arguments;
-    if (own.place.database != NULL)
-        return usage_error("health", "--db is of no use here: it is a server that is asked");
     if (own.place.server == NULL)
         own.place.server = SERVER;
     return question_answer(&QUESTION, &own.place, NULL, &own);

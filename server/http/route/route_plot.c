@@ -136,17 +136,11 @@ void handle_plot(struct exchange *exchange, const char *id) {
 
 /* Reads ?format=, or else what the request likes best: JSON, unless it says so. -1 after a 422. */
 static int read_table_format(struct exchange *exchange) {
-    static const char *const NAMES[] = {
-        [TABLE_TEXT] = "text",
-        [TABLE_CSV] = "csv",
-        [TABLE_JSON] = "json",
-        [TABLE_MARKDOWN] = "markdown",
-    };
     const char *asked = exchange_query(exchange, "format");
     const char *accept = exchange_header(exchange, "Accept");
     struct fault_list faults = {0};
     for (int f = 0; asked != NULL && f < TABLE_FORMAT_COUNT; f++)
-        if (strcmp(NAMES[f], asked) == 0)
+        if (strcmp(TABLE_FORMAT_NAMES[f], asked) == 0)
             return f;
     if (asked == NULL)
         return accept_quality(accept, "text/csv") > accept_quality(accept, "application/json")

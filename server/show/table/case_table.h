@@ -79,6 +79,7 @@ bool case_table_csv(const struct case_table *table, FILE *file);
 bool case_table_json(const struct case_table *table, FILE *file);
 enum { TABLE_TEXT, TABLE_CSV, TABLE_JSON, TABLE_MARKDOWN, TABLE_FORMAT_COUNT };
 #define TABLE_FORMATS "text|csv|json|markdown"
+extern const char *const TABLE_FORMAT_NAMES[TABLE_FORMAT_COUNT];
 /* Prints it in one of these; ERROR_MEMORY. */
 int case_table_print(const struct case_table *table, int format, FILE *file, struct error *err);
 

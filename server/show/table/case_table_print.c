@@ -371,6 +371,11 @@ bool case_table_json(const struct case_table *table, FILE *file) {
     return done;
 }
 
+const char *const TABLE_FORMAT_NAMES[TABLE_FORMAT_COUNT] = {[TABLE_TEXT] = "text",
+                                                            [TABLE_CSV] = "csv",
+                                                            [TABLE_JSON] = "json",
+                                                            [TABLE_MARKDOWN] = "markdown"};
+
 int case_table_print(const struct case_table *table, int format, FILE *file, struct error *err) {
     bool done = true;
     if (format == TABLE_JSON)

@@ -114,6 +114,15 @@ static void a_study_from_submission_to_curves(void **state) {
                                                         "a b&c=d", id, NULL}),
                      2);
     assert_true(contains("table.err", "no case has a scalar \"a b&c=d\""));
+    static const struct {
+        const char *format, *has;
+    } FORMATS[] = {{"text", "case  n "}, {"csv", "case,"}, {"json", "{"}, {"markdown", "| ---: |"}};
+    for (size_t f = 0; f < sizeof FORMATS / sizeof *FORMATS; f++) {
+        assert_int_equal(run_rugo("table", (const char *[]){"table", "--server", url, "--format",
+                                                            FORMATS[f].format, id, NULL}),
+                         0);
+        assert_true(contains("table.out", FORMATS[f].has));
+    }
     path_of(path, sizeof path, id, "/report");
     check_answer("GET", path, NULL, 200, "\"statistical_error\"");
     assert_int_equal(http_exchange(port, "GET", path, "Accept: image/svg+xml\r\n", NULL, &answer),
