@@ -18,7 +18,7 @@ enum {
     ERROR_MEMORY = -2,  /* an allocation failed */
     ERROR_SYSTEM = -3,  /* a file, the network, the operating system */
     ERROR_NUMERIC = -4, /* no result of the required accuracy: no convergence, out of domain */
-    ERROR_STATE = -5,   /* refused by the state of a study or job: a lost lease, already ended */
+    ERROR_STATE = -5, /* refused by the state of a study, a job or an object: a call out of order */
     ERROR_ABSENT = -6,  /* no such study, job or case */
     ERROR_STOPPED = -7, /* asked to stop; nothing is wrong */
     ERROR_LIMIT = -8,   /* a limit of this process, as of the length of its files: it stays */
@@ -37,7 +37,8 @@ static inline int error_code(int code) {
 }
 __attribute__((format(printf, 3, 4))) void error_fill(struct error *err, int code,
                                                       const char *format, ...);
-/* Puts "context: " in front of the text of err; returns err->code. */
+/* Puts "context: " in front of the text of err; returns err->code, ERROR_SYSTEM where
+ * err is NULL. */
 __attribute__((format(printf, 2, 3))) int error_context(struct error *err, const char *format, ...);
 /* "cannot allocate N bytes for WHAT"; its value is ERROR_MEMORY. */
 #define error_memory(err, bytes, what)                                                             \

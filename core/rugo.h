@@ -153,7 +153,7 @@ RUGO_API void rugo_generator_destroy(struct rugo_generator **generator);
  * random words (Salmon et al. 2011), with uniform phases (Wu 2000). A Gaussian surface is the same
  * on every grid that resolves it. All cases of a study have sequence 0; those of an independent
  * study have their number. report: NULL where not wanted. z is filled in place, and undefined after
- * a failure. */
+ * a failure. NUMERIC where the heights that were drawn are all equal or not finite; MEMORY. */
 RUGO_API int rugo_generator_run(struct rugo_generator *generator, uint64_t seed, uint64_t sequence,
                                 uint64_t realisation, double *z, struct rugo_surface_report *report,
                                 struct rugo_error *err);
@@ -284,7 +284,7 @@ RUGO_API double rugo_bgt_area(double load, double alpha);
 RUGO_API double rugo_gw_mccool_area(double load, double alpha);
 /* One wave, amplitude Delta (Westergaard 1939), by ratio = p/p* in [0, 1], p* = pi E* Delta/lambda:
  * the contact fraction; the local over the mean pressure at x wavelengths from a crest; the mean
- * gap over Delta. */
+ * gap over Delta. The pressure is NaN at a ratio of 0. */
 RUGO_API double rugo_westergaard_area(double ratio);
 RUGO_API double rugo_westergaard_pressure(double x, double ratio);
 RUGO_API double rugo_westergaard_gap(double ratio);
@@ -313,7 +313,8 @@ struct rugo_contact_state {
     double area_nodes;             /* share of nodes in contact: too large ... */
     double area_lower, area_upper; /* ... and bounds of the contact fraction */
     double mean_gap;
-    double stiffness;  /* -d pressure/d mean_gap; infinite in full contact */
+    /* -d pressure/d mean_gap, infinite in full contact; in free space d pressure/d approach. */
+    double stiffness;
     size_t patches;    /* islands of contact */
     size_t iterations; /* of the solver */
     double violation;  /* largest penetration or gap inside of the contact, over the RMS height */
@@ -330,8 +331,8 @@ RUGO_API int rugo_contact_create_open(struct rugo_contact **out, const struct ru
                                       struct rugo_error *err);
 RUGO_API void rugo_contact_destroy(struct rugo_contact **contact);
 /* Copies a surface (any mean height) without contact: its highest points touch first. INPUT for a
- * height that is not finite, and for the full model where the surface is too steep; there is then
- * no surface to press. */
+ * height that is not finite, and for the full model where the surface is too steep, or too high for
+ * the block; there is then no surface to press. */
 RUGO_API int rugo_contact_begin(struct rugo_contact *contact, const double *z,
                                 struct rugo_error *err);
 /* Presses to a mean pressure >= 0 over E*, without friction or adhesion: linear models by active
@@ -345,8 +346,8 @@ RUGO_API int rugo_contact_press(struct rugo_contact *contact, double pressure,
  * and its approach is towards a point on the face at a distance lx from a line load. NaN before a
  * load, and for the full model. */
 RUGO_API double rugo_contact_approach(const struct rugo_contact *contact);
-/* Returns the least mean pressure of full contact of the surface begun; NaN where there is none,
- * and for the full model. */
+/* Returns the least mean pressure of full contact of the surface begun; NaN without a
+ * surface, in free space, and for the full model. */
 RUGO_API double rugo_contact_full_pressure(const struct rugo_contact *contact);
 
 #ifdef __cplusplus

@@ -21,7 +21,8 @@
     ENTRY(LOGNORMAL, "lognormal", 4)                                                               \
     ENTRY(GAMMA, "gamma", 5)                                                                       \
     ENTRY(BETA, "beta", 6)
-/* Beside them: any distribution of finite mean and deviation, by its quantiles. */
+/* Beside them: any distribution that is not constant and has a finite fourth moment, by its
+ * quantiles. */
 #define RUGO_QUANTILE_VALUE 3
 
 /* What a summit is: above its 8 neighbours, above its 4 neighbours, or a true maximum of the

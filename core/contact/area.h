@@ -24,8 +24,7 @@ struct contact_area {
 struct area_law;
 struct area_workspace;
 /* Calibrates the position of edges for this model on this grid (area_law.h), in some ten
- * milliseconds. Borrows the compliance, which must outlive it. ERROR_INPUT where a grid's spacings
- * differ by more than a factor of 100. */
+ * milliseconds. Borrows the compliance, which must outlive it. Fails as area_law_make. */
 int area_workspace_create(struct area_workspace **out, const struct compliance *compliance,
                           struct error *err);
 void area_workspace_destroy(struct area_workspace **workspace);

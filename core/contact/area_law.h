@@ -21,7 +21,8 @@ struct area_law {
 };
 
 /* Takes some ten milliseconds for a surface, times the larger of its spacings over the smaller; a
- * few for a profile. ERROR_INPUT where that ratio is above 100. */
+ * few for a profile. ERROR_INPUT where that ratio is above 100; ERROR_NUMERIC where a solution for
+ * it fails; ERROR_MEMORY. */
 int area_law_make(const struct grid *grid, const struct block *block, struct area_law *out,
                   struct error *err);
 

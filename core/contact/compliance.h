@@ -44,7 +44,8 @@ double block_compliance_exact(double k, const struct block *block);
  * space and of area laws (area_law.h) grow with that ratio, however few the points. */
 int compliance_check_spacings(const struct grid *grid, struct error *err);
 
-/* ERROR_INPUT for a block out of its ranges (block_check); ERROR_MEMORY. Time: about waves x
+/* ERROR_INPUT for a grid or block out of range (grid_check, block_check), too many layers, or a
+ * height out of proportion to the cell; ERROR_MEMORY. Time: about waves x
  * layers. */
 int compliance_create(struct compliance **out, const struct grid *grid, const struct block *block,
                       struct error *err);

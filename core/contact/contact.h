@@ -72,7 +72,8 @@ struct contact_state {
 
 struct contact;
 
-/* Borrows the compliance, which must outlive it. */
+/* Borrows the compliance, which must outlive it. ERROR_INPUT for a tolerance outside (0, 1) or a
+ * hardness that is not above 0; ERROR_MEMORY. */
 int contact_create(struct contact **out, const struct compliance *compliance,
                    const struct contact_options *options, struct error *err);
 void contact_destroy(struct contact **contact);

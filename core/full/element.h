@@ -4,7 +4,7 @@
  *
  *   energy = sum over Gauss points of weight x energy of the material (material.h) + V (mean/2) e^2
  *
- *   hencky: e = ln theta, theta = v/V, the element's deformed over undeformed volume
+ *   hencky, neo_hooke: e = ln theta, theta = v/V, the element's deformed over undeformed volume
  *   st_venant: e is the mean of tr E;  small: of tr e
  *
  * so that only one pressure an element is constrained when nu tends to 1/2 (Simo, Taylor & Pister

@@ -62,7 +62,7 @@ struct full_report {
     double stretch; /* deformed over undeformed tributary area of the nodes in contact; NaN without
                        contact */
     double open_stretch; /* as stretch, of the nodes out of contact; 1 where there are none */
-    /* As struct face_tilt with current_areas, else 0; 0 without contact. */
+    /* As struct face_tilt with current_areas, else 0; contact_tilt is 0 without contact. */
     double face_tilt, contact_tilt;
     double slope;   /* steepest edge of the face */
     double quality; /* smallest quality of an element (element_quality); 1 for bricks */
@@ -95,7 +95,7 @@ void full_set_stop(struct full *full, int (*stop)(void *context), void *context)
 void full_set_overhangs(struct full *full, bool allowed);
 
 /* Meshes the block below a surface (copied; the mean height does not matter), without contact.
- * ERROR_INPUT for a surface that is not finite or too steep. */
+ * ERROR_INPUT for a surface that is not finite, too steep, or too high for the block. */
 int full_begin(struct full *full, const double *z, struct error *err);
 /* Presses to a mean pressure >= 0, in load steps where needed. The message of ERROR_NUMERIC names
  * the load that was reached, as where the limit is used up, which ends steps and iterations of the

@@ -44,8 +44,8 @@ static inline double mesh_nodes_bound(const struct grid *grid, size_t layers) {
 
 /* Makes the mesh of a block with a flat face. transition: depth in widths of the wide columns from
  * which columns become twice as wide, where their numbers are even and at least 4 remain; INFINITY
- * keeps all columns equal. ERROR_INPUT for a grid or block out of range (compliance.h) or a
- * transition below 1; ERROR_MEMORY. */
+ * keeps all columns equal. ERROR_INPUT for a grid or block out of range (block.h), too
+ * many layers or nodes, or a transition below 1; ERROR_MEMORY. */
 int mesh_create(struct mesh **out, const struct grid *grid, const struct block *block,
                 double transition, struct error *err);
 void mesh_destroy(struct mesh **mesh);

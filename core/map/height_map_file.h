@@ -1,6 +1,7 @@
 /* Height maps in files: NumPy's npy, CSV, and x y z lines.
  *
- * npy: versions 1 and 2, '<f8' or '<f4', C order, shape (ny, nx) or (n,). csv: one grid row a line,
+ * npy: versions 1 to 3, f2, f4, f8, and i and u of 1 to 8 bytes, in either order of bytes and of
+ * points, shape (ny, nx) or (n,). csv: one grid row a line,
  * separated by commas, semicolons, tabs or spaces; lines that start with # and empty lines are
  * skipped; one column is a profile. xyz: three numbers a line, x fastest, a regular grid. A height
  * that was not measured is NaN, in text "nan". */

@@ -12,7 +12,8 @@ struct grid {
     double lx, ly; /* cell lengths, any unit */
 };
 
-/* ERROR_INPUT when a count is 0, the product overflows, or a length is not positive and finite. */
+/* ERROR_INPUT for fewer than 2 by 1 points, for more than memory can hold, and for a length that is
+ * not positive and finite; ly of a profile is not looked at. */
 int grid_check(const struct grid *grid, struct error *err);
 static inline bool grid_is_profile(const struct grid *grid) {
     return grid->ny == 1;

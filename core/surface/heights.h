@@ -18,8 +18,8 @@ struct heights {
     enum heights_type type;
     double shape;  /* of distributions that take one: distribution.shape_means */
     double second; /* of distributions with has_second; 0: as the first */
-    /* HEIGHTS_QUANTILE: rising on (0, 1), any finite mean and deviation (standardised by
-     * quadrature); must be safe to call from many threads. context is borrowed. */
+    /* HEIGHTS_QUANTILE: on (0, 1), nowhere falling and not constant, of finite fourth moment
+     * (standardised by quadrature); must be safe to call from many threads. context is borrowed. */
     double (*quantile)(double probability, const void *context);
     const void *context;
     const struct height_table *table; /* HEIGHTS_TABLE: borrowed */

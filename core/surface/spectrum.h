@@ -17,7 +17,7 @@ double exponential_correlation(const struct spectrum *spectrum, const struct gri
                                size_t j);
 /* Fills the powers of modes, whose band is the whole grid, and their count. No surface has a
  * negative power: there it is set to 0, and modes->clipped is the share of these modes in all.
- * ERROR_MEMORY alone. */
+ * ERROR_MEMORY; ERROR_INPUT for too long a side. */
 int exponential_fill(struct modes *modes, const struct spectrum *spectrum, struct error *err);
 
 /* Quick estimates from the radial spectrum alone, before a discrete spectrum is made. */
@@ -31,7 +31,8 @@ double spectrum_expected_summits(const struct spectrum *spectrum, const struct g
 
 /* Samples the spectrum on the grid and scales it. ERROR_INPUT when the spectrum is out of range,
  * has no mode on this grid, or the grid does not resolve its shortest wavelength (needs at least 2
- * points a wave; the shared Nyquist mode of 2 points a wave is kept as one self-conjugate mode). */
+ * points a wave; the shared Nyquist mode of 2 points a wave is kept as one self-conjugate mode),
+ * and for two faces, or strata, of which one is translated; ERROR_MEMORY. */
 int modes_create(struct modes **out, const struct spectrum *spectrum, const struct grid *grid,
                  struct error *err);
 void modes_destroy(struct modes **modes);
@@ -55,8 +56,10 @@ int spectrum_ratio_continuous(int dimension, double hurst, double ratio_rolloff,
                               double *ratio, struct error *err);
 /* Finds that ratio by the discrete sums of a cell of length_ratio long waves (square). The discrete
  * alpha is a step function of the ratio. The returned ratio's lambda_s is that of the mode ring
- * whose alpha is nearest; *reached is that alpha. Surfaces: ERROR_NUMERIC where it differs by more
- * than 1 %; sums of modes that are not isotropic (isotropy below 0.9 or above 1.1) are left out. */
+ * whose alpha is nearest; *reached is that alpha. ERROR_INPUT for
+ * arguments out of range; ERROR_NUMERIC, with the range, where no ratio gives alpha, and on
+ * surfaces where the nearest is off by more than 1 %; ERROR_MEMORY. Sums of modes that are not
+ * isotropic (isotropy below 0.9 or above 1.1) are left out. */
 int spectrum_ratio_discrete(int dimension, double hurst, double ratio_rolloff, double length_ratio,
                             double alpha, double *ratio, double *reached, struct error *err);
 /* As above, of surfaces on a cell of length_x by length_y long waves. */

@@ -32,8 +32,9 @@ void generator_destroy(struct generator **generator);
 const struct modes *generator_modes(const struct generator *generator);
 /* Returns the spectrum that was drawn for the last run: the prescribed one, or with random
  * amplitudes or a counter face its own; of a stratified face, the prescribed one. The surface has
- * it, to rounding, unless heights were kept in its place (KEEP_HEIGHTS). Lives as long, and changes
- * with the next run. */
+ * it, to rounding, where it keeps its spectrum (KEEP_SPECTRUM). Of a translated surface it is that
+ * of the Gaussian field; grooves come on top of it. Lives as long, and changes with the next run.
+ */
 const struct modes *generator_drawn(const struct generator *generator);
 /* Peak bytes of a generator of one face with these settings, including the caller's z of
  * grid_points doubles; and those that a generator of two faces takes beside both, with all modes of
@@ -43,7 +44,9 @@ double generator_bytes(const struct grid *grid, size_t mode_x, size_t mode_y,
 double generator_sum_bytes(const struct grid *grid, size_t mode_x, size_t mode_y);
 
 /* Fills z[grid_points] (from any aligned allocation). report may be NULL. Non-Gaussian generation
- * converges on the generator's grid; surface_resample gives the same realisation on a finer one. */
+ * converges on the generator's grid; surface_resample gives the same realisation on a finer one.
+ * ERROR_NUMERIC where the heights that were drawn are all equal or not finite; ERROR_STOPPED where
+ * options.stop says so; ERROR_MEMORY. z is undefined after an error. */
 int generator_run(struct generator *generator, struct random_key key, double *z,
                   struct surface_report *report, struct error *err);
 

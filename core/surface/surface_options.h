@@ -23,7 +23,7 @@ enum surface_iteration {
 enum surface_draw { DRAW_RANDOM, DRAW_QUANTILES };
 
 /* Gaussian heights need `amplitudes` alone, and so does the law of translation. The others are of
- * the iteration of Perez-Rafols & Almqvist (2019; FORMULAS.md, F5.1 to F5.4). */
+ * the iteration of Perez-Rafols & Almqvist (2019; FORMULAS.md, F5.1 to F5.6). */
 struct surface_options {
     struct heights heights;
     enum height_law law; /* LAW_TRANSLATION: of these heights by spectrum.translation */

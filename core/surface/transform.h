@@ -34,8 +34,9 @@ int transform_set_team(struct transform *transform, struct team *team, struct er
 /* Returns the plan's own half spectrum, (mode_x + 1) * ny values, aligned; valid as long as the
  * plan. */
 double complex *transform_spectrum(struct transform *transform);
-/* Computes z[ny*nx] from the plan's spectrum, which it destroys. Rows beyond mode_y are taken as
- * zero. Self-conjugate modes must be real; the mx = 0 column must be conjugate-symmetric. */
+/* Computes z[ny*nx] from the plan's spectrum, which it destroys. Rows beyond mode_y count, too:
+ * the caller sets them to 0. Self-conjugate modes must be real; the mx = 0 column must be
+ * conjugate-symmetric. */
 void transform_inverse(struct transform *transform, double *z);
 /* As transform_inverse, in two steps, for surfaces larger than memory: the columns once, then any
  * rows first .. first + count - 1 into z[count*nx], as often as needed. */

@@ -101,9 +101,7 @@ static int measure_parts(struct fit *fit, struct error *err) {
     return status;
 }
 
-static int refuse_grooves(const struct fit *fit, struct error *err) {
-    const struct map_groove *first = &fit->grooves.found.family[0];
-    const char *unit = fit->unit;
+static int refuse_grooves(const struct map_groove *first, const char *unit, struct error *err) {
     return error_set(
         err, ERROR_INPUT,
         "the map has grooves (every %.4g%s%s, %.3g%s%s deep; p-value %.2g), and surfaces that "
@@ -113,14 +111,25 @@ static int refuse_grooves(const struct fit *fit, struct error *err) {
         unit, first->p_value);
 }
 
-/* Takes the grooves out of the heights that are fitted. */
+/* Of several maps, none may have grooves. */
+static int check_grooves(const struct fit *fit, size_t m, struct error *err) {
+    const struct measured_map map = {&fit->maps[m].grid, fit->maps[m].z, BOUNDARY_OPEN};
+    struct map_grooves found;
+    int status = map_grooves_find(&found, &map, err);
+    return status == 0 && found.families > 0 ? refuse_grooves(&found.family[0], fit->unit, err)
+                                             : status;
+}
+
+/* Takes the grooves of a single map out of the heights that are fitted. */
 static int take_grooves(struct fit *fit, const cJSON *surface, struct error *err) {
     const size_t points = grid_points(fit->map.grid);
+    if (fit->count > 1)
+        return 0;
     int status = map_grooves_find(&fit->grooves.found, &fit->map, err);
     if (status != 0 || fit->grooves.found.families == 0)
         return status;
-    if (fit->count > 1 || cJSON_GetObjectItemCaseSensitive(surface, "grooves") != NULL)
-        return refuse_grooves(fit, err);
+    if (cJSON_GetObjectItemCaseSensitive(surface, "grooves") != NULL)
+        return refuse_grooves(&fit->grooves.found.family[0], fit->unit, err);
     fit->rest = array_create(points, sizeof *fit->rest);
     if (fit->rest == NULL)
         return error_memory(err, points * sizeof *fit->rest, "a map without its grooves");
@@ -429,7 +438,7 @@ static bool put_all(cJSON *surface, struct fit *fit) {
 static int check_together(const struct fit *fit, struct error *err) {
     const struct height_map *maps = fit->maps;
     int status = 0;
-    for (size_t m = 1; m < fit->count && status == 0; m++) {
+    for (size_t m = 0; m < fit->count && status == 0; m++) {
         status = check_map(&maps[m], err);
         if (status == 0 && (grid_is_profile(&maps[m].grid) != fit->profile ||
                             strcmp(maps[m].xy_unit, maps[0].xy_unit) != 0 ||
@@ -438,6 +447,8 @@ static int check_together(const struct fit *fit, struct error *err) {
                                "maps of one surface are all profiles or none, with lengths in one "
                                "unit, here \"%s\" and \"%s\", and without one trend",
                                maps[0].xy_unit, maps[m].xy_unit);
+        if (status == 0)
+            status = check_grooves(fit, m, err);
         if (status != 0)
             error_context(err, "%s", fit->source[m].file);
     }

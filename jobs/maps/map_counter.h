@@ -7,7 +7,7 @@
 #include <stdbool.h>
 
 /* The correlation of heights of two maps, and the standard deviation that it has between
- * independent faces of their spectra (FORMULAS.md, F25.3). */
+ * independent faces of their spectra (FORMULAS.md, F25.3 and F25.4). */
 struct map_correlation {
     double value, deviation;
 };

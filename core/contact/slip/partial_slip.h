@@ -37,7 +37,7 @@ struct slip_state {
     const double *qx, *qy;     /* grid_points: tractions on the block; qy of profiles is NULL */
     const double *gap;         /* grid_points */
     const double *over;      /* grid_points: displacement of the face over the flat, along the load,
-                                since      the end of pressing */
+                                since the end of pressing */
     const bool *sticks;      /* grid_points */
     size_t nodes, stuck;     /* with p > 0, and those of them that do not slip */
     double stick_area;       /* stuck over nodes; 0 without contact */

@@ -87,7 +87,8 @@ int friction_begin(struct friction *friction, const double *z, struct error *err
  * reached. After a failure it must be called again. */
 int friction_press(struct friction *friction, double pressure, struct friction_state *out,
                    struct error *err);
-/* Drags the flat to a displacement over the far side. ERROR_STATE before friction_press;
+/* Drags the flat to a displacement over the far side. ERROR_INPUT where it is not finite;
+ * ERROR_STATE before friction_press;
  * ERROR_NUMERIC, with positions and residual, where no step converges or the limit is used up.
  * After a failure the state is that of the last step that did, which may be dragged on. */
 int friction_drag(struct friction *friction, double displacement, struct friction_state *out,

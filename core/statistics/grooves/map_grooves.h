@@ -1,4 +1,5 @@
-/* Periodic grooves in a map, as machining leaves them: FORMULAS.md, F18.72 to F18.79. */
+/* Periodic grooves in a map, as machining leaves them: FORMULAS.md, F18.72 to F18.75 and
+ * F18.79. */
 #ifndef RUGO_CORE_STATISTICS_GROOVES_MAP_GROOVES_H
 #define RUGO_CORE_STATISTICS_GROOVES_MAP_GROOVES_H
 
@@ -25,8 +26,9 @@ struct map_grooves {
 };
 
 /* Seeks lines that a random face, with or without a lay, would not have. Grooves of less than
- * MAP_GROOVES_PERIODS periods across the map are not seen. Memory: eight maps. ERROR_MEMORY, or
- * ERROR_INPUT for a map of holes alone. */
+ * MAP_GROOVES_PERIODS periods across the map (profiles: twice as many) are not seen, nor any in a
+ * map of fewer than 16 points along a side. Memory: eight maps. ERROR_MEMORY; ERROR_INPUT for a map
+ * of holes alone, and for a periodic surface with holes where lines were found. */
 int map_grooves_find(struct map_grooves *out, const struct measured_map *map, struct error *err);
 /* Takes the mean profiles of all families out of heights on the grid of the map. */
 void map_grooves_take(const struct map_grooves *grooves, const struct grid *grid, double *z);

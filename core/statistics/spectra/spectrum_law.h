@@ -1,5 +1,5 @@
-/* The likelihood of a self-affine law, given the rings of a map, and its maximum. Private to
- * spectrum_fit.c. Wave numbers are in waves per shorter side here.
+/* The likelihood of a self-affine law, given the rings of a map, and its maximum. For
+ * spectrum_fit.c and spectrum_scores.h. Wave numbers are in waves per shorter side here.
  *
  * Rings count as independent, each as a mean distributed as chi squared (Whittle's likelihood);
  * what neighbours share enters the errors (FORMULAS.md, F18.14). */

@@ -1,5 +1,5 @@
 /* What the rings of a windowed map are expected to hold of a spectral density: the mean, over the
- * modes of a ring, of its convolution with the power of the window (FORMULAS.md, F18.13). Wave
+ * modes of a ring, of its convolution with the power of the window (FORMULAS.md, F18.14). Wave
  * numbers are in waves per shorter side here. */
 #ifndef RUGO_CORE_STATISTICS_SPECTRA_SPECTRUM_LEAKAGE_H
 #define RUGO_CORE_STATISTICS_SPECTRA_SPECTRUM_LEAKAGE_H

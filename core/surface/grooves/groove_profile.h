@@ -27,7 +27,7 @@ struct groove_profile {
 /* Returns the coefficient of exp(2 pi i h t), h >= 1, of a shape but GROOVE_HARMONICS. */
 double complex groove_shape_coefficient(enum groove_shape shape, size_t h);
 /* Makes the profile sum_h amplitude[h] cos(2 pi h t + phase[h]), h from 1, scaled to depth 1.
- * ERROR_INPUT where it is flat. */
+ * ERROR_INPUT where it is flat, and for no harmonics or more than GROOVE_HARMONICS_MOST. */
 int groove_profile_of_harmonics(struct groove_profile *out, size_t count, const double *amplitude,
                                 const double *phase, struct error *err);
 /* Returns the height at t periods. */

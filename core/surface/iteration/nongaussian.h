@@ -1,5 +1,5 @@
 /* Non-Gaussian surfaces, made by alternating between a spectrum and a height distribution
- * (Perez-Rafols & Almqvist 2019; FORMULAS.md, F5.1 to F5.4). The generator in surface.c draws the
+ * (Perez-Rafols & Almqvist 2019; FORMULAS.md, F5.1 to F5.6). The generator in surface.c draws the
  * Gaussian start and owns one of these for each case; it is a workspace for one thread. */
 #ifndef RUGO_CORE_SURFACE_NONGAUSSIAN_H
 #define RUGO_CORE_SURFACE_NONGAUSSIAN_H
@@ -22,7 +22,9 @@ void nongaussian_destroy(struct nongaussian **nongaussian);
 void nongaussian_aim(struct nongaussian *g, const struct surface_aim *aim);
 
 /* On entry z[ny*nx] is the Gaussian start, on return the surface. transform belongs to the grid and
- * band of modes; its spectrum is overwritten. report may be NULL. After an error z is undefined. */
+ * band of modes; its spectrum is overwritten. report may be NULL. ERROR_NUMERIC where the heights
+ * that were drawn are all equal or not finite; ERROR_STOPPED where options.stop says so;
+ * ERROR_MEMORY. After an error z is undefined. */
 int nongaussian_run(struct nongaussian *g, struct transform *transform, struct random_key key,
                     double *z, struct surface_report *report, struct error *err);
 
