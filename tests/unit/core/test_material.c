@@ -217,8 +217,8 @@ static double varied_energy(int d, const struct material *material, double h[3][
     return p.energy + pull * p.dilatation;
 }
 
-/* First and second differences along a direction: steps of 1e-4 leave 1e-8 of the fourth
- * derivative and 1e-16/1e-8 of rounding. */
+/* First and second differences along a direction: steps of 3e-4 leave some 1e-8 of the third and
+ * fourth derivatives, and in the second difference 1e-16/1e-7 of rounding. */
 static void check_differences(int d, const struct material *material, double h[3][3],
                               double g[3][3]) {
     static const double STEP = 3e-4, PULL = 0.07;

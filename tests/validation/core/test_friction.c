@@ -354,7 +354,8 @@ static double imbalance(double slope, double poisson, int steps, size_t press_st
 
 /* The works of both loads are what friction takes and the block keeps: nothing else gives or takes
  * energy, with tractions and pressures changing at once at finite strain. Trapezoids leave an error
- * of second order in the step. */
+ * of second order in the step: of four times as many steps a sixteenth, where one of first order
+ * would leave a quarter. */
 static void energy(void **state) {
     (void)state;
     static const struct { double slope, poisson; } FACES[] = {{0.3, 0.3}, {0.5, 0.4999}};
@@ -362,7 +363,7 @@ static void energy(void **state) {
         double few = imbalance(FACES[a].slope, FACES[a].poisson, 5, 0);
         double many = imbalance(FACES[a].slope, FACES[a].poisson, 20, 0);
         assert_true(many <= 1e-4);
-        assert_true(many <= few / 4);
+        assert_true(many <= few / 8);
     }
     assert_true(imbalance(0.3, 0.3, 20, 3) <= 1e-4);
 }

@@ -437,8 +437,8 @@ static void a_flat_block_is_all_in_contact(void **state) {
     close_both(&p);
 }
 
-/* The rough profile with its hills cut off at the mean height: a third of it and more touches at
- * once. And two summits equally high, which touch at once too. */
+/* The rough profile with its hills cut off at the mean height: more than 10 of its 64 nodes touch
+ * at once. And two summits equally high, which touch at once too. */
 static void plateaus_and_twins_touch_at_once(void **state) {
     (void)state;
     for (int twins = 0; twins < 2; twins++) {

@@ -116,8 +116,10 @@ static void wider_columns_give_the_curve_of_equal_ones(void **state) {
 static void extruded_profiles_are_profiles(void **state) {
     (void)state;
     struct mesh_curve profile = press(1.2, 6, POINTS, 1), surface = press(1.2, 6, POINTS, THICK);
-    for (size_t k = 0; k < LOADS; k++)
+    for (size_t k = 0; k < LOADS; k++) {
         check_relative(surface.gap[k], profile.gap[k], 1e-8);
+        check_relative(surface.area[k], profile.area[k], 1e-8);
+    }
 }
 
 int main(void) {

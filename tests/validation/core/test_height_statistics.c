@@ -172,8 +172,8 @@ static double chance_of(double p) {
     return 4 * sqrt(p * (1 - p) / (double)count);
 }
 
-/* p-values, `step` bytes apart: as many below 0.1, 0.25 and 0.5 as there should be, within
- * statistical errors and 3 in 100. */
+/* p-values, of which `first` is that of the first patch: as many below 0.05, 0.1, 0.25, 0.5 and
+ * 0.75 as there should be, within statistical errors and 3 in 100. */
 static void check_uniform(const char *what, const double *first) {
     static const double SHARES[] = {0.05, 0.1, 0.25, 0.5, 0.75};
     printf("  p-values of %s:", what);

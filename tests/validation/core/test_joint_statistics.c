@@ -186,8 +186,7 @@ static void curvature_at_grid_summits(void **state) {
 }
 
 /* What a grid shows, against theory of the same grid (F8.4): density, mean curvature, and heights
- * and curvatures together. Surfaces of 13000 waves of fixed amplitude are Gaussian to less than the
- * errors. */
+ * and curvatures together. Random amplitudes make Gaussian surfaces. */
 static void check_grid(size_t points, enum summit_stencil stencil,
                        enum summit_curvature curvature) {
     const struct grid grid = {64 * points, 64 * points, 64, 64};

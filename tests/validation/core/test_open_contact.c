@@ -1,5 +1,5 @@
 /* Protects contact in free space on maps of one summit: Hertz's area, peak pressure, approach and
- * stiffness (F11.3) within 0.5 % where 64 points lie across the contact, wherever its middle lies
+ * stiffness (F11.3) within 0.2 % where 64 points lie across the contact, wherever its middle lies
  * between them, and the better the finer. */
 #include "tests/support/check.h"
 

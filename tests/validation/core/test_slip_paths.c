@@ -188,7 +188,7 @@ static void check_drawn(const struct drawn *drawn, double traction,
     assert_true(state->violation <= drawn->options.tolerance && state->sets <= SETS_MOST);
 }
 
-/* Paths of rising and falling loads on drawn scenes: all end, and at most one scene of 300 without
+/* Paths of rising and falling loads on drawn scenes: all end, and at most one scene of 100 without
  * a solution, which is said. */
 static void drawn_paths(void **unused) {
     (void)unused;

@@ -103,7 +103,7 @@ static struct figures measure(size_t points, enum summit_stencil stencil) {
 
 /* The expected number of nine-point summits of a Gaussian grid is the probability that all eight
  * differences to the neighbours are positive: an orthant probability of the known autocorrelation,
- * computed once by tests/ validation/grid_summits.py to 1e-4. A surface of fixed amplitudes is
+ * computed once by tests/validation/grid_summits.py to 1e-4. A surface of fixed amplitudes is
  * Gaussian up to its number of modes. */
 static void nine_point_density_is_that_of_the_grid(void **state) {
     (void)state;

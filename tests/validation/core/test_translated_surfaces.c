@@ -122,7 +122,8 @@ static void measure(struct scene *s, struct random_key key) {
     }
 }
 
-/* Within 4.5 standard errors of the mean over surfaces: eleven measures of each of six laws. */
+/* Within 4.5 standard errors of the mean over surfaces: eleven measures of each of six laws of
+ * surfaces and four of profiles. */
 static void check_means(const struct scene *s, size_t n, const double expected[MEASURES]) {
     for (int a = 0; a < MEASURES; a++) {
         double mean = s->sums[a] / (double)n;

@@ -110,8 +110,9 @@ static void block_errors_come_true(void **state) {
     cJSON_Delete(deep);
 }
 
-/* Near full contact Persson's area is that of the coated block, within the scatter of three
- * surfaces; that of the bare block would be 0.25 or more off. Its other theories are left out. */
+/* At the highest load, where half of the face and more touches, Persson's area is that of the
+ * coated block, within the scatter of three surfaces; that of the bare block would be 0.25 or more
+ * off. Its other theories are left out. */
 static void persson_knows_the_coating(void **state) {
     (void)state;
     cJSON *document = solve(SURFACE "\"levels\": [8], " COATING("0.3", "4"), 3);

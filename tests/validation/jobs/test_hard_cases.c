@@ -1,5 +1,6 @@
 /* The named catalogue of hard surfaces: each ends in curves with finite roughness and densities
- * that add up, or is refused with words when it is checked; never a hang, a NaN or a crash. */
+ * that add up to 1 where their bins hold all, or is refused with words when it is checked; never a
+ * hang, a NaN or a crash. */
 #include "jobs/kind.h"
 #include "jobs/merger.h"
 #include "jobs/runner.h"
@@ -143,6 +144,45 @@ static void assert_numbers(const struct hard_case *hard, const cJSON *value) {
         assert_numbers(hard, child);
 }
 
+static double number_at(const cJSON *array, int n) {
+    const cJSON *value = cJSON_GetArrayItem(array, n);
+    return cJSON_IsNumber(value) ? value->valuedouble : (double)NAN;
+}
+
+/* The share of what was counted that lies in the bins of a density is 1 at most, and 1 where
+ * nothing lies outside of them. A density of no summits has no values. */
+static void assert_share(const struct hard_case *hard, const cJSON *curve) {
+    const cJSON *x = json_at(curve, "/x"), *y = json_at(curve, "/y");
+    const double width = number_at(x, 1) - number_at(x, 0);
+    const double outside =
+        json_at(curve, "/underflow")->valuedouble + json_at(curve, "/overflow")->valuedouble;
+    double share = 0;
+    if (isnan(number_at(y, 0)))
+        return;
+    for (int b = 0; b < cJSON_GetArraySize(y); b++)
+        share += width * number_at(y, b);
+    if (!(share <= 1 + 1e-9) || (outside < 0.5 && !(share >= 1 - 1e-9)))
+        fail_msg("%s: %s adds up to %.17g, and %g are outside", hard->name,
+                 json_at(curve, "/quantity")->valuestring, share, outside);
+}
+
+/* Of densities over one variable; that of heights is one of them. */
+static void assert_densities(const struct hard_case *hard, const cJSON *document) {
+    const cJSON *curve;
+    bool heights = false;
+    cJSON_ArrayForEach(curve, json_at(document, "/curves")) {
+        const char *quantity = json_at(curve, "/quantity")->valuestring;
+        const char *end = strstr(quantity, "_pdf");
+        if (end == NULL || end[4] != '\0' || json_at(curve, "/x2") != NULL)
+            continue;
+        assert_share(hard, curve);
+        heights = heights || (strcmp(quantity, "height_pdf") == 0 &&
+                              !isnan(number_at(json_at(curve, "/y"), 0)));
+    }
+    if (!heights)
+        fail_msg("%s: no density of heights", hard->name);
+}
+
 static void run_case(const struct hard_case *hard) {
     const struct job_kind *kind = kind_find("statistics");
     struct fault_list faults = {0};
@@ -175,6 +215,7 @@ static void run_case(const struct hard_case *hard) {
     assert_finite(hard, document, "/scalars/nayak_alpha/value");
     assert_finite(hard, document, "/scalars/summits/value");
     assert_numbers(hard, document);
+    assert_densities(hard, document);
     cJSON_Delete(document);
     block_result_clear(&result);
     runner_destroy(&runner);

@@ -1,9 +1,10 @@
 /* Protects: surfaces like a patch are like it. Of patches of known surfaces - isotropic, with a
- * lay, noisy, stratified - the sub-maps of the surfaces have the patch's RMS height, slope and
- * Nayak's alpha in the mean. Percentiles of patches with Gaussian heights are uniform in what was
- * not fitted. Patches of another class are refused, or found by the verdict. Without RUGO_EFFORT
- * one map of some kinds is tried, with few surfaces each; RUGO_EFFORT=1 tries 24, and RUGO_TABLE=1
- * prints each. RUGO_SIDE=256 takes maps of so many points a side. */
+ * lay, noisy, stratified - the sub-maps of the surfaces have the patch's RMS height and slope in
+ * the mean over patches; each by itself, and RMS curvature and Nayak's alpha, within 1 % and three
+ * standard errors but for some. Percentiles of patches with Gaussian heights are uniform in what
+ * was not fitted. Patches of another class are refused, or found by the verdict. Without
+ * RUGO_EFFORT one map of some kinds is tried, with few surfaces each; RUGO_EFFORT=1 tries 24, and
+ * RUGO_TABLE=1 prints each. RUGO_SIDE=256 takes maps of so many points a side. */
 #include "core/map/preparation/detrend.h"
 #include "core/statistics/patch.h"
 #include "schema/json/json.h"

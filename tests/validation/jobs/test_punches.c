@@ -1,6 +1,7 @@
 /* Protects: the contact of shapes with plateaus, sides and tips in free space, wherever they lie
- * between the points: areas of flat square and round punches, approaches of cones and spheres, each
- * within the reported errors, and within bounds of what points can know. */
+ * between the points: areas of flat square and round punches and approaches of cones, each within
+ * the reported errors, approaches of spheres three of four, and all within bounds of what points
+ * can know. */
 #include "jobs/maps/press/map_press_error.h"
 #include "tests/support/check.h"
 #include "tests/support/effort.h"
@@ -97,6 +98,7 @@ static void approaches_of_tips(void **state) {
     (void)state;
     uint64_t seed = seed_or(12);
     static const size_t SIDES[] = {32, 64, 128};
+    size_t within = 0, spheres = 0;
     for (size_t s = 0; s < 3; s++)
         for (uint64_t n = 0; n < cases_of(12); n++)
             for (enum shape shape = CONE; shape <= SPHERE; shape++) {
@@ -107,17 +109,21 @@ static void approaches_of_tips(void **state) {
                 double a = shape == CONE ? sqrt(approach.force / (M_PI / 2 * 0.1))
                                          : cbrt(3 * approach.force * radius / 4);
                 double exact = shape == CONE ? M_PI / 2 * a * 0.1 : a * a / radius;
-                /* what every second point changes may vanish on a sphere, whose approach errs by
-                 * less than (0.2/a)^2 */
-                check_close(approach.value * approach.height, exact,
-                            approach.told * approach.height +
-                                (shape == SPHERE ? 0.04 / (a * a) * exact : 0));
+                /* what every second point changes may vanish on a sphere, of which most are asked
+                 * below to be within what is reported; all err by less than (0.2/a)^2 */
+                double off = fabs(approach.value * approach.height - exact);
+                if (shape == CONE)
+                    check_close(off, 0, approach.told * approach.height);
+                spheres += shape == SPHERE;
+                within += shape == SPHERE && off <= approach.told * approach.height;
                 /* in contact radii: the cone's tip lies half a diagonal from a point at most */
                 check_relative(approach.value * approach.height, exact,
                                shape == CONE ? 0.5 / a : 0.04 / (a * a));
                 assert_true(approach.told * approach.height <
                             exact * (shape == CONE ? 1.5 / a : 1 / (a * a)));
             }
+    printf("%zu of %zu spheres within the reported error\n", within, spheres);
+    assert_true(spheres >= 12 && 4 * within >= 3 * spheres);
 }
 
 int main(void) {

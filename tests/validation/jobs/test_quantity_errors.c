@@ -1,7 +1,7 @@
 /* Reported errors of what studies ask of a contact cover the truth: hardness, conductance, leak,
  * coatings and slip, against finer meshes and stricter solvers on the same realisations. With
  * RUGO_EFFORT twenty scenes of profiles and surfaces, six loads of 0.003 to 0.6 each (of a face
- * that yields up to 0.92 of its hardness) and three choices of meshes; without it three scenes on
+ * that yields up to 0.92 of its hardness) and three choices of meshes; without it two scenes on
  * coarser meshes, of one. */
 #include "tests/support/contact_document.h"
 #include "tests/support/effort.h"

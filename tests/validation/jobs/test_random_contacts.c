@@ -231,7 +231,8 @@ static void count_bounds(const struct random_contact *of, const struct load_valu
     }
 }
 
-/* Of single contacts half a percent may be beyond: of 40 with some loads each, three values. */
+/* Of each value, over 40 contacts with some loads each, 1 % of those within their bounds and three
+ * more may lie beyond. */
 static void tolerances_leave_what_they_say(void **state) {
     (void)state;
     uint64_t seeds = seed_or(20);

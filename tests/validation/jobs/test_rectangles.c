@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Of four standard errors a true value is outside once in 16000 comparisons; here are about 200. */
+/* Of four standard errors a true value is outside once in 16000 comparisons; here are 60. */
 static const double ERRORS = 4;
 
 static cJSON *study_of(const char *kind_name, const char *parameters_text, uint64_t count) {

@@ -1,6 +1,5 @@
 /* Reported errors of curves by sliding (friction at finite strain) cover the truth: meshes against
- * finer ones, the solver against a stricter one, on the same realisations. What the half-space
- * differs by, the error of its model, is known. */
+ * finer ones, the solver against a stricter one, on the same realisations. */
 #include "tests/support/contact_document.h"
 #include "tests/support/effort.h"
 #include <stdio.h>

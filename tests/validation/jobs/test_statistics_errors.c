@@ -116,6 +116,7 @@ static void check_quantity(size_t q) {
                 none[c]++;
                 continue;
             }
+            assert_true(error > 0);
             double z = fabs(y - told[q].truth[b]) / error;
             all[c]++;
             one[c] += z <= 1;

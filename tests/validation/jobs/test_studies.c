@@ -253,8 +253,7 @@ static void profiles(void **state) {
     cJSON_Delete(curves);
 }
 
-/* Position of the largest value, and the mean over bins with at least 1 % of it between two
- * heights. */
+/* The height at which a density is largest. */
 static double mode_of(const cJSON *pdf) {
     int best = 0;
     for (int b = 1; b < cJSON_GetArraySize(json_at(pdf, "/y")); b++)
@@ -262,6 +261,7 @@ static double mode_of(const cJSON *pdf) {
     return point(pdf, "/x", best);
 }
 
+/* The mean curvature of summits in the first bin whose middle is at this height or above it. */
 static double curvature_at(const cJSON *curves, double z) {
     const cJSON *curve = curve_of(curves, "summit_mean_curvature");
     int b = 0;
