@@ -224,12 +224,11 @@ static void grooves_are_beside_the_random_part(void **state) {
     }
     for (size_t a = 0; a < sizeof OF_GRID / sizeof *OF_GRID; a++) {
         const char *name = statistics_scalar_name(OF_GRID[a]);
-        const struct scalar *found = NULL;
+        double grid = 0;
         for (size_t n = 0; n < result.scalar_count; n++)
             if (strcmp(result.scalars[n].name, name) == 0)
-                found = &result.scalars[n];
-        assert_non_null(found);
-        assert_true(isnan(found->grid));
+                grid = result.scalars[n].grid;
+        assert_true(isnan(grid));
     }
     cJSON_Delete(parameters);
     result_clear(&result);
