@@ -111,30 +111,30 @@ static int refuse_grooves(const struct map_groove *first, const char *unit, stru
         unit, first->p_value);
 }
 
-/* Of several maps, none may have grooves. */
-static int check_grooves(const struct fit *fit, size_t m, struct error *err) {
-    const struct measured_map map = {&fit->maps[m].grid, fit->maps[m].z, BOUNDARY_OPEN};
-    struct map_grooves found;
-    int status = map_grooves_find(&found, &map, err);
-    return status == 0 && found.families > 0 ? refuse_grooves(&found.family[0], fit->unit, err)
-                                             : status;
-}
-
-/* Takes the grooves of a single map out of the heights that are fitted. */
+/* Takes the grooves out of the heights that are fitted. Of several maps none may have any. */
 static int take_grooves(struct fit *fit, const cJSON *surface, struct error *err) {
     const size_t points = grid_points(fit->map.grid);
-    if (fit->count > 1)
+    const bool refused =
+        fit->count > 1 || cJSON_GetObjectItemCaseSensitive(surface, "grooves") != NULL;
+    struct map_grooves *found = &fit->grooves.found;
+    for (size_t m = 0; m < fit->count; m++) {
+        const struct height_map *one = &fit->maps[m];
+        const struct measured_map map = {&one->grid, one->z, BOUNDARY_OPEN};
+        int status = map_grooves_find(found, &map, err);
+        if (status == 0 && found->families > 0 && refused)
+            status = refuse_grooves(&found->family[0], one->xy_unit, err);
+        if (status != 0 && fit->count > 1)
+            error_context(err, "%s", fit->source[m].file);
+        if (status != 0)
+            return status;
+    }
+    if (found->families == 0)
         return 0;
-    int status = map_grooves_find(&fit->grooves.found, &fit->map, err);
-    if (status != 0 || fit->grooves.found.families == 0)
-        return status;
-    if (cJSON_GetObjectItemCaseSensitive(surface, "grooves") != NULL)
-        return refuse_grooves(&fit->grooves.found.family[0], fit->unit, err);
     fit->rest = array_create(points, sizeof *fit->rest);
     if (fit->rest == NULL)
         return error_memory(err, points * sizeof *fit->rest, "a map without its grooves");
     memcpy(fit->rest, fit->map.z, points * sizeof *fit->rest);
-    map_grooves_take(&fit->grooves.found, fit->map.grid, fit->rest);
+    map_grooves_take(found, fit->map.grid, fit->rest);
     fit->map.z = fit->rest;
     return 0;
 }
@@ -438,7 +438,7 @@ static bool put_all(cJSON *surface, struct fit *fit) {
 static int check_together(const struct fit *fit, struct error *err) {
     const struct height_map *maps = fit->maps;
     int status = 0;
-    for (size_t m = 0; m < fit->count && status == 0; m++) {
+    for (size_t m = 1; m < fit->count && status == 0; m++) {
         status = check_map(&maps[m], err);
         if (status == 0 && (grid_is_profile(&maps[m].grid) != fit->profile ||
                             strcmp(maps[m].xy_unit, maps[0].xy_unit) != 0 ||
@@ -447,8 +447,6 @@ static int check_together(const struct fit *fit, struct error *err) {
                                "maps of one surface are all profiles or none, with lengths in one "
                                "unit, here \"%s\" and \"%s\", and without one trend",
                                maps[0].xy_unit, maps[m].xy_unit);
-        if (status == 0)
-            status = check_grooves(fit, m, err);
         if (status != 0)
             error_context(err, "%s", fit->source[m].file);
     }

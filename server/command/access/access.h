@@ -20,22 +20,18 @@ struct access_options {
     {"db",   0,    OPTION_TEXT,                                                                    \
      0,      0,    offsetof(options, place.database),                                              \
      "FILE", NULL, "the local store (" DATABASE ")"},                                              \
-        {"server", 0,    OPTION_TEXT,       0, 0, offsetof(options, place.server),                 \
-         "URL",    NULL, "a server instead"},                                                      \
-        ACCESS_TRUST_ROWS(options)
-#define ACCESS_SERVER_ROWS(options)                                                                \
-    {"server", 0, OPTION_TEXT, 0, 0, offsetof(options, place.server), "URL", NULL, "the server"},  \
-        ACCESS_TRUST_ROWS(options)
-#define ACCESS_TRUST_ROWS(options)                                                                 \
-    {"ca-file",                                                                                    \
-     0,                                                                                            \
-     OPTION_TEXT,                                                                                  \
-     0,                                                                                            \
-     0,                                                                                            \
-     offsetof(options, place.trust.ca_file),                                                       \
-     "FILE",                                                                                       \
-     NULL,                                                                                         \
-     "certificates of authorities that sign it, PEM, or RUGO_CA_FILE; else the system's"},         \
+        ACCESS_SERVER_ROWS(options, "a server instead")
+#define ACCESS_SERVER_ROWS(options, what)                                                          \
+    {"server", 0, OPTION_TEXT, 0, 0, offsetof(options, place.server), "URL", NULL, what},          \
+        {"ca-file",                                                                                \
+         0,                                                                                        \
+         OPTION_TEXT,                                                                              \
+         0,                                                                                        \
+         0,                                                                                        \
+         offsetof(options, place.trust.ca_file),                                                   \
+         "FILE",                                                                                   \
+         NULL,                                                                                     \
+         "certificates of authorities that sign it, PEM, or RUGO_CA_FILE; else the system's"},     \
         {"fingerprint",                                                                            \
          0,                                                                                        \
          OPTION_TEXT,                                                                              \

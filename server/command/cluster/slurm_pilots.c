@@ -22,7 +22,7 @@ struct options {
 };
 #define AT(member) offsetof(struct options, member)
 static const struct option_row OPTIONS[] = {
-    ACCESS_SERVER_ROWS(struct options),
+    ACCESS_SERVER_ROWS(struct options, "the server"),
     {"max", 0, OPTION_COUNT, 1, 100000, AT(most), "N", "1", "most pilots, one on a node each"},
     {"jobs", 0, OPTION_COUNT, 1, 1000000, AT(jobs), "N", "1",
      "a thread of a pilot for so many jobs that wait or run"},

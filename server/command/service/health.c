@@ -7,7 +7,7 @@
 struct options {
     struct access_options place;
 };
-static const struct option_row OPTIONS[] = {ACCESS_SERVER_ROWS(struct options), {0}};
+static const struct option_row OPTIONS[] = {ACCESS_SERVER_ROWS(struct options, "the server"), {0}};
 
 static int ask(struct access *access, const char *id, const void *options, cJSON **out,
                struct error *err) {

@@ -116,7 +116,8 @@ static void a_study_from_submission_to_curves(void **state) {
     assert_true(contains("table.err", "no case has a scalar \"a b&c=d\""));
     static const struct {
         const char *format, *has;
-    } FORMATS[] = {{"text", "case  n "}, {"csv", "case,"}, {"json", "{"}, {"markdown", "| ---: |"}};
+    } FORMATS[] = {
+        {"text", "case  n "}, {"csv", "case,"}, {"json", "],\"rows\":["}, {"markdown", "| ---: |"}};
     for (size_t f = 0; f < sizeof FORMATS / sizeof *FORMATS; f++) {
         assert_int_equal(run_rugo("table", (const char *[]){"table", "--server", url, "--format",
                                                             FORMATS[f].format, id, NULL}),

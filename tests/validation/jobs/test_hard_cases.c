@@ -144,23 +144,19 @@ static void assert_numbers(const struct hard_case *hard, const cJSON *value) {
         assert_numbers(hard, child);
 }
 
-static double number_at(const cJSON *array, int n) {
-    const cJSON *value = cJSON_GetArrayItem(array, n);
-    return cJSON_IsNumber(value) ? value->valuedouble : (double)NAN;
-}
-
 /* The share of what was counted that lies in the bins of a density is 1 at most, and 1 where
  * nothing lies outside of them. A density of no summits has no values. */
 static void assert_share(const struct hard_case *hard, const cJSON *curve) {
     const cJSON *x = json_at(curve, "/x"), *y = json_at(curve, "/y");
-    const double width = number_at(x, 1) - number_at(x, 0);
+    const double width = cJSON_GetNumberValue(cJSON_GetArrayItem(x, 1)) -
+                         cJSON_GetNumberValue(cJSON_GetArrayItem(x, 0));
     const double outside =
         json_at(curve, "/underflow")->valuedouble + json_at(curve, "/overflow")->valuedouble;
     double share = 0;
-    if (isnan(number_at(y, 0)))
+    if (isnan(cJSON_GetNumberValue(cJSON_GetArrayItem(y, 0))))
         return;
     for (int b = 0; b < cJSON_GetArraySize(y); b++)
-        share += width * number_at(y, b);
+        share += width * cJSON_GetNumberValue(cJSON_GetArrayItem(y, b));
     if (!(share <= 1 + 1e-9) || (outside < 0.5 && !(share >= 1 - 1e-9)))
         fail_msg("%s: %s adds up to %.17g, and %g are outside", hard->name,
                  json_at(curve, "/quantity")->valuestring, share, outside);
@@ -176,8 +172,9 @@ static void assert_densities(const struct hard_case *hard, const cJSON *document
         if (end == NULL || end[4] != '\0' || json_at(curve, "/x2") != NULL)
             continue;
         assert_share(hard, curve);
-        heights = heights || (strcmp(quantity, "height_pdf") == 0 &&
-                              !isnan(number_at(json_at(curve, "/y"), 0)));
+        heights =
+            heights || (strcmp(quantity, "height_pdf") == 0 &&
+                        !isnan(cJSON_GetNumberValue(cJSON_GetArrayItem(json_at(curve, "/y"), 0))));
     }
     if (!heights)
         fail_msg("%s: no density of heights", hard->name);
