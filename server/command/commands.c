@@ -42,8 +42,40 @@ const struct command *command_find_words(const char *first, const char *second, 
     return command != NULL ? command : command_find(first);
 }
 
+/* What people type who know other programs, and the command that does it. It is named to them, not
+ * run: some of these change a store. */
+static const struct {
+    const char *typed, *command;
+} ELSEWHERE[] = {{"list", "status"},
+                 {"ls", "status"},
+                 {"studies", "status"},
+                 {"start", "run"},
+                 {"validate", "check"},
+                 {"queue", "submit"},
+                 {"results", "table"},
+                 {"get", "table"},
+                 {"draw", "plot"},
+                 {"stop", "cancel"},
+                 {"kill", "cancel"},
+                 {"remove", "delete"},
+                 {"rm", "delete"},
+                 {"clean", "prune"},
+                 {"backup", "snapshot"},
+                 {"recover", "restore"},
+                 {"measure", "characterise"},
+                 {"solve", "press"},
+                 {"contact", "press"},
+                 {"daemon", "serve"}};
+
+static const char *name_here(const char *typed) {
+    for (size_t n = 0; n < sizeof ELSEWHERE / sizeof *ELSEWHERE; n++)
+        if (strcmp(ELSEWHERE[n].typed, typed) == 0)
+            return ELSEWHERE[n].command;
+    return typed;
+}
+
 const char *command_near(const char *typed) {
-    struct near_name near = {.typed = typed};
+    struct near_name near = {.typed = name_here(typed)};
     for (size_t c = 0; COMMANDS[c] != NULL; c++)
         near_name_see(&near, COMMANDS[c]->name);
     return near.name;
@@ -229,7 +261,7 @@ static int help_topic(const char *name) {
             return EXIT_DONE;
         }
     char hint[NEAR_HINT_SIZE];
-    struct near_name near = {.typed = name};
+    struct near_name near = {.typed = name_here(name)};
     for (size_t t = 0; t < TOPIC_COUNT; t++)
         near_name_see(&near, TOPICS[t].name);
     for (size_t c = 0; COMMANDS[c] != NULL; c++)

@@ -29,6 +29,8 @@ static const struct {
     {"$RUGO", 2, "usage: rugo COMMAND"},
     {"$RUGO dance", 2, "there is no command \"dance\"; see rugo --help"},
     {"$RUGO chekc", 2, "there is no command \"chekc\" (did you mean check?)"},
+    {"$RUGO list", 2, "there is no command \"list\" (did you mean status?)"},
+    {"$RUGO help rm", 2, "there is no command or topic \"rm\" (did you mean delete?)"},
     {"$RUGO help statu", 2, "\"statu\" (did you mean status?)"},
     {"$RUGO help dance", 2, "there is no command or topic \"dance\""},
     {"$RUGO run", 2, "rugo run: an argument is missing"},
