@@ -1,5 +1,6 @@
 #include "jobs/maps/map_together.h"
 #include "core/statistics/uncertainty/map_directions.h"
+#include <stdlib.h>
 #include <string.h>
 
 static int check_map(const struct map_together *together, const struct height_map *map,
@@ -28,6 +29,24 @@ static int find_lay(struct together_map *one, const struct measured_map *map, st
                        : status;
 }
 
+static int measure(struct together_map *one, const struct measured_map *map, struct error *err) {
+    int status = map_spectrum_create(&one->spectrum, map, err);
+    return status == 0 ? find_lay(one, map, err) : status;
+}
+
+static int measure_rest(struct together_map *one, const struct measured_map *map,
+                        struct error *err) {
+    const size_t points = grid_points(map->grid);
+    double *z = array_create(points, sizeof *z);
+    if (z == NULL)
+        return error_memory(err, points * sizeof *z, "a map without its grooves");
+    memcpy(z, map->z, points * sizeof *z);
+    map_grooves_take(&one->grooves, map->grid, z);
+    int status = measure(one, &(struct measured_map){map->grid, z, map->boundary}, err);
+    free(z);
+    return status;
+}
+
 int map_together_add(struct map_together *together, const char *file, const struct height_map *map,
                      enum boundary boundary, struct error *err) {
     const struct measured_map measured = {&map->grid, map->z, boundary};
@@ -38,9 +57,10 @@ int map_together_add(struct map_together *together, const char *file, const stru
     *one = (struct together_map){.file = file, .grid = map->grid};
     together->profile = grid_is_profile(&map->grid);
     together->in_metres = strcmp(map->xy_unit, "m") == 0;
-    status = map_spectrum_create(&one->spectrum, &measured, err);
+    status = map_grooves_find(&one->grooves, &measured, err);
     if (status == 0)
-        status = find_lay(one, &measured, err);
+        status = one->grooves.families > 0 ? measure_rest(one, &measured, err)
+                                           : measure(one, &measured, err);
     if (status != 0)
         map_spectrum_destroy(&one->spectrum);
     else

@@ -4,11 +4,13 @@
 #define RUGO_JOBS_MAPS_MAP_TOGETHER_H
 
 #include "core/map/height_map.h"
+#include "core/statistics/grooves/map_grooves.h"
 #include "core/statistics/spectra/joint_fit.h"
 
 struct together_map {
     const char *file; /* borrowed */
     struct grid grid;
+    struct map_grooves grooves;    /* taken out before the spectra */
     struct map_spectrum *spectrum; /* owned: over circles */
     struct map_spectrum *ellipses; /* owned: along the lay of all; NULL: there is none */
     struct lay lay;                /* of this map alone */
@@ -23,8 +25,8 @@ struct map_together {
     struct lay lay; /* of all; LAY_NONE: directions of none differ */
     bool profile, in_metres;
 };
-/* Measures the spectrum of one more map, in the same unit and of the same dimension. ERROR_INPUT;
- * ERROR_MEMORY. */
+/* Measures the spectrum of one more map, in the same unit and of the same dimension, without its
+ * grooves, whose waves are in no law. ERROR_INPUT; ERROR_MEMORY. */
 int map_together_add(struct map_together *together, const char *file, const struct height_map *map,
                      enum boundary boundary, struct error *err);
 /* Fits all of them. Errors as of joint_fit_measure. */

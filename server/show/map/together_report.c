@@ -57,27 +57,44 @@ static void add_law(struct named_values *out, const struct map_together *togethe
     named_values_add(out, GROUP, "deviance_limit", fit->deviance_limit);
 }
 
-/* Columns of the maps, a row each. */
+/* Columns of the maps, a row each; of grooves where one has any, the first family. */
 static bool add_maps(struct named_values *out, const struct map_together *together) {
-    enum { NX, NY, SPACING, FROM, TO, HURST, LOW, HIGH, OFFSET, ERROR, COLUMNS };
+    enum { NX, NY, SPACING, FROM, TO, HURST, LOW, HIGH, OFFSET, ERROR, PERIOD, DEPTH, COLUMNS };
     static const char *const NAMES[COLUMNS] = {
-        "nx",    "ny",        "spacing",    "trusted_from", "trusted_to",
-        "hurst", "hurst_low", "hurst_high", "offset",       "offset_error"};
+        "nx",        "ny",         "spacing", "trusted_from", "trusted_to",    "hurst",
+        "hurst_low", "hurst_high", "offset",  "offset_error", "groove_period", "groove_depth"};
     double *columns[COLUMNS];
-    for (int c = 0; c < COLUMNS; c++) {
-        columns[c] = named_values_column_length(out, "maps", NAMES[c], together->count,
-                                                c >= SPACING && c <= TO ? 1 : 0);
+    int count = PERIOD;
+    for (size_t m = 0; m < together->count; m++)
+        if (together->maps[m].grooves.families > 0)
+            count = COLUMNS;
+    for (int c = 0; c < count; c++) {
+        const bool length = (c >= SPACING && c <= TO) || c >= PERIOD;
+        columns[c] =
+            named_values_column_length(out, "maps", NAMES[c], together->count, length ? 1 : 0);
         if (columns[c] == NULL)
             return false;
     }
     for (size_t m = 0; m < together->count; m++) {
         const struct together_map *map = &together->maps[m];
-        const double row[COLUMNS] = {(double)map->grid.nx,        (double)map->grid.ny,
-                                     grid_dx(&map->grid),         map->fit.trusted_from,
-                                     map->fit.trusted_to,         map->fit.hurst.value,
-                                     map->fit.hurst.low,          map->fit.hurst.high,
-                                     together->patches[m].offset, together->patches[m].error};
-        for (int c = 0; c < COLUMNS; c++)
+        const struct joint_patch *patch = &together->patches[m];
+        const struct map_groove *groove = &map->grooves.family[0];
+        const bool grooved = map->grooves.families > 0;
+        const double row[COLUMNS] = {
+            [NX] = (double)map->grid.nx,
+            [NY] = (double)map->grid.ny,
+            [SPACING] = grid_dx(&map->grid),
+            [FROM] = map->fit.trusted_from,
+            [TO] = map->fit.trusted_to,
+            [HURST] = map->fit.hurst.value,
+            [LOW] = map->fit.hurst.low,
+            [HIGH] = map->fit.hurst.high,
+            [OFFSET] = patch->offset,
+            [ERROR] = patch->error,
+            [PERIOD] = grooved ? groove->period : (double)NAN,
+            [DEPTH] = grooved ? groove->fit.depth : (double)NAN,
+        };
+        for (int c = 0; c < count; c++)
             columns[c][m] = row[c];
     }
     return true;
@@ -291,7 +308,8 @@ static void draw_names(const struct plot_pen *pen, const struct map_together *to
                 "<path d=\"M%d %dh24\" stroke=\"%s\" stroke-width=\"2\"/><text x=\"%d\" y=\"%d\">",
                 x, y - 4, PEN_COLOURS[m % PLOT_LINES], x + 30, y);
         svg_text(pen->file, together->maps[m].file);
-        fputs("</text>\n", pen->file);
+        fputs(together->maps[m].grooves.families > 0 ? " (degrooved)</text>\n" : "</text>\n",
+              pen->file);
     }
     fprintf(pen->file,
             "<text x=\"%d\" y=\"%d\" class=\"note\">thick: trusted; dashed: the law of all, "

@@ -32,14 +32,22 @@ static void a_surface_goes_out_and_in(void **state) {
         0);
 }
 
+/* Writes a study of a surface of 256 x 256 points, which sub-maps are taken of. */
+static void write_study(const char *file, const char *more) {
+    char text[600];
+    snprintf(text, sizeof text,
+             "{ \"name\": \"one\", \"kind\": \"statistics\", \"realisations\": 1, \"surface\":"
+             " { \"hurst\": 0.7, \"wavelength_ratio\": 32, \"rolloff_ratio\": 4,"
+             " \"length_ratio\": 2, \"points_per_wavelength\": 4, \"rms_slope\": 0.1,"
+             " \"amplitudes\": \"random\"%s } }",
+             more);
+    spit(file, text);
+}
+
 /* Two maps of one surface have one law together, which is printed, drawn and refused of one. */
 static void maps_of_one_surface_go_together(void **state) {
     (void)state;
-    spit("both.json",
-         "{ \"name\": \"both\", \"kind\": \"statistics\", \"realisations\": 1, \"surface\":"
-         " { \"hurst\": 0.7, \"wavelength_ratio\": 32, \"rolloff_ratio\": 4,"
-         " \"length_ratio\": 2, \"points_per_wavelength\": 4, \"rms_slope\": 0.1,"
-         " \"amplitudes\": \"random\" } }");
+    write_study("both.json", "");
     assert_int_equal(
         run_shell(
             "$RUGO generate both.json -o both.npy && convert() { $RUGO convert both.npy \"$@\" "
@@ -63,6 +71,38 @@ static void maps_of_one_surface_go_together(void **state) {
     assert_true(cJSON_GetArraySize(lines) >= 2 * 60);
     assert_true(cJSON_GetArrayItem(of, cJSON_GetArraySize(of) - 1)->valuedouble == 2);
     cJSON_Delete(document);
+    free(text);
+}
+
+/* Grooves are no part of the law of several maps either: it is the one of --degroove, and the maps
+ * that have them say so. The others have an empty cell. */
+static void grooves_are_in_no_law_of_several_maps(void **state) {
+    (void)state;
+    write_study("turned.json", ", \"grooves\": { \"period\": 2, \"depth\": 3, \"angle\": 0, "
+                               "\"shape\": \"sine\" }");
+    write_study("smooth.json", "");
+    assert_int_equal(
+        run_shell(
+            "for map in turned smooth; do $RUGO generate $map.json -o $map.npy && $RUGO convert "
+            "$map.npy $map.csv --crop 0,0,128,128 --dx 0.5um --z-unit um || exit 1; done; "
+            "together() { $RUGO characterise turned.csv smooth.csv --together \"$@\"; }; "
+            "together --format json > found.json && together --report found.svg && "
+            "together --degroove --format json > taken.json"),
+        0);
+    assert_true(contains("found.svg", "turned.csv (degrooved)"));
+    assert_true(!contains("found.svg", "smooth.csv (degrooved)"));
+    char *text = slurp("found.json"), *other = slurp("taken.json");
+    cJSON *found = cJSON_Parse(text), *taken = cJSON_Parse(other);
+    const cJSON *period = json_at(found, "/maps/groove_period");
+    /* In metres; the grooves are 4 um apart, and the map 64 um wide. */
+    assert_true(fabs(cJSON_GetArrayItem(period, 0)->valuedouble - 4e-6) < 2e-8);
+    assert_true(cJSON_IsNull(cJSON_GetArrayItem(period, 1)));
+    assert_null(json_at(taken, "/maps/groove_period"));
+    assert_true(json_at(found, "/together/hurst")->valuedouble ==
+                json_at(taken, "/together/hurst")->valuedouble);
+    cJSON_Delete(found);
+    cJSON_Delete(taken);
+    free(other);
     free(text);
 }
 
@@ -555,6 +595,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_surface_goes_out_and_in),
         cmocka_unit_test(maps_of_one_surface_go_together),
+        cmocka_unit_test(grooves_are_in_no_law_of_several_maps),
         cmocka_unit_test(a_map_in_a_file_is_pressed),
         cmocka_unit_test(several_models_press_a_map),
         cmocka_unit_test(coatings_are_pressed),
