@@ -1,5 +1,6 @@
 #include "jobs/estimate.h"
 #include "core/sum.h"
+#include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdbool.h>
 
@@ -34,6 +35,14 @@ static struct estimate estimate_ratio(size_t n, const double *x, const double *w
 
 struct estimate estimate_mean(size_t n, const double *x) {
     return estimate_ratio(n, x, NULL);
+}
+
+struct estimate estimate_of_few(struct estimate mean, size_t count) {
+    if (count < 2)
+        return (struct estimate){NAN, NAN};
+    const double student = gsl_cdf_tdist_Pinv(0.975, (double)count - 1);
+    mean.standard_error *= student / gsl_cdf_ugaussian_Pinv(0.975);
+    return mean;
 }
 
 struct estimate estimate_weighted(size_t n, const double *x, const double *weight) {

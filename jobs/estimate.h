@@ -11,6 +11,9 @@ struct estimate {
 
 /* Estimates the mean of x over the realisations that have one (others are NaN). */
 struct estimate estimate_mean(size_t n, const double *x);
+/* Returns a mean of `count` values with an error of which 1.96 are Student's interval of 95 %, as
+ * few values may lie close together. Fewer than two show no scatter: NaN. */
+struct estimate estimate_of_few(struct estimate mean, size_t count);
 /* Estimates sum of weight * x over sum of weight, such as the mean over all summits of what is a
  * mean for each realisation. Ratio estimator (Cochran 1977, section 2.11). Entries with weight 0
  * are left out. */

@@ -3,7 +3,6 @@
 #include "core/statistics/surface_pass.h"
 #include "jobs/subset.h"
 #include "jobs/surface/other_law.h"
-#include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -194,11 +193,12 @@ static int changes_measure(const struct realisations *realisations, struct chang
     for (size_t a = 0; a < LAW_COUNT; a++) {
         realisations_column(realisations, SCALAR_LAW + a, other);
         realisations_column(realisations, LAW_OWN[a], own);
-        for (size_t r = 0; r < n; r++)
+        size_t pairs = 0;
+        for (size_t r = 0; r < n; r++) {
             other[r] -= own[r];
-        struct estimate change = estimate_mean(n, other);
-        if (!isnan(change.standard_error)) /* one pair shows no scatter */
-            out->of[LAW_OWN[a]] = change;
+            pairs += isfinite(other[r]) ? 1 : 0;
+        }
+        out->of[LAW_OWN[a]] = estimate_of_few(estimate_mean(n, other), pairs);
     }
     free(other);
     return 0;
@@ -252,12 +252,6 @@ static double counting_error(const struct point_groups *groups, double width) {
     return sqrt(share * (1 - share) / things) / width;
 }
 
-/* Returns what the scatter of few groups is multiplied with, so that 1.96 of it are Student's
- * interval of 95 %. */
-static double student_factor(size_t groups) {
-    return gsl_cdf_tdist_Pinv(0.975, (double)groups - 1) / gsl_cdf_ugaussian_Pinv(0.975);
-}
-
 /* Fewer groups than this do not show the scatter of a mean. */
 enum { GROUPS_LEAST = 4 };
 
@@ -277,10 +271,12 @@ static struct estimate point_change(const struct statistics_groups pairs[PAIR_SU
     bool known = change.pairs > 1 && (width > 0 ? seen : informative >= GROUPS_LEAST);
     if (!known || isnan(change.value))
         return (struct estimate){NAN, NAN};
-    double error = change.standard_error * student_factor(change.pairs);
+    struct estimate out =
+        estimate_of_few((struct estimate){change.value, change.standard_error}, change.pairs);
     if (width > 0 && informative < TALLY_RARE)
-        error = fmax(error, hypot(counting_error(&own, width), counting_error(&other, width)));
-    return (struct estimate){change.value, error};
+        out.standard_error = fmax(
+            out.standard_error, hypot(counting_error(&own, width), counting_error(&other, width)));
+    return out;
 }
 
 static int curve_put(const struct statistics_groups pairs[PAIR_SURFACES],

@@ -120,8 +120,9 @@ bool companion_law_difference(const struct contact_tally *tally, enum contact_me
     if (measure >= MEASURE_PAIRED || !contact_case_has(one_case, COMPANION_LAW))
         return false;
     for (size_t k = 0; k < contact_case_values(one_case, measure_row(measure)->by); k++) {
+        const uint64_t pairs = contact_tally_pairs(tally, COMPANION_LAW, 0, measure, k);
         struct estimate pair =
-            contact_tally_several(contact_tally_pair(tally, COMPANION_LAW, 0, measure, k));
+            estimate_of_few(contact_tally_pair(tally, COMPANION_LAW, 0, measure, k), pairs);
         double factor = contact_mean(tally, measure, model, finest, k).value /
                         contact_tally_companion(tally, COMPANION_LAW, OWN, measure, k).value;
         out[k] = (struct estimate){factor * pair.value, fabs(factor) * pair.standard_error};

@@ -102,10 +102,6 @@ uint64_t contact_tally_draws(const struct contact_tally *tally, enum companion_n
 /* Counts the differences of a pair: one a draw in which both series have a value. */
 uint64_t contact_tally_pairs(const struct contact_tally *tally, enum companion_name companion,
                              size_t pair, enum contact_measure measure, size_t load);
-/* Returns a mean of at least two realisations, and NaN for one, which shows no scatter. */
-static inline struct estimate contact_tally_several(struct estimate mean) {
-    return isnan(mean.standard_error) ? (struct estimate){NAN, NAN} : mean;
-}
 /* Return the mean of a measure over realisations of which some may lack a value, and the model by
  * which it is made; model_count for a plain mean. On the finest level the most complete model may
  * lack values that another one has in all realisations. Its mean is then that of the other model

@@ -26,6 +26,19 @@ static void plain_pairs(void **state) {
     assert_true(isnan(estimate_pairs(0, &one, &other).value));
 }
 
+/* Student's quantiles of 97.5 % by tables: 12.7062 with one degree of freedom, 4.30265 with two;
+ * the normal one is 1.959964. */
+static void few_values_have_wider_errors(void **state) {
+    (void)state;
+    const struct estimate mean = {3, 0.1};
+    check_close(estimate_of_few(mean, 2).standard_error, 0.1 * 12.7062 / 1.959964, 1e-5);
+    check_close(estimate_of_few(mean, 3).standard_error, 0.1 * 4.30265 / 1.959964, 1e-5);
+    check_close(estimate_of_few(mean, 100000).standard_error, 0.1, 1e-5);
+    assert_true(estimate_of_few(mean, 2).value == 3);
+    assert_true(isnan(estimate_of_few(mean, 1).value));
+    assert_true(isnan(estimate_of_few(mean, 0).standard_error));
+}
+
 /* Means 14/4 and 3/2; their linear parts -3/4, 3/4 and -1/2, 1/2 differ by -1/4, 1/4. */
 static void weighed_pairs(void **state) {
     (void)state;
@@ -331,10 +344,15 @@ static void cases_without_a_pair_are_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(plain_pairs),         cmocka_unit_test(weighed_pairs),
-        cmocka_unit_test(pairs_of_groups),     cmocka_unit_test(contact_by_its_realisations),
-        cmocka_unit_test(densities_by_groups), cmocka_unit_test(scalars_are_those_told),
-        cmocka_unit_test(pits_go_by_pairs),    cmocka_unit_test(cases_without_a_pair_are_refused),
+        cmocka_unit_test(few_values_have_wider_errors),
+        cmocka_unit_test(plain_pairs),
+        cmocka_unit_test(weighed_pairs),
+        cmocka_unit_test(pairs_of_groups),
+        cmocka_unit_test(contact_by_its_realisations),
+        cmocka_unit_test(densities_by_groups),
+        cmocka_unit_test(scalars_are_those_told),
+        cmocka_unit_test(pits_go_by_pairs),
+        cmocka_unit_test(cases_without_a_pair_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,6 +7,7 @@
 #include "jobs/statistics/statistics_law.h"
 #include "schema/result/block_result.h"
 #include "tests/support/check.h"
+#include <gsl/gsl_cdf.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -119,7 +120,9 @@ static void differences_follow_from_the_pairs(void **state) {
     const struct scalar *number = result_scalar(&ran.result, "summits");
     const struct scalar *density = result_scalar(&ran.result, "summit_density");
     check_relative(mean->law_difference, sum / n, 1e-9);
-    check_relative(mean->law_standard_error, sqrt((squares - sum * sum / n) / (n - 1) / n), 1e-6);
+    const double error = sqrt((squares - sum * sum / n) / (n - 1) / n);
+    check_relative(mean->law_standard_error,
+                   error * gsl_cdf_tdist_Pinv(0.975, n - 1) / gsl_cdf_ugaussian_Pinv(0.975), 1e-6);
     check_relative(density->law_difference / density->value, number->law_difference / number->value,
                    1e-9);
     /* what is not measured again, and what all surfaces share */
