@@ -14,7 +14,6 @@ _Static_assert((int)HARDNESS_MEASURE + AREA == (int)PLASTIC_AREA &&
 
 static const struct parameter ROWS[] = {
     {.path = "/contact/hardness",
-     .symbol = "H",
      .type = PARAMETER_NUMBER,
      .minimum = 0,
      .maximum = CONTACT_HARDNESS_MOST,
