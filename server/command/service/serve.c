@@ -29,7 +29,7 @@ struct options {
 static const struct option_row OPTIONS[] = {
     {"db", 0, OPTION_TEXT, 0, 0, AT(database), "FILE", DATABASE, "the store"},
     {"listen", 0, OPTION_TEXT, 0, 0, AT(listen), "ADDR:PORT", "127.0.0.1:8080",
-     "where to listen; port 0 picks a free one"},
+     "where to listen; port 0 picks a free one, a port alone is of 127.0.0.1"},
     {"token-file", 0, OPTION_TEXT, 0, 0, AT(token_file), "FILE", NULL,
      "tokens, mode 600, a role:name:token or its digest a line (see rugo token); needed beyond "
      "loopback"},
@@ -74,18 +74,21 @@ static bool is_address(const char *text) {
     return inet_pton(AF_INET, text, bytes) == 1 || inet_pton(AF_INET6, text, bytes) == 1;
 }
 
-/* Reads "127.0.0.1:8080" or "[::1]:8080". */
+/* Reads "127.0.0.1:8080" or "[::1]:8080". A port alone, and "localhost", are of 127.0.0.1. */
 static int read_listen(struct serve *serve, struct error *err) {
+    static const char LOOPBACK[] = "127.0.0.1", NAME[] = "localhost";
     const char *text = serve->options->listen, *colon = strrchr(text, ':');
-    char *end = NULL;
-    unsigned long port = colon != NULL ? strtoul(colon + 1, &end, 10) : 65536;
+    const char *digits = colon != NULL ? colon + 1 : text;
     size_t length = colon != NULL ? (size_t)(colon - text) : 0;
+    bool local = length == 0 || (length == strlen(NAME) && strncmp(text, NAME, length) == 0);
     bool brackets = length > 2 && text[0] == '[' && text[length - 1] == ']';
-    size_t width = length - 2 * brackets;
-    bool fits = colon != NULL && end != colon + 1 && *end == '\0' && port <= 65535 && width > 0 &&
-                width < sizeof serve->address;
+    size_t width = local ? strlen(LOOPBACK) : length - 2 * brackets;
+    char *end = NULL;
+    unsigned long port = *digits >= '0' && *digits <= '9' ? strtoul(digits, &end, 10) : 65536;
+    bool fits = port <= 65535 && *end == '\0' && width < sizeof serve->address;
     if (fits)
-        snprintf(serve->address, sizeof serve->address, "%.*s", (int)width, text + brackets);
+        snprintf(serve->address, sizeof serve->address, "%.*s", (int)width,
+                 local ? LOOPBACK : text + brackets);
     if (!fits || !is_address(serve->address))
         return error_set(err, ERROR_INPUT,
                          "--listen %.60s is not ADDRESS:PORT, e.g. 127.0.0.1:8080 or [::1]:8080",

@@ -71,7 +71,10 @@ static const struct {
     {"$RUGO report --db absent.db x", 1, "there is no database"},
     {"$RUGO cancel --db absent.db x", 1, "there is no database"},
     {"$RUGO serve --listen nowhere", 2, "--listen nowhere is not ADDRESS:PORT"},
-    {"$RUGO serve --listen localhost:8080", 2, "is not ADDRESS:PORT"}, /* a name */
+    {"$RUGO serve --listen elsewhere:8080", 2, "is not ADDRESS:PORT"}, /* a name */
+    {"$RUGO serve --listen :", 2, "is not ADDRESS:PORT"},
+    {"$RUGO serve --listen ::1", 2, "is not ADDRESS:PORT"},
+    {"$RUGO serve --listen +8080", 2, "is not ADDRESS:PORT"},
     {"$RUGO serve --listen 127.0.0.1:99999", 2, "is not ADDRESS:PORT"},
     {"$RUGO serve --listen 0.0.0.0:0", 2, "tokens are needed"},
     {"$RUGO work --lease 5 --server http://localhost:1", 2, "--lease goes with --db"},
@@ -104,6 +107,19 @@ static void wrong_usage_and_input(void **state) {
         }
         assert_int_equal(status, WRONG[w].status);
         assert_true(contains("shell.err", WRONG[w].text));
+    }
+}
+
+/* A port alone is what many type; it never listens beyond this machine. */
+static void a_port_is_enough(void **state) {
+    (void)state;
+    static const char *const LISTEN[] = {"0", ":0", "localhost:0"};
+    for (size_t l = 0; l < sizeof LISTEN / sizeof *LISTEN; l++) {
+        struct process server;
+        const char *const more[] = {"--db", "port.db", "--listen", LISTEN[l], NULL};
+        assert_true(serve_start(&server, more) > 0); /* it says 127.0.0.1 */
+        process_kill(&server, SIGTERM);
+        assert_int_equal(process_wait(&server, 10), 0);
     }
 }
 
@@ -343,6 +359,7 @@ static void theory_needs_no_surface(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(wrong_usage_and_input),
+        cmocka_unit_test(a_port_is_enough),
         cmocka_unit_test(every_command_has_help),
         cmocka_unit_test(help_tells_of_a_parameter),
         cmocka_unit_test(theory_needs_no_surface),
