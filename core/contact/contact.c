@@ -361,9 +361,8 @@ static void fill_partial(struct contact *c, const struct conjugate_gradient_end 
     out->iterations = end->iterations;
     out->violation = fmax(end->inside, fmax(end->penetration, end->lifted));
     out->penetration = end->penetration;
-    /* All nodes can be in contact when the load is a rounding error below that of full contact. */
     if (out->nodes == d->n && c->compliance->open)
-        out->mean_gap = 0; /* without rounding errors */
+        out->mean_gap = 0; /* all of the rectangle touches: without rounding errors */
     fill_tangent(c, out);
     for (size_t i = 0; i < d->n; i++)
         c->pressure[i] = d->p[i] < d->hardness ? d->p[i] * pressure_unit(c) : c->options.hardness;
@@ -389,6 +388,16 @@ static double guess(struct contact *c, double part) {
     return sum;
 }
 
+/* Scales pressures of this sum to a mean. All nodes have it where there is no sum: the load may
+ * have fallen below the rounding of the last pressures, and the highest nodes may be equally high.
+ */
+static void scale_to_mean(struct contact *c, double mean, double sum) {
+    struct conjugate_gradient *d = &c->solver;
+    double factor = mean * (double)d->n / sum;
+    for (size_t i = 0; i < d->n; i++)
+        d->p[i] = isfinite(factor) ? d->p[i] * factor : mean;
+}
+
 /* Predicts the pressures at a mean from those of the last load and their tangent or secant, and
  * guesses them before the first load. */
 static void predict(struct contact *c, double mean) {
@@ -401,10 +410,7 @@ static void predict(struct contact *c, double mean) {
             sum += d->p[i] = fmax(0, d->p[i] + (mean - c->mean) * d->q[i]);
     else if (!grid_is_profile(&c->compliance->grid))
         sum = guess(c, FIRST_SET * erf(mean / (M_SQRT2 * c->flatten)));
-    /* When the load falls by many orders, it may be below the rounding of the last pressures. */
-    double factor = mean * (double)d->n / sum;
-    for (size_t i = 0; i < d->n; i++)
-        d->p[i] = isfinite(factor) ? d->p[i] * factor : mean;
+    scale_to_mean(c, mean, sum);
 }
 
 /* Returns the limit of iterations, which grows with the square root of the longer side, as their
@@ -427,9 +433,7 @@ static void guess_limited(struct contact *c, double mean) {
     const double unit = 2 * c->flatten, load = mean / unit, hardness = d->hardness / unit;
     double part = persson_plastic_area(load, hardness) + persson_elastic_area(load, hardness);
     double nodes = part * (1 + LIMITED_PART * (1 - part)) * (double)d->n + LIMITED_NODES;
-    double sum = guess(c, nodes / (double)d->n);
-    for (size_t i = 0; i < d->n; i++)
-        d->p[i] *= mean * (double)d->n / sum;
+    scale_to_mean(c, mean, guess(c, nodes / (double)d->n));
     flattening_limit(&c->flattening, d, mean);
 }
 

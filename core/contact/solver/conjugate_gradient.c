@@ -291,7 +291,7 @@ static void solve_bounded(struct conjugate_gradient *solver, double mean, double
         size_t most =
             end->iterations + careful < max_iterations ? end->iterations + careful : max_iterations;
         solve_by_steps(solver, mean, tolerance, 0, most, end);
-        if (end->converged || end->stopped)
+        if (end->converged || end->stopped || !isfinite(end->approach))
             return;
     }
 }

@@ -162,6 +162,32 @@ static double *copy(size_t n, const double *x) {
 
 /* Unloading is elastic: pressures fall everywhere, the face keeps its depths, and the same loads
  * make the same states again, whatever was between. */
+/* A crest between nodes and a face that was cut off, as an instrument at its limit leaves it, have
+ * highest nodes that are equally high: none stands out of the others, from which a first guess of
+ * pressures would follow. */
+static void highest_nodes_are_equally_high(void **state) {
+    (void)state;
+    static const double CUT[] = {INFINITY, 0.01, 0.001};
+    static const double LOADS[] = {1e-6, 1e-4, 1e-3, 5e-3};
+    const struct grid grid = {32, 32, 1, 1};
+    const double hardness = 0.01;
+    for (size_t cut = 0; cut < sizeof CUT / sizeof *CUT; cut++) {
+        struct scene scene;
+        scene_open(&scene, grid, DEEP, 1e-9);
+        for (size_t i = 0; i < grid_points(&grid); i++)
+            scene.z[i] = fmin(0.01 * (cos(2 * M_PI * ((double)(i % 32) + 0.5) / 32) +
+                                      cos(2 * M_PI * ((double)(i / 32) + 0.5) / 32)),
+                              CUT[cut]);
+        scene_harden(&scene, hardness);
+        for (size_t l = 0; l < sizeof LOADS / sizeof *LOADS; l++) {
+            scene_begin(&scene);
+            scene_press(&scene, LOADS[l]);
+            check_hard_contact(&scene, hardness, true);
+        }
+        scene_close(&scene);
+    }
+}
+
 static void loads_fall_and_rise(void **state) {
     (void)state;
     static const double DOWN[] = {0.4, 0.1, 1e-3, 0.2, 0, 0.45};
@@ -312,6 +338,7 @@ int main(void) {
         cmocka_unit_test(no_node_yields),
         cmocka_unit_test(soft_faces),
         cmocka_unit_test(every_solution_meets_its_conditions),
+        cmocka_unit_test(highest_nodes_are_equally_high),
         cmocka_unit_test(loads_fall_and_rise),
         cmocka_unit_test(depths_rise),
         cmocka_unit_test(stiffnesses_are_differences),
