@@ -11,14 +11,21 @@ enum { LAST_JOBS = 256 }; /* their order decides on the end; those before are di
 
 /* A job that runs, and what is done of its case. Times are in seconds. */
 struct running_job {
-    int64_t case_number, wanted, done; /* realisations of the case, and of its completed jobs */
-    double estimate, seconds;          /* of a realisation; of the completed jobs of the case */
+    int64_t case_number;
+    int64_t wanted, done; /* realisations of the case but for those given up; of completed jobs */
+    double estimate, seconds; /* of a realisation; of the completed jobs of the case */
     double count, reported, reported_after, elapsed;
     bool leads; /* the first one of its case */
 };
 
 static const double PRIOR = 4;
 static const double LEAST_LEFT = 0.05; /* of a realisation, of a job that has not ended */
+
+/* Realisations of a case c that no job will do: they failed for good, or were cancelled. */
+#define GIVEN_UP                                                                                   \
+    "CASE WHEN (SELECT jobs_failed + jobs_cancelled FROM study WHERE id = ?1) > 0 THEN (SELECT "   \
+    "coalesce(sum(count), 0) FROM job WHERE study_id = ?1 AND case_number = c.number AND state "   \
+    "IN ('failed', 'cancelled')) ELSE 0 END"
 
 struct reading {
     struct store *store;
@@ -60,7 +67,8 @@ static int read_jobs(struct reading *reading, struct error *err) {
     sqlite3_stmt *row = NULL;
     int status = store_query(
         reading->store, &row, err,
-        "SELECT j.case_number, coalesce(c.realisations, ?2), c.realisations_done, c.estimate, "
+        "SELECT j.case_number, coalesce(c.realisations, ?2) - " GIVEN_UP
+        ", c.realisations_done, c.estimate, "
         "c.seconds, j.count, j.reported, j.claimed_ms, j.reported_ms FROM job j INDEXED BY "
         "job_running CROSS JOIN study_case c ON c.study_id = j.study_id AND c.number = "
         "j.case_number WHERE j.state = 'running' AND "
@@ -152,9 +160,9 @@ static int read_waiting(const struct reading *reading, double *waiting, struct e
     sqlite3_stmt *row = NULL;
     int status = store_query(
         reading->store, &row, err,
-        "SELECT total((coalesce(realisations, ?2) - realisations_done) * CASE WHEN "
+        "SELECT total((coalesce(realisations, ?2) - realisations_done - " GIVEN_UP ") * CASE WHEN "
         "realisations_done > 0 THEN seconds / realisations_done ELSE estimate * ?3 END) FROM "
-        "study_case WHERE study_id = ?1 AND (parent IS NOT NULL OR ?2 > 0) AND jobs_left > 0 AND "
+        "study_case c WHERE study_id = ?1 AND (parent IS NOT NULL OR ?2 > 0) AND jobs_left > 0 AND "
         "number NOT IN (SELECT case_number FROM job INDEXED BY job_running WHERE state = 'running' "
         "AND study_id = ?1)",
         "iid", reading->study, reading->realisations, correction(reading));

@@ -40,6 +40,7 @@ static const char *state_name(const unsigned char *text) {
     return "failed";
 }
 
+/* ?1: now */
 #define STATUS_COLUMNS                                                                             \
     "public, name, kind, state, seed, cases, realisations, jobs, jobs_done, jobs_failed, "         \
     "jobs_running, jobs_waiting, jobs_cancelled, realisations_done, realisations_failed, "         \
@@ -49,7 +50,7 @@ static const char *state_name(const unsigned char *text) {
     "state = 'running' "                                                                           \
     "AND study_id = study.id), "                                                                   \
     "(SELECT count(DISTINCT worker) FROM job INDEXED BY job_running WHERE state = 'running' AND "  \
-    "study_id = study.id), "                                                                       \
+    "study_id = study.id AND lease_until > ?1), "                                                  \
     "cases_failed, random, cpu_seconds, jobs_without_cpu, "                                        \
     "CASE WHEN realisations > 0 THEN cases * realisations ELSE (SELECT sum(c.realisations) FROM "  \
     "study_case c WHERE c.study_id = study.id) END, "                                              \
@@ -131,7 +132,8 @@ static int read_outlook(struct store *store, int64_t row, struct at_work *at_wor
         status = queue_left(store, row, at_work, out, &left, err);
     else if (out->realisations_total > 0)
         left.share = (double)out->realisations_done / (double)out->realisations_total;
-    out->seconds_left = left.seconds;
+    const bool left_alone = out->jobs_running > 0 && out->workers == 0;
+    out->seconds_left = left_alone ? (double)NAN : left.seconds;
     out->share = left.share;
     return status;
 }
@@ -148,7 +150,8 @@ static int read_row(struct store *store, const char *id, int64_t *row, struct st
                     struct error *err) {
     sqlite3_stmt *statement = NULL;
     int status = store_query(store, &statement, err,
-                             "SELECT " STATUS_COLUMNS " FROM study WHERE public = ?", "t", id);
+                             "SELECT " STATUS_COLUMNS " FROM study WHERE public = ?2", "it",
+                             store_now(store), id);
     if (status == 0)
         status = store_step(store, statement, err);
     if (status == 0)
@@ -237,9 +240,9 @@ static int list_rows(struct store *store, int64_t after, size_t limit, struct st
     size_t n = 0;
     int status = store_query(store, &statement, err,
                              "SELECT " STATUS_COLUMNS
-                             " FROM study WHERE id > ? AND id NOT IN " DELETED_STUDIES
-                             " ORDER BY id LIMIT ?",
-                             "ii", after, (int64_t)limit);
+                             " FROM study WHERE id > ?2 AND id NOT IN " DELETED_STUDIES
+                             " ORDER BY id LIMIT ?3",
+                             "iii", store_now(store), after, (int64_t)limit);
     while (status == 0 && n < limit && (status = store_step(store, statement, err)) == 1) {
         rows[n] = sqlite3_column_int64(statement, 19);
         status = read_status(statement, &list[n++], err);
@@ -327,9 +330,13 @@ int store_cancel(struct store *store, const char *id, struct error *err) {
     return change_end(store, status, err);
 }
 
+/* Cases that cannot be published, and the components of those. */
+#define IN_VAIN                                                                                    \
+    "study_id = ?1 AND (publish_error IS NOT NULL OR parent IN (SELECT number FROM study_case "    \
+    "WHERE study_id = ?1 AND publish_error IS NOT NULL))"
 #define DONE_IN_VAIN                                                                               \
-    "state = 'done' AND study_id = ?1 AND case_number IN (SELECT number FROM study_case WHERE "    \
-    "study_id = ?1 AND publish_error IS NOT NULL)"
+    "state = 'done' AND study_id = ?1 AND case_number IN (SELECT number FROM study_case "          \
+    "WHERE " IN_VAIN ")"
 
 /* Discards the results of cases that could not be published, such as those of an older program, for
  * which merging again would not help: their jobs count as failed. */
@@ -355,8 +362,7 @@ static int discard_results(struct store *store, int64_t row, struct error *err) 
         status =
             store_run(store, err,
                       "UPDATE study_case SET realisations_done = 0, seconds = 0, cpu_seconds = "
-                      "0, jobs_without_cpu = 0 WHERE study_id = ? AND publish_error IS NOT "
-                      "NULL",
+                      "0, jobs_without_cpu = 0 WHERE " IN_VAIN,
                       "i", row);
     return status;
 }

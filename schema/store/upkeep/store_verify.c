@@ -99,7 +99,7 @@ static const struct look LOOKS[] = {
     {FLAW_COUNTER, "counters", STUDY_COUNTER("jobs_cancelled", JOBS, "'cancelled'")},
     {FLAW_COUNTER, "counters", STUDY_COUNTER("realisations_waiting", "count", "'waiting'")},
     {FLAW_COUNTER, "counters", STUDY_COUNTER("realisations_done", "count", "'done'")},
-    {FLAW_COUNTER, "counters", STUDY_COUNTER("realisations_waiting", "count", "'waiting'")},
+    {FLAW_COUNTER, "counters", STUDY_COUNTER("realisations_failed", "count", "'failed'")},
     {FLAW_COUNTER, "counters", CASE_COUNTER("jobs", JOBS, ANY)},
     {FLAW_COUNTER, "counters", CASE_COUNTER("jobs_left", JOBS, "'waiting', 'running'")},
     {FLAW_COUNTER, "counters", CASE_COUNTER("realisations_done", "count", "'done'")},

@@ -186,6 +186,41 @@ static void late_realisations_are_not_about_to_end(void **state) {
     store_close(&store);
 }
 
+/* Realisations that failed for good are not left. Nor does anybody work at a study whose only lease
+ * ran out. */
+static void what_is_given_up_is_not_left(void **state) {
+    (void)state;
+    char id[STUDY_ID_SIZE];
+    struct study_status status;
+    struct worker worker = {0};
+    const double rates[] = {100};
+    struct store *store = open_store("given-up.db");
+    clock_ms = 1000;
+    submit(store, 1, 200, 100, id);
+    assert_true(claim(store, 0, &worker, 0, rates));
+    for (;;) {
+        assert_int_equal(store_status(store, id, &status, NULL), 0);
+        const double left = 200 - (double)status.realisations_failed;
+        check_close(status.seconds_left, 100 * left, 1e-9 * left);
+        check_close(status.share, 0, 1e-12);
+        assert_int_equal(status.workers, 1);
+        bool last = status.jobs_waiting == 0;
+        study_status_clear(&status);
+        if (last)
+            break;
+        assert_int_equal(store_fail(store, worker.job.id, worker.job.token, "no", true, NULL), 0);
+        claimed_job_clear(&worker.job);
+        assert_true(claim(store, 0, &worker, 0, rates));
+    }
+    clock_ms += 20001; /* more than the lease */
+    assert_int_equal(store_status(store, id, &status, NULL), 0);
+    assert_int_equal(status.workers, 0);
+    assert_true(isnan(status.seconds_left));
+    study_status_clear(&status);
+    claimed_job_clear(&worker.job);
+    store_close(&store);
+}
+
 /* --- a study that waits --- */
 
 static double left_of(struct store *store, const char *id) {
@@ -238,6 +273,7 @@ int main(void) {
         cmocka_unit_test(the_last_jobs_fall_to_whom_they_do),
         cmocka_unit_test(near_the_truth),
         cmocka_unit_test(late_realisations_are_not_about_to_end),
+        cmocka_unit_test(what_is_given_up_is_not_left),
         cmocka_unit_test(behind_others),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

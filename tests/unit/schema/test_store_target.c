@@ -185,12 +185,59 @@ static void failed_jobs_end_a_round(void **state) {
     assert_true(is_due());
 }
 
+static int refuse(void *context, struct store *of, const struct due_case *due, size_t number,
+                  struct error *err) {
+    (void)context;
+    (void)of;
+    (void)due;
+    (void)number;
+    return error_set(err, ERROR_INPUT, "damaged block");
+}
+
+static void check_done(uint64_t number, uint64_t done) {
+    struct case_info info;
+    assert_int_equal(store_case(store, id, number, &info, NULL), 0);
+    assert_int_equal(info.realisations_done, done);
+    case_info_clear(&info);
+}
+
+/* The mark is that of the case, the results are its components': they are discarded, and computed
+ * again. */
+static void what_cannot_be_published_is_computed_again(void **state) {
+    (void)state;
+    static const uint64_t DONE[] = {12, 8, 4};
+    const struct publication refused = {.publish = refuse};
+    struct publish_counts counts;
+    uint64_t jobs = 0;
+    while (run_one())
+        ;
+    assert_int_equal(store_publish_due(store, &refused, &counts, NULL), 0);
+    assert_int_equal(counts.failed, 1);
+    for (uint64_t number = 0; number < 3; number++)
+        check_done(number, DONE[number]);
+    assert_int_equal(store_retry(store, id, &jobs, NULL), 0);
+    assert_int_equal(jobs, 3);
+    for (uint64_t number = 0; number < 3; number++)
+        check_done(number, 0);
+    assert_false(is_due());
+    while (run_one())
+        ;
+    for (uint64_t number = 0; number < 3; number++)
+        check_done(number, DONE[number]);
+    assert_true(is_due());
+    struct study_status status = status_now();
+    assert_int_equal(status.realisations_done, 12);
+    assert_int_equal(status.jobs_done, 3);
+    study_status_clear(&status);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(is_due_when_all_jobs_are_over, submit, end),
         cmocka_unit_test_setup_teardown(a_round_is_queued_once, submit, end),
         cmocka_unit_test_setup_teardown(nothing_grows_after_a_cancellation, submit, end),
         cmocka_unit_test_setup_teardown(failed_jobs_end_a_round, submit, end),
+        cmocka_unit_test_setup_teardown(what_cannot_be_published_is_computed_again, submit, end),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

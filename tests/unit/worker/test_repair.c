@@ -107,6 +107,8 @@ static const struct damage {
     {"UPDATE study SET jobs_done = 3", FLAW_COUNTER},
     {"UPDATE study SET jobs_waiting = 3, jobs = jobs + 3", FLAW_COUNTER},
     {"UPDATE study SET realisations_done = 3", FLAW_COUNTER},
+    {"UPDATE study SET realisations_failed = 3", FLAW_COUNTER},
+    {"UPDATE study SET realisations_waiting = 3", FLAW_COUNTER},
     {"UPDATE study_case SET realisations_done = 0", FLAW_COUNTER},
     {"UPDATE study_case SET jobs_left = 2", FLAW_COUNTER},
 };
