@@ -64,6 +64,7 @@ struct dispatcher {
     pthread_cond_t news;   /* for the dispatcher's thread */
     pthread_cond_t offers; /* for the worker threads */
     struct lease *leases;  /* owned, in the order of claims */
+    struct batch *batch;   /* owned: what is being reported, of the thread alone */
     size_t stock, ended;   /* numbers of leases in these states */
     size_t ended_bytes;    /* of their results */
     double job_seconds;    /* by the clock, mean of recent jobs; 0: not known */
@@ -361,15 +362,11 @@ static bool any_hindered(const struct batch *batch, const struct error **err) {
 }
 
 static void dispatcher_report(struct dispatcher *dispatcher) {
-    struct batch *batch = calloc(1, sizeof *batch);
+    struct batch *batch = dispatcher->batch;
     const struct error *why = NULL;
     struct error err = {0};
     bool due = false;
-    if (batch == NULL) {
-        error_memory(&err, sizeof *batch, "reports");
-        dispatcher_note_away(dispatcher, "reports wait", &err);
-        return;
-    }
+    batch->count = 0;
     batch_beats(dispatcher, clock_ms(), batch);
     bool beating = batch->count > 0;
     if (!beating)
@@ -390,7 +387,6 @@ static void dispatcher_report(struct dispatcher *dispatcher) {
     }
     dispatcher->due |= due;
     pthread_cond_broadcast(&dispatcher->offers);
-    free(batch);
 }
 
 /* --- claims --- */
@@ -763,10 +759,14 @@ int dispatcher_create(struct dispatcher **out, const struct dispatcher_options *
     dispatcher->options = *options;
     dispatcher->report_ms = options->source->report_ms > 0 ? options->source->report_ms : REPORT_MS;
     atomic_init(&dispatcher->ending, false);
-    int status = source_create(&dispatcher->source, options->source, err);
+    dispatcher->batch = array_create(1, sizeof *dispatcher->batch);
+    int status = dispatcher->batch != NULL
+                     ? source_create(&dispatcher->source, options->source, err)
+                     : error_memory(err, sizeof *dispatcher->batch, "reports");
     status = status != 0 ? status : dispatcher_start(dispatcher, err);
     if (status != 0) {
         source_destroy(&dispatcher->source);
+        free(dispatcher->batch);
         free(dispatcher);
         return status;
     }
@@ -788,6 +788,7 @@ void dispatcher_destroy(struct dispatcher **dispatcher) {
     pthread_cond_destroy(&gone->offers);
     pthread_cond_destroy(&gone->news);
     source_destroy(&gone->source);
+    free(gone->batch);
     free(gone);
     *dispatcher = NULL;
 }

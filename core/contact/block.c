@@ -1,6 +1,10 @@
 #include "core/contact/block.h"
 #include <math.h>
 
+double gap_weight_symbol(size_t mode, size_t n) {
+    return (2 + cos(2 * M_PI * (double)mode / (double)n)) / 3;
+}
+
 static int refuse(struct error *err, const char *what, double value, const char *allowed) {
     return error_set(err, ERROR_INPUT, "%s = %g; allowed: %s", what, value, allowed);
 }

@@ -13,6 +13,8 @@ enum block_model { RUGO_LINEAR_MODELS(BLOCK_MODEL) };
  * (Petrov-Galerkin, as in the reference, core/theory/BIBLIOGRAPHY.md) average it over neighbours by
  * (1, 4, 1)/6 along each axis; the dual ones take the gap at the node. */
 enum gap_weighting { GAP_STANDARD, GAP_DUAL };
+/* Returns the symbol of the mean (1, 4, 1)/6 along an axis of n nodes, by mode (F10.5). */
+double gap_weight_symbol(size_t mode, size_t n);
 
 /* A layer of another material, bonded to the face (F22.1). E* stays that of the block below it. */
 struct coating {

@@ -26,12 +26,8 @@ struct coated_space {
     double *value, *rise; /* owned: at these distances, and the derivative times step */
 };
 
-static double spacing_of(const struct grid *grid) {
-    return grid_is_profile(grid) ? grid_dx(grid) : fmax(grid_dx(grid), grid_dy(grid));
-}
-
 double coated_space_reach(const struct grid *grid) {
-    return REACH_LEAST * spacing_of(grid);
+    return REACH_LEAST * grid_widest_spacing(grid);
 }
 
 static double long_part(const struct coated_space *space, double k) {

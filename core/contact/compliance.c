@@ -50,17 +50,12 @@ static void halfspace_lengths(struct compliance *compliance) {
         }
 }
 
-/* Returns the symbol of the mean (1, 4, 1)/6 along one axis (F10.5). */
-static double weight_symbol(size_t mode, size_t n) {
-    return (2 + cos(2 * PI * (double)mode / (double)n)) / 3;
-}
-
 static void weight_symbols(struct compliance *compliance) {
     const struct grid *grid = &compliance->grid;
     for (size_t mx = 0; mx <= grid->nx / 2; mx++)
         for (size_t row = 0; row < grid->ny; row++)
             compliance->weight[mx * grid->ny + row] =
-                weight_symbol(mx, grid->nx) * weight_symbol(row_mode(grid, row), grid->ny);
+                gap_weight_symbol(mx, grid->nx) * gap_weight_symbol(row_mode(grid, row), grid->ny);
 }
 
 /* Refuses lengths whose ratios overflow or underflow a double. */

@@ -18,13 +18,8 @@ enum { MARGIN = 8 }; /* of the grid around: a part of the side */
 static const double AROUND_BYTES = (1 + 0.5 + 2. / 3) * sizeof(double),
                     SPARE_BYTES = 2 * sizeof(double);
 
-/* Returns the greater spacing: waves of the grid are at least twice as long. */
-static double spacing_of(const struct grid *grid) {
-    return grid_is_profile(grid) ? grid_dx(grid) : fmax(grid_dx(grid), grid_dy(grid));
-}
-
 static double alpha_of(const struct grid *grid) {
-    return PI / (2 * SPLIT * spacing_of(grid));
+    return PI / (2 * SPLIT * grid_widest_spacing(grid));
 }
 
 /* Twice the side, so that no two points of the map meet across the padding; more for small maps, so

@@ -287,15 +287,14 @@ static double pressure_of(const struct pressures *p, size_t i) {
 
 int pressures_share(struct pressures *pressures, const struct contact_state *state, double area,
                     const struct bins *bins, double unit, double *shares, struct error *err) {
-    size_t n = grid_points(&pressures->grid);
-    const size_t points = grid_points(&pressures->grid);
+    const size_t n = grid_points(&pressures->grid);
     if (state->yielded > 0)
         return error_set(err, ERROR_INPUT,
                          "areas by pressure where %zu nodes have yielded; allowed: none, as edges "
                          "beside them follow no law",
                          state->yielded);
-    double most = edge_highest_pressure(points, state->p);
-    edge_fill_rise(state, most, pressures->law->stiffness, 0, points, pressures->rise);
+    double most = edge_highest_pressure(n, state->p);
+    edge_fill_rise(state, most, pressures->law->stiffness, 0, n, pressures->rise);
     int status = find_strips(pressures, err);
     if (status != 0)
         return status;

@@ -7,7 +7,7 @@
 #include "core/statistics/heights/histogram.h"
 
 struct pressures;
-/* Borrows the workspace, which must outlive it. */
+/* Borrows the workspace, of a periodic grid, which must outlive it. */
 int pressures_create(struct pressures **out, const struct area_workspace *areas, struct error *err);
 void pressures_destroy(struct pressures **pressures);
 /* Of faces with waves of up to these numbers. */

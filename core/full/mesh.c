@@ -167,22 +167,6 @@ void mesh_corners(const struct mesh *mesh, const struct mesh_element *element, c
         }
 }
 
-void mesh_corners_add(const struct mesh *mesh, const struct mesh_element *element,
-                      double corner[8][3], size_t components, double *field) {
-    size_t sideways = (size_t)1 << (mesh->dimension - 1);
-    double lower[4][3] = {{0}};
-    memcpy(lower, corner + sideways, sideways * sizeof *lower);
-    for (size_t b = 0; element->hangs && b < sideways; b++)
-        for (size_t k = 0; k < components; k++) {
-            corner[sideways + b][k] = 0;
-            for (size_t a = 0; a < sideways; a++)
-                corner[sideways + b][k] += element->weight[a][b] * lower[a][k];
-        }
-    for (size_t a = 0; a < 2 * sideways; a++)
-        for (size_t k = 0; k < components; k++)
-            field[element->node[a] * components + k] += corner[a][k];
-}
-
 void mesh_position(const struct mesh *mesh, const struct mesh_element *element,
                    double position[8][3]) {
     double height[8][3] = {{0}};

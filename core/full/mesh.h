@@ -73,10 +73,6 @@ void mesh_element(const struct mesh *mesh, size_t layer, size_t j, size_t i,
 /* Gathers the values of a nodal field, field[node*components + k], at the element's corners. */
 void mesh_corners(const struct mesh *mesh, const struct mesh_element *element, const double *field,
                   size_t components, double out[8][3]);
-/* The transpose of mesh_corners: adds values at the corners, such as forces, to a nodal field.
- * corner is overwritten. */
-void mesh_corners_add(const struct mesh *mesh, const struct mesh_element *element,
-                      double corner[8][3], size_t components, double *field);
 /* Undeformed positions of the corners; sideways they count from the element's first corner. */
 void mesh_position(const struct mesh *mesh, const struct mesh_element *element,
                    double position[8][3]);

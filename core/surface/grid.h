@@ -27,5 +27,10 @@ static inline double grid_dx(const struct grid *grid) {
 static inline double grid_dy(const struct grid *grid) {
     return grid->ly / (double)grid->ny;
 }
+/* Returns the wider spacing: waves of the grid along both axes are at least twice as long. */
+static inline double grid_widest_spacing(const struct grid *grid) {
+    const double dx = grid_dx(grid), dy = grid_dy(grid);
+    return grid_is_profile(grid) || dx > dy ? dx : dy;
+}
 
 #endif

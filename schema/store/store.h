@@ -321,6 +321,12 @@ struct publication {
     void *context;
 };
 enum { PUBLICATION_GROUP = 64 };
+/* Returns whether a case's stored results are at fault: another try would fail, too, but other
+ * cases may be readable. */
+static inline bool publish_is_final(int status) {
+    return status == ERROR_INPUT || status == ERROR_NUMERIC;
+}
+
 struct publish_counts {
     uint64_t published, failed;
     uint64_t postponed;  /* cases that stay due */

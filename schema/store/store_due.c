@@ -72,11 +72,6 @@ static int fail_publication(struct store *store, const struct due_case *due, con
     return change_end(store, status, err);
 }
 
-/* Returns whether another try would fail, too. */
-static bool is_final(int status) {
-    return status == ERROR_INPUT || status == ERROR_NUMERIC;
-}
-
 enum { GROUP_MS = 20 }; /* of preparation, beyond which no further one is begun */
 
 struct offered {
@@ -112,7 +107,7 @@ static int offer(struct store *store, const struct publication *publication,
     if (offered->status == 0)
         offered->status = publication->publish(publication->context, store, &offered->due, number,
                                                &offered->reason);
-    return is_final(offered->status)
+    return publish_is_final(offered->status)
                ? fail_publication(store, &offered->due, offered->reason.text, err)
                : 0;
 }
@@ -130,7 +125,7 @@ static int offer_each(struct store *store, const struct publication *publication
 static void postpone(struct offered *group, size_t count, const struct error *failed) {
     const struct error *reason = failed;
     for (size_t n = count; n > 0; n--)
-        if (group[n - 1].status != 0 && !is_final(group[n - 1].status))
+        if (group[n - 1].status != 0 && !publish_is_final(group[n - 1].status))
             reason = &group[n - 1].reason;
     const struct error first = *reason;
     for (size_t n = 0; n < count; n++) {
@@ -160,7 +155,7 @@ static int offer_group(struct store *store, const struct publication *publicatio
 
 static void count_group(const struct offered *group, size_t count, struct publish_counts *counts) {
     for (size_t n = 0; n < count; n++) {
-        if (is_final(group[n].status)) {
+        if (publish_is_final(group[n].status)) {
             counts->failed++;
         } else if (group[n].status != 0) {
             counts->postponed++;

@@ -298,12 +298,6 @@ static int fresh_result(struct store *store, const struct aggregate *aggregate,
     return merge_case(store, aggregate, case_number, info, out, err);
 }
 
-/* Returns whether the case's stored results are at fault: another try would fail, too, but other
- * cases may be readable. */
-static bool is_final(int status) {
-    return status == ERROR_INPUT || status == ERROR_NUMERIC;
-}
-
 /* Merges as fresh_result does. Where the stored results cannot be read or merged the result has an
  * error, and 0 is returned. */
 static int result_or_error(struct store *store, const struct aggregate *aggregate,
@@ -314,7 +308,7 @@ static int result_or_error(struct store *store, const struct aggregate *aggregat
     int status = fresh_result(store, aggregate, case_number, info, part, out, &reason);
     if (status == 0)
         return 0;
-    if (!is_final(status))
+    if (!publish_is_final(status))
         return error_set(err, status, "%s", reason.text);
     result_clear(out); /* merging may have begun to fill it */
     out->realisations = info->realisations_done;

@@ -664,8 +664,8 @@ int slip_load(struct slip *s, double traction, struct slip_state *out, struct er
                          traction, s->options.friction, bound);
     s->sets.transfer.transforms = 0;
     s->steps_sets = s->iterations = 0;
-    if (traction != along_load(s, s->shear) && go(s, s->pressure, traction, err) != 0)
-        return err != NULL ? err->code : ERROR_NUMERIC;
-    fill(s, out);
-    return 0;
+    int status = traction != along_load(s, s->shear) ? go(s, s->pressure, traction, err) : 0;
+    if (status == 0)
+        fill(s, out);
+    return status;
 }

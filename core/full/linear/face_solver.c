@@ -1,17 +1,12 @@
 #include "core/full/linear/face_solver.h"
+#include "core/contact/block.h"
 #include "core/full/linear/aliasing.h"
 #include <fftw3.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
 enum { ITERATIONS_MOST = 200 };
-
-/* Returns the symbol of the mean (1, 4, 1)/6 along one axis (F10.5). */
-static double weight_symbol(size_t mode, size_t n) {
-    return (2 + cos(2 * PI * (double)mode / (double)n)) / 3;
-}
 
 void face_solver_renew(struct face_solver *s, const struct mesh *mesh,
                        const struct preconditioner *preconditioner) {
@@ -20,9 +15,9 @@ void face_solver_renew(struct face_solver *s, const struct mesh *mesh,
     for (size_t k = 0; k < level_waves(&mesh->level[0]); k++) {
         double weight = 1;
         if (s->weight != NULL) {
-            weight = weight_symbol(k / ny, nx);
+            weight = gap_weight_symbol(k / ny, nx);
             if (mesh->dimension == 3)
-                weight *= weight_symbol(k % ny, ny);
+                weight *= gap_weight_symbol(k % ny, ny);
             s->weight[k] = weight;
         }
         s->compliance[k] = compliance[k] * weight;

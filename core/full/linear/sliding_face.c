@@ -1,4 +1,5 @@
 #include "core/full/linear/sliding_face.h"
+#include "core/contact/block.h"
 #include "core/full/linear/aliasing.h"
 #include "core/full/linear/hessenberg.h"
 #include "core/surface/transform.h"
@@ -6,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
 enum { BASIS = 24, RESTARTS = 4, AXES = 3 };
 
 struct sliding_face {
@@ -21,11 +21,6 @@ struct sliding_face {
     const struct face_conditions *conditions; /* borrowed for the time of a solution */
     double bearing[SIDEWAYS_MOST];            /* sum of the shares of all nodes */
 };
-
-/* Returns the symbol of the mean (1, 4, 1)/6 along one axis (F10.5). */
-static double weight_symbol(size_t mode, size_t n) {
-    return (2 + cos(2 * PI * (double)mode / (double)n)) / 3;
-}
 
 /* The mean over the waves of the mean of the compliances along the face. */
 static double local_compliance(const struct sliding_face *s, const struct mesh *mesh) {
@@ -59,8 +54,8 @@ static int arrays_create(struct sliding_face *s, const struct mesh *mesh,
         if ((s->basis[b] = array_create(s->values, sizeof(double))) == NULL)
             return error_memory(err, s->values * sizeof(double), "forces along the face");
     for (size_t wave = 0; s->weight != NULL && wave < s->waves; wave++)
-        s->weight[wave] = weight_symbol(wave / level->ny, level->nx) *
-                          (s->d == 3 ? weight_symbol(wave % level->ny, level->ny) : 1);
+        s->weight[wave] = gap_weight_symbol(wave / level->ny, level->nx) *
+                          (s->d == 3 ? gap_weight_symbol(wave % level->ny, level->ny) : 1);
     return 0;
 }
 
@@ -109,12 +104,6 @@ void sliding_face_destroy(struct sliding_face **handle) {
     free(s->step);
     free(s);
     *handle = NULL;
-}
-
-double sliding_face_bytes(const struct mesh *mesh) {
-    double d = mesh->dimension, waves = (double)level_waves(&mesh->level[0]);
-    return sizeof(double) *
-           (d * (BASIS + 3) * (double)mesh->face + (2 * d * d + 1 + 2 * d) * waves);
 }
 
 size_t sliding_face_values(const struct sliding_face *s) {

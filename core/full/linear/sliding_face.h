@@ -20,7 +20,6 @@ int sliding_face_create(struct sliding_face **out, const struct mesh *mesh,
 void sliding_face_renew(struct sliding_face *sliding, const struct mesh *mesh,
                         const struct preconditioner *preconditioner);
 void sliding_face_destroy(struct sliding_face **handle);
-double sliding_face_bytes(const struct mesh *mesh);
 /* Returns the number of values of a vector. */
 size_t sliding_face_values(const struct sliding_face *sliding);
 
