@@ -2,7 +2,7 @@
 -- that bears more than 1.5 E* h'. The contact is that by edges. Totals are half of 95 % intervals by all errors that are known;
 -- that of a share is the sum over its bins.
 CREATE TEMP TABLE cases AS
-SELECT s.public AS study, p."case" AS number, max(CASE p.parameter WHEN '/surface/heights/distribution' THEN substr(p.value, 9) || 'imum' END) AS heights,
+SELECT s.public AS study, p."case" AS number, max(CASE p.value WHEN 'weibull_min' THEN 'minimum' WHEN 'weibull_max' THEN 'maximum' END) AS heights,
     max(CASE p.parameter WHEN '/surface/heights/shape' THEN p.value END) AS C, max(CASE p.parameter WHEN '/surface/hurst' THEN p.value END) AS H
 FROM study s JOIN case_parameters p ON p.study = s.public WHERE s.name = :name GROUP BY s.public, p."case";
 WITH tails AS (
