@@ -5,7 +5,8 @@
 #include "schema/result/result.h"
 
 size_t swept_count(const struct study_result *study); /* 0 where it is not known */
-/* Returns the pointer of number n; NULL behind the last. Borrowed from the study. */
+/* Returns the pointer of number n; NULL behind the last. Borrowed from the study. Of a value that
+ * is an object, such as a height in one of several units, each member is a column. */
 const char *swept_pointer(const struct study_result *study, size_t n);
 /* Returns the title of a column: the last word of the pointer, or the whole pointer without its
  * first slash where another one ends in the same word. */
