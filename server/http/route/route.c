@@ -271,6 +271,17 @@ static bool check_origin(struct exchange *exchange) {
     return true;
 }
 
+/* A slash of a name is one of the path once it is read: what follows would be what another study is
+ * asked for. */
+static bool check_segment(struct exchange *exchange) {
+    if (exchange->slashed_target)
+        answer_problem(exchange, 404,
+                       "no study is found by a name with a /; name its id, or the first digits of "
+                       "it",
+                       NULL);
+    return !exchange->slashed_target;
+}
+
 static bool check_token(struct exchange *exchange, unsigned wanted) {
     exchange->admin = exchange->service->tokens == NULL;
     if (wanted == ROLE_NONE)
@@ -343,7 +354,7 @@ static bool check_media(struct exchange *exchange, const struct route *route) {
 
 void route_refuse_early(struct exchange *exchange) {
     char id[SEGMENT_SIZE];
-    if (!check_headers(exchange) || !check_origin(exchange))
+    if (!check_headers(exchange) || !check_origin(exchange) || !check_segment(exchange))
         return;
     const struct route *route = find_route(exchange, id);
     if (route == NULL)
