@@ -68,6 +68,17 @@ static void path_of(char *path, size_t size, const char *id, const char *rest) {
     snprintf(path, size, "/v1/studies/%s%s", id, rest);
 }
 
+/* Works until the study is done. */
+static void work(const char *id) {
+    char url[64], path[96];
+    snprintf(url, sizeof url, "http://127.0.0.1:%u", port);
+    path_of(path, sizeof path, id, "");
+    assert_int_equal(run_rugo("work", (const char *[]){"work", "--server", url, "--drain",
+                                                       "--workers", "1", NULL}),
+                     0);
+    wait_until_done(path);
+}
+
 /* --- a study's life --- */
 
 static void a_study_from_submission_to_curves(void **state) {
@@ -78,10 +89,7 @@ static void a_study_from_submission_to_curves(void **state) {
     check_answer("GET", path, NULL, 200, "\"state\":\"queued\"");
     check_answer("GET", "/v1/studies", NULL, 200, id);
     snprintf(url, sizeof url, "http://127.0.0.1:%u", port);
-    assert_int_equal(run_rugo("work", (const char *[]){"work", "--server", url, "--drain",
-                                                       "--workers", "1", NULL}),
-                     0);
-    wait_until_done(path);
+    work(id);
     path_of(path, sizeof path, id, "/study");
     check_answer("GET", path, NULL, 200, ONE_CASE);
     check_answer("GET", "/v1/studies/0123456789abcdef/study", NULL, 404, "there is no study");
@@ -159,11 +167,7 @@ static void a_case_less_another(void **state) {
     path_of(path, sizeof path, id, "/curves?difference=1,0");
     check_answer("GET", path, NULL, 409, "case 1 has no realisations yet");
     snprintf(url, sizeof url, "http://127.0.0.1:%u", port);
-    assert_int_equal(run_rugo("work", (const char *[]){"work", "--server", url, "--drain",
-                                                       "--workers", "1", NULL}),
-                     0);
-    path_of(path, sizeof path, id, "");
-    wait_until_done(path);
+    work(id);
     path_of(path, sizeof path, id, "/curves?difference=1,0");
     check_answer("GET", path, NULL, 200, "{\"case\":1,\"less\":0,");
     check_answer("GET", path, NULL, 200, "\"paired\":true");
@@ -273,6 +277,47 @@ static void unchanged_curves_are_not_sent_again(void **state) {
     check_answer("DELETE", path, NULL, 200, "cancelled");
 }
 
+/* A tag is that of one question: what has no answer has none that is known. */
+static void what_is_wrong_is_not_unchanged(void **state) {
+    (void)state;
+    static const struct {
+        const char *query;
+        int status;
+        bool whole; /* the tag is that of curves without a query, too */
+    } ASKED[] = {{"", 304, true},
+                 {"?case=0", 304, false},
+                 {"?quantity=summit_height_pdf", 304, false},
+                 {"?quantity=nope", 422, false},
+                 {"?case=77", 404, false},
+                 {"?difference=0,9", 404, false},
+                 {"?difference=0,0", 422, false},
+                 {"?quantity=", 422, false}};
+    static const char *const FORMS[] = {"", "Accept: text/csv\r\n"};
+    char id[17], path[96], request[300], header[160];
+    submit(ONE_CASE, id);
+    work(id);
+    for (size_t f = 0; f < 2; f++) {
+        path_of(path, sizeof path, id, "/curves");
+        snprintf(request, sizeof request,
+                 "HEAD %s HTTP/1.1\r\nHost: localhost\r\n%sConnection: close\r\n\r\n", path,
+                 FORMS[f]);
+        char *reply = http_raw(port, request, strlen(request)), *tag = strstr(reply, "ETag: ");
+        assert_non_null(tag);
+        tag[strcspn(tag, "\r")] = '\0';
+        for (size_t a = 0; a < sizeof ASKED / sizeof *ASKED; a++) {
+            char rest[64];
+            snprintf(rest, sizeof rest, "/curves%s", ASKED[a].query);
+            path_of(path, sizeof path, id, rest);
+            snprintf(header, sizeof header, "%sIf-None-Match: *\r\n", FORMS[f]);
+            assert_int_equal(http_exchange(port, "GET", path, header, NULL, NULL), ASKED[a].status);
+            snprintf(header, sizeof header, "%sIf-None-Match: %s\r\n", FORMS[f], tag + 6);
+            int status = ASKED[a].status == 304 && !ASKED[a].whole ? 200 : ASKED[a].status;
+            assert_int_equal(http_exchange(port, "GET", path, header, NULL, NULL), status);
+        }
+        free(reply);
+    }
+}
+
 static void a_key_makes_submission_safe_to_repeat(void **state) {
     (void)state;
     char *first, *second;
@@ -379,6 +424,7 @@ int main(void) {
         cmocka_unit_test(a_case_less_another),
         cmocka_unit_test(curves_of_many_cases_are_sent_whole),
         cmocka_unit_test(unchanged_curves_are_not_sent_again),
+        cmocka_unit_test(what_is_wrong_is_not_unchanged),
         cmocka_unit_test(a_key_makes_submission_safe_to_repeat),
         cmocka_unit_test(a_lease_is_needed_to_report),
         cmocka_unit_test(descriptions_and_page),
