@@ -301,8 +301,10 @@ static bool check_token(struct exchange *exchange, unsigned wanted) {
         exchange_vouch(exchange);
         return true;
     }
+    char detail[120];
+    roles_refuse(roles, wanted, detail, sizeof detail);
     if (roles != 0)
-        answer_problem(exchange, 403, "the token's role does not allow this", NULL);
+        answer_problem(exchange, 403, detail, NULL);
     else
         answer_problem(exchange, 401, bearer ? "the token is unknown" : "no Bearer token", NULL);
     return false;
