@@ -1,4 +1,5 @@
 /* Protects: the HTTP contract, request by request, against the real server. */
+#include "schema/json/json.h"
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include "tests/support/small_studies.h"
@@ -248,6 +249,88 @@ static void curves_of_many_cases_are_sent_whole(void **state) {
     check_answer("DELETE", path, NULL, 200, "cancelled");
 }
 
+/* The part of a text between two others. */
+static char *part_between(const char *text, const char *begin, const char *end) {
+    const char *from = strstr(text, begin);
+    assert_non_null(from);
+    const char *to = strstr(from, end);
+    assert_non_null(to);
+    char *part = strndup(from, (size_t)(to - from));
+    assert_non_null(part);
+    return part;
+}
+
+/* The line that begins with a member's name; NULL: none. */
+static const char *line_of(const char *description, const char *name) {
+    size_t length = strlen(name);
+    for (const char *line = description; line != NULL; line = strchr(line, '\n')) {
+        line += strspn(line, "\n ");
+        if (strncmp(line, name, length) == 0 && line[length] == ':')
+            return line;
+    }
+    return NULL;
+}
+
+/* Each member is described by a line of its own, as one that may be null where it is. */
+static void check_described(const cJSON *object, const char *description) {
+    const cJSON *member;
+    assert_true(cJSON_IsObject(object) && object->child != NULL);
+    cJSON_ArrayForEach(member, object) {
+        const char *line = line_of(description, member->string);
+        bool described = line != NULL, null = cJSON_IsNull(member);
+        if (!described || (null && memmem(line, strcspn(line, "\n"), "\"null\"", 6) == NULL))
+            fail_msg("%s is not described%s", member->string, described ? " as null" : "");
+    }
+}
+
+/* A study whose curves, scalars and tables have as many members as there are. */
+static void members_of_results_are_described(void **state) {
+    (void)state;
+    static const char STUDY[] =
+        "{\"name\":\"described\",\"kind\":\"contact\",\"seed\":5,\"realisations\":6,\"surface\":{"
+        "\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":4,\"length_ratio\":2,\"rms_slope\":0.1,"
+        "\"points_per_wavelength\":8,\"amplitudes\":\"random\",\"unit\":1e-6,\"heights\":{"
+        "\"distribution\":\"weibull_min\",\"shape\":1.5}},\"contact\":{\"cell_error\":\"probed\","
+        "\"model\":[\"halfspace\",\"layered\"],\"levels\":[4,8],\"pressures\":{\"to\":0.3,"
+        "\"steps\":4},\"pressure_pdf\":{\"at\":[0.3]}}}";
+    char id[17], path[96], *answer, *part;
+    const cJSON *one;
+    submit(STUDY, id);
+    work(id);
+    assert_int_equal(ask("GET", "/v1/openapi.yaml", NULL, &answer), 200);
+    char *description = answer;
+    const char *all = strstr(description, "\n    Curves:");
+    assert_non_null(all);
+    path_of(path, sizeof path, id, "/curves");
+    assert_int_equal(ask("GET", path, NULL, &answer), 200);
+    cJSON *document = cJSON_Parse(answer);
+    const cJSON *first = cJSON_GetArrayItem(cJSON_GetObjectItem(document, "cases"), 0);
+    free(answer);
+    const cJSON *area = cJSON_GetArrayItem(cJSON_GetObjectItem(first, "curves"), 0);
+    assert_non_null(cJSON_GetObjectItem(area, "law_difference"));
+    part = part_between(all, "\n              scalars:", "\n              curves:");
+    cJSON_ArrayForEach(one, cJSON_GetObjectItem(first, "scalars")) check_described(one, part);
+    free(part);
+    part = strstr(all, "\n              curves:");
+    cJSON_ArrayForEach(one, cJSON_GetObjectItem(first, "curves")) check_described(one, part);
+    cJSON_Delete(document);
+    path_of(path, sizeof path, id, "/table?columns=contact_area@0.3,mean_gap_last");
+    assert_int_equal(ask("GET", path, NULL, &answer), 200);
+    document = cJSON_Parse(answer);
+    free(answer);
+    first = cJSON_GetArrayItem(cJSON_GetObjectItem(document, "rows"), 0);
+    assert_non_null(cJSON_GetObjectItem(first, "law_differences"));
+    const char *table = strstr(description, "\n    Table:");
+    part = part_between(table, "\n        rows:", "\n    UnknownErrors:");
+    check_described(first, part);
+    free(part);
+    part = part_between(table, "\n        columns:", "\n        rows:");
+    cJSON_ArrayForEach(one, cJSON_GetObjectItem(document, "columns")) check_described(one, part);
+    free(part);
+    cJSON_Delete(document);
+    free(description);
+}
+
 static void unchanged_curves_are_not_sent_again(void **state) {
     (void)state;
     char id[17], path[96], request[300], *reply, *tag;
@@ -423,6 +506,7 @@ int main(void) {
         cmocka_unit_test(a_study_from_submission_to_curves),
         cmocka_unit_test(a_case_less_another),
         cmocka_unit_test(curves_of_many_cases_are_sent_whole),
+        cmocka_unit_test(members_of_results_are_described),
         cmocka_unit_test(unchanged_curves_are_not_sent_again),
         cmocka_unit_test(what_is_wrong_is_not_unchanged),
         cmocka_unit_test(a_key_makes_submission_safe_to_repeat),
