@@ -21,6 +21,7 @@ struct exchange {
     bool has_file;               /* it is a file, which is counted among those (service.h) */
     bool needs_host;             /* HTTP/1.1, where a request names its server */
     bool bad_target;             /* it asks for what has a space or a NUL, not escaped */
+    bool slashed_target;         /* below the studies it has an escaped slash */
     int64_t start_ns;
 
     /* Who asks: the name of the token, "" without; and whether it may change the studies of all. */

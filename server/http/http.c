@@ -180,8 +180,21 @@ static void note_lease(struct exchange *exchange) {
                           clock_ms() + exchange->service->lease_ms);
 }
 
-/* Stands in the slot of a request, before its headers are read, where its target is none. */
-static char bad_target;
+/* Stand in the slot of a request, before its headers are read, where its target is none, and where
+ * it names a study with an escaped slash, which would be several segments once it is read. */
+static char bad_target, slashed_target;
+
+/* The exchange of a request; NULL before it has one. */
+static struct exchange *exchange_of(void *slot) {
+    return slot != &bad_target && slot != &slashed_target ? slot : NULL;
+}
+
+static bool names_slash(const char *target) {
+    static const char STUDIES[] = "/v1/studies/";
+    const char *slash = strcasestr(target, "%2F");
+    return slash != NULL && strncmp(target, STUDIES, sizeof STUDIES - 1) == 0 &&
+           (size_t)(slash - target) < strcspn(target, "?");
+}
 
 /* The library would refuse a space in the target, and a request without a Host, too; but of some
  * refusals of its own it sends the head twice. A target ends where its line has the version. */
@@ -190,13 +203,15 @@ static void *on_target(void *context, const char *target, struct MHD_Connection 
     (void)connection;
     bool good =
         strchr(target, ' ') == NULL && strncmp(target + strlen(target) + 1, "HTTP/", 5) == 0;
-    return good ? NULL : &bad_target;
+    if (!good)
+        return &bad_target;
+    return names_slash(target) ? &slashed_target : NULL;
 }
 
 static void on_completed(void *context, struct MHD_Connection *connection, void **slot,
                          enum MHD_RequestTerminationCode code) {
     struct http *http = context;
-    struct exchange *exchange = *slot != &bad_target ? *slot : NULL;
+    struct exchange *exchange = exchange_of(*slot);
     (void)connection;
     if (exchange == NULL)
         return;
@@ -263,11 +278,12 @@ static enum MHD_Result begin(struct http *http, struct MHD_Connection *connectio
                              const char *method, const char *path, const char *version,
                              void **slot) {
     struct exchange *exchange = exchange_create(http, connection, method, path);
-    bool is_bad = *slot == &bad_target;
+    bool is_bad = *slot == &bad_target, is_slashed = *slot == &slashed_target;
     *slot = exchange;
     if (exchange == NULL)
         return MHD_NO;
     exchange->bad_target = is_bad;
+    exchange->slashed_target = is_slashed;
     exchange->needs_host = strcmp(version, "HTTP/1.1") == 0;
     route_refuse_early(exchange);
     if (exchange->status == 0)
@@ -279,9 +295,9 @@ static enum MHD_Result begin(struct http *http, struct MHD_Connection *connectio
 static enum MHD_Result on_request(void *context, struct MHD_Connection *connection,
                                   const char *path, const char *method, const char *version,
                                   const char *data, size_t *size, void **slot) {
-    if (*slot == NULL || *slot == &bad_target)
+    struct exchange *exchange = exchange_of(*slot);
+    if (exchange == NULL)
         return begin(context, connection, method, path, version, slot);
-    struct exchange *exchange = *slot;
     if (*size != 0) {
         /* A chunked body past the cap can only be cut. */
         bool kept = keep_body(exchange, data, *size);

@@ -287,7 +287,7 @@ test("a token is asked for once, a wrong one reported, and a lesser one refused 
   await page.keyboard.press("Enter");
   await says(page, "No study yet");
   await page.goto(`${closed}/#/new`);
-  await says(page, "the token's role does not allow this");
+  await says(page, "the token's role, read, does not allow this");
   await click(page, "Forget token");
   await page.goto(closed);
   await page.reload();

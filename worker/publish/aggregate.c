@@ -323,6 +323,11 @@ static bool has_quantity(const struct case_result *result, const char *quantity)
 int quantity_absent(const struct case_result *result, const char *quantity, struct error *err) {
     char names[256] = "", hint[NEAR_HINT_SIZE];
     struct near_name near = {.typed = quantity};
+    if (result_scalar(result, quantity) != NULL)
+        return error_set(err, ERROR_INPUT,
+                         "%.64s is a scalar, which has no curve: rugo table --columns %.64s (over "
+                         "HTTP, /table?columns=%.64s) has it, as have curves of no one quantity",
+                         quantity, quantity, quantity);
     for (size_t a = 0; a < result->curve_count; a++) {
         const char *name = result->curves[a].quantity;
         size_t length = strlen(names);

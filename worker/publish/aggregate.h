@@ -73,7 +73,8 @@ int aggregate_report(struct store *store, const char *study, struct study_report
 /* Returns what store_publish_points needs of a merged case: values of single realisations at the
  * points of published curves (the view realisation_points). Borrows the merger. */
 struct point_texts realisation_values(const struct job_merger *merger);
-/* ERROR_INPUT that names the quantities of a case, and the nearest of them. */
+/* ERROR_INPUT that names the quantities of a case, and the nearest of them; or of a scalar, where
+ * it is to be had. */
 int quantity_absent(const struct case_result *result, const char *quantity, struct error *err);
 
 #endif

@@ -94,8 +94,12 @@ static int run(const void *values, const char *const *arguments) {
     (void)arguments;
     if (access_options_check("prune", &options->place) != 0)
         return EXIT_USAGE;
-    if (options->days < 0 || options->days > DAYS_MOST)
-        return usage_error("prune", "--older-than DAYS is needed, 0 to %d", (int)DAYS_MOST);
+    if (options->days < 0)
+        return usage_error("prune", "--older-than DAYS is missing: a whole number in [0, %d]",
+                           (int)DAYS_MOST);
+    if (options->days > DAYS_MOST)
+        return usage_error("prune", "--older-than %lld is not a whole number in [0, %d]",
+                           (long long)options->days, (int)DAYS_MOST);
     int status = access_open(&pruning.access, &options->place, ACCESS_WRITE, &err);
     if (status == 0)
         status = prune(&pruning, &err);

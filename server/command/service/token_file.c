@@ -5,16 +5,33 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const struct {
+    const char *name;
+    unsigned roles;
+} ROLES[] = {{"read", ROLE_READ},
+             {"submit", ROLE_READ | ROLE_SUBMIT},
+             {"work", ROLE_READ | ROLE_WORK},
+             {"admin", ROLE_READ | ROLE_SUBMIT | ROLE_ADMIN}};
+enum { ROLE_COUNT = sizeof ROLES / sizeof *ROLES };
+
+void roles_refuse(unsigned roles, unsigned wanted, char *text, size_t size) {
+    size_t used = (size_t)snprintf(text, size, "the token's role");
+    for (size_t r = 0; r < ROLE_COUNT && used < size; r++)
+        if (ROLES[r].roles == roles)
+            used += (size_t)snprintf(text + used, size - used, ", %s,", ROLES[r].name);
+    if (used < size)
+        used += (size_t)snprintf(text + used, size - used, " does not allow this, which needs ");
+    const char *between = "";
+    for (size_t r = 0; r < ROLE_COUNT && used < size; r++)
+        if ((ROLES[r].roles & wanted) != 0) {
+            used += (size_t)snprintf(text + used, size - used, "%s%s", between, ROLES[r].name);
+            between = " or ";
+        }
+}
+
 /* Returns the roles that a line's first word names; ROLE_NONE for an unknown one. */
 static unsigned roles_of(const char *word, size_t length) {
-    static const struct {
-        const char *name;
-        unsigned roles;
-    } ROLES[] = {{"read", ROLE_READ},
-                 {"submit", ROLE_READ | ROLE_SUBMIT},
-                 {"work", ROLE_READ | ROLE_WORK},
-                 {"admin", ROLE_READ | ROLE_SUBMIT | ROLE_ADMIN}};
-    for (size_t r = 0; r < sizeof ROLES / sizeof *ROLES; r++)
+    for (size_t r = 0; r < ROLE_COUNT; r++)
         if (strlen(ROLES[r].name) == length && memcmp(word, ROLES[r].name, length) == 0)
             return ROLES[r].roles;
     return ROLE_NONE;

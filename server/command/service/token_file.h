@@ -14,6 +14,10 @@
 
 enum role { ROLE_NONE = 0, ROLE_READ = 1, ROLE_SUBMIT = 2, ROLE_WORK = 4, ROLE_ADMIN = 8 };
 
+/* Writes that a token of these roles (bits) may not do what one of `wanted` may: "the token's role,
+ * read, does not allow this, which needs submit or admin". */
+void roles_refuse(unsigned roles, unsigned wanted, char *text, size_t size);
+
 /* A line that is not passed over; its texts are borrowed for the call. */
 struct token_line {
     unsigned roles;    /* bits; ROLE_NONE where a word that is no role stands before the colon */

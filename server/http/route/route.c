@@ -271,6 +271,17 @@ static bool check_origin(struct exchange *exchange) {
     return true;
 }
 
+/* A slash of a name is one of the path once it is read: what follows would be what another study is
+ * asked for. */
+static bool check_segment(struct exchange *exchange) {
+    if (exchange->slashed_target)
+        answer_problem(exchange, 404,
+                       "no study is found by a name with a /; name its id, or the first digits of "
+                       "it",
+                       NULL);
+    return !exchange->slashed_target;
+}
+
 static bool check_token(struct exchange *exchange, unsigned wanted) {
     exchange->admin = exchange->service->tokens == NULL;
     if (wanted == ROLE_NONE)
@@ -290,8 +301,10 @@ static bool check_token(struct exchange *exchange, unsigned wanted) {
         exchange_vouch(exchange);
         return true;
     }
+    char detail[120];
+    roles_refuse(roles, wanted, detail, sizeof detail);
     if (roles != 0)
-        answer_problem(exchange, 403, "the token's role does not allow this", NULL);
+        answer_problem(exchange, 403, detail, NULL);
     else
         answer_problem(exchange, 401, bearer ? "the token is unknown" : "no Bearer token", NULL);
     return false;
@@ -343,7 +356,7 @@ static bool check_media(struct exchange *exchange, const struct route *route) {
 
 void route_refuse_early(struct exchange *exchange) {
     char id[SEGMENT_SIZE];
-    if (!check_headers(exchange) || !check_origin(exchange))
+    if (!check_headers(exchange) || !check_origin(exchange) || !check_segment(exchange))
         return;
     const struct route *route = find_route(exchange, id);
     if (route == NULL)

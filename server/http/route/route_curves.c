@@ -1,6 +1,7 @@
 /* Curves and reports over HTTP. A study of ten thousand cases has gigabytes of them: as JSON they
  * are read and sent case by case, and end early when the server does. */
 #include "core/file/memory_file.h"
+#include "schema/result/bytes.h"
 #include "schema/result/csv.h"
 #include "schema/result/result_json.h"
 #include "server/http/accept.h"
@@ -256,9 +257,41 @@ static bool wants_csv(const struct exchange *exchange) {
     return accept_quality(accept, "text/csv") > accept_quality(accept, "application/json");
 }
 
-static bool matches(const struct exchange *exchange, const char *etag) {
+/* Every change of a study's results raises its revision: that, what of them is asked for, and the
+ * form, is the answer's identity. So the tag of an answer is that of no query that has none. */
+enum { TAG_SIZE = 96 };
+static void make_tag(const struct exchange *exchange, const char *id, uint64_t revision, bool csv,
+                     char tag[TAG_SIZE]) {
+    static const char *const NAMES[] = {"case", "quantity", "difference"};
+    uint64_t asked = HASH_START;
+    for (size_t n = 0; n < sizeof NAMES / sizeof *NAMES; n++) {
+        const char *value = exchange_query(exchange, NAMES[n]);
+        if (value == NULL)
+            continue;
+        asked = hash_bytes(asked, strlen(NAMES[n]) + 1, NAMES[n]);
+        asked = hash_bytes(asked, strlen(value) + 1, value);
+    }
+    snprintf(tag, TAG_SIZE, "\"%s-%llu-%016llx-%s%s\"", id, (unsigned long long)revision,
+             (unsigned long long)asked, csv ? "csv" : "json",
+             answer_is_compressed(exchange) ? "-gzip" : "");
+}
+
+/* What the request knows of the answer by If-None-Match: "*" is any that there is. */
+static bool knows(const struct exchange *exchange, const char *tag) {
     const char *known = exchange_header(exchange, "If-None-Match");
-    return known != NULL && (strcmp(known, "*") == 0 || strstr(known, etag) != NULL);
+    return known != NULL && strstr(known, tag) != NULL;
+}
+
+static bool knows_any(const struct exchange *exchange) {
+    const char *known = exchange_header(exchange, "If-None-Match");
+    return known != NULL && strcmp(known, "*") == 0;
+}
+
+/* In place of an answer that is made: whether there is one is known by then (RFC 9110, 13.2.1). */
+static void answer_unchanged(struct exchange *exchange) {
+    MHD_destroy_response(exchange->response);
+    exchange->response = NULL;
+    answer_empty(exchange, 304);
 }
 
 /* One case less another over HTTP. It is made and sent as a whole: two cases are never many. */
@@ -323,7 +356,7 @@ void handle_curves(struct exchange *exchange, const char *id) {
                                    .part = {.quantity = exchange_query(exchange, "quantity")},
                                    .complete = true};
     struct comparison comparison = {.quantity = filter.part.quantity};
-    char etag[80] = "";
+    char tag[TAG_SIZE];
     bool difference;
     if (query_difference(exchange, &comparison, &difference) != 0)
         return;
@@ -331,11 +364,8 @@ void handle_curves(struct exchange *exchange, const char *id) {
         return;
     bool csv = wants_csv(exchange);
     int status = find_study(exchange, id, &study, &err);
-    /* Every change of a study's results raises its revision: that, and the form, is the answer's
-     * identity. */
-    snprintf(etag, sizeof etag, "\"%s-%llu-%s%s\"", id, (unsigned long long)study.revision,
-             csv ? "csv" : "json", answer_is_compressed(exchange) ? "-gzip" : "");
-    if (status == 0 && matches(exchange, etag))
+    make_tag(exchange, id, study.revision, csv, tag);
+    if (status == 0 && knows(exchange, tag))
         answer_empty(exchange, 304);
     else if (status == 0 && difference)
         status = send_difference(exchange, id, &comparison, csv, &err);
@@ -347,7 +377,9 @@ void handle_curves(struct exchange *exchange, const char *id) {
         answer_error(exchange, &err);
         return;
     }
-    answer_header(exchange, "ETag", etag);
+    if (knows_any(exchange))
+        answer_unchanged(exchange);
+    answer_header(exchange, "ETag", tag);
     answer_header(exchange, "Vary", "Accept");
 }
 

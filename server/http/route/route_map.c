@@ -30,9 +30,16 @@ struct map_question {
     bool png;
 };
 
-/* Reads the number behind "/NAME/" of the path; false where there is none, or more than digits. */
-static bool path_number(const char *path, const char *name, uint64_t *out) {
-    const char *at = strstr(path, name);
+/* Returns the segment of the path that names the study. */
+static const char *study_segment(const struct exchange *exchange) {
+    static const char STUDIES[] = "/v1/studies/";
+    return exchange->path + sizeof STUDIES - 1;
+}
+
+/* Reads the number behind "/NAME/" of a path below the study, whose own name may be such a one;
+ * false where there is none, or more than digits. */
+static bool path_number(const struct exchange *exchange, const char *name, uint64_t *out) {
+    const char *study = study_segment(exchange), *at = strstr(study + strcspn(study, "/"), name);
     char *end;
     if (at == NULL || at[strlen(name)] < '0' || at[strlen(name)] > '9')
         return false;
@@ -76,8 +83,8 @@ static bool prefers_png(const struct exchange *exchange) {
 
 /* Reads case and realisation; false after an answer. */
 static bool read_path(struct exchange *exchange, struct map_question *out) {
-    if (path_number(exchange->path, "/cases/", &out->case_number) &&
-        path_number(exchange->path, "/realisations/", &out->realisation))
+    if (path_number(exchange, "/cases/", &out->case_number) &&
+        path_number(exchange, "/realisations/", &out->realisation))
         return true;
     answer_problem(exchange, 404, "cases and realisations are whole numbers from 0", NULL);
     return false;
@@ -157,9 +164,12 @@ static int write_map(const struct map_question *question, const struct grid *gri
                          : height_map_write(out->file, HEIGHT_MAP_NPY, grid, z, err);
 }
 
-/* It is the same for ever. */
-static void may_be_kept(struct exchange *exchange) {
-    answer_header(exchange, "Cache-Control", "private, max-age=604800, immutable");
+/* Of an id it is the same for ever; a name, or first digits, may be another study's tomorrow. */
+static void may_be_kept(struct exchange *exchange, const char *id) {
+    const char *given = study_segment(exchange);
+    bool whole = strcspn(given, "/") == strlen(id) && strncmp(given, id, strlen(id)) == 0;
+    answer_header(exchange, "Cache-Control",
+                  whole ? "private, max-age=604800, immutable" : "private, no-cache");
     answer_header(exchange, "Vary", "Accept, Authorization");
 }
 
@@ -185,7 +195,7 @@ static int send_map(struct exchange *exchange, const void *whole, const struct m
         return status;
     }
     answer_bytes(exchange, question->png ? "image/png" : "application/octet-stream", bytes, size);
-    may_be_kept(exchange);
+    may_be_kept(exchange, question->id);
     return 0;
 }
 
@@ -325,20 +335,18 @@ static int send_nodes(struct exchange *exchange, const void *whole, const struct
                       struct error *err) {
     const struct node_question *question = whole;
     struct memory_file memory = {0};
-    size_t size = 0;
     if (!memory_file_open(&memory))
         return error_memory(err, 0, "nodes");
     int status = press_nodes(question, order, memory.file, err);
-    char *bytes = memory_file_close(&memory, &size);
-    if (status == 0 && bytes == NULL)
+    char *text = memory_file_close(&memory, NULL);
+    if (status == 0 && text == NULL)
         status = error_memory(err, 0, "nodes");
     if (status != 0) {
-        free(bytes);
+        free(text);
         return status;
     }
-    answer_bytes(exchange, question->vtu ? "application/xml" : "text/csv; charset=utf-8", bytes,
-                 size);
-    may_be_kept(exchange);
+    answer_text(exchange, 200, question->vtu ? "application/xml" : "text/csv; charset=utf-8", text);
+    may_be_kept(exchange, question->realisation.id);
     return 0;
 }
 

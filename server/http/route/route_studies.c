@@ -2,10 +2,13 @@
 #include "jobs/clock.h"
 #include "jobs/kind.h"
 #include "schema/json/field.h"
+#include "schema/study/study.h"
+#include "schema/study/value.h"
 #include "server/command/access/api.h"
 #include "server/http/route/route.h"
 #include "server/show/summary/plan.h"
 #include "server/show/table/contents.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -216,16 +219,26 @@ void handle_study_retry(struct exchange *exchange, const char *id) {
 }
 
 static void read_extension(const cJSON *body, uint64_t *realisations, struct fault_list *faults) {
-    struct error err = {0};
-    char pointer[80];
+    const cJSON *given = field_at(body, "realisations");
+    char pointer[80], allowed[48], text[48];
+    snprintf(allowed, sizeof allowed, "an integer in [1, %d]", STUDY_REALISATIONS_MOST);
     for (const cJSON *member = cJSON_IsObject(body) ? body->child : NULL; member != NULL;
          member = member->next)
         if (strcmp(member->string, "realisations") != 0) {
             snprintf(pointer, sizeof pointer, "/%.64s", member->string);
             fault_add(faults, pointer, "unknown name; allowed: realisations");
         }
-    if (field_count(body, "realisations", realisations, &err) != 0)
-        fault_add(faults, "/realisations", "%s", err.text);
+    if (given == NULL) {
+        fault_add(faults, "/realisations", "missing: %s", allowed);
+        return;
+    }
+    double number = cJSON_IsNumber(given) ? given->valuedouble : 0;
+    if (number >= 1 && number <= STUDY_REALISATIONS_MOST && number == floor(number)) {
+        *realisations = (uint64_t)number;
+        return;
+    }
+    value_describe(given, text, sizeof text);
+    fault_add(faults, "/realisations", "%s is not %s", text, allowed);
 }
 
 void handle_study_extend(struct exchange *exchange, const char *id) {

@@ -23,7 +23,6 @@ import ipaddress
 import json
 import os
 import secrets
-import shutil
 import ssl
 import stat
 import sys
@@ -137,6 +136,26 @@ def _fingerprint(certificate):
     return "sha256:" + hashlib.sha256(certificate[at:_content(certificate, at)[1]]).hexdigest()
 
 
+class _Whole(http.client.HTTPResponse):
+    """An answer whose read() raises IncompleteRead where the connection ends before its length, with a size, too."""
+
+    def read(self, size=None):
+        part = super().read(size)
+        if not part and size != 0 and self.length:
+            raise http.client.IncompleteRead(part, self.length)
+        return part
+
+
+class _Plain(urllib.request.HTTPHandler):
+    """Connections without TLS."""
+
+    def http_open(self, request):
+        class Connection(http.client.HTTPConnection):
+            response_class = _Whole
+
+        return self.do_open(Connection, request)
+
+
 class _Tls(urllib.request.HTTPSHandler):
     """Connections to those whom a file of authorities vouches for, or whose key has a fingerprint."""
 
@@ -152,6 +171,8 @@ class _Tls(urllib.request.HTTPSHandler):
         wanted = self.fingerprint
 
         class Connection(http.client.HTTPSConnection):
+            response_class = _Whole
+
             def connect(self):
                 super().connect()
                 if wanted and _fingerprint(self.sock.getpeercert(binary_form=True)) != wanted:
@@ -170,16 +191,21 @@ class _NoRedirect(urllib.request.HTTPRedirectHandler):
 
 def _document(study):
     """The JSON of a study: a dict, JSON text, or the path of a file of it."""
-    if isinstance(study, str) and not study.lstrip().startswith("{"):
+    if isinstance(study, os.PathLike) or (isinstance(study, str) and not study.lstrip().startswith("{")):
         with open(study, encoding="utf-8") as file:
             study = file.read()
     return study if isinstance(study, str) else json.dumps(study)
 
 
+def _listed(given):
+    """What may be one or several, as a list: a text or a path is one."""
+    return [given] if isinstance(given, (str, os.PathLike)) else list(given)
+
+
 def _form(files, study=None):
     """Files, and perhaps a study, as a form, as browsers send them: its bytes and their media type."""
     boundary, parts = secrets.token_hex(16), []
-    for path in files:
+    for path in _listed(files):
         name = os.path.basename(os.fspath(path)).replace('"', "%22")
         with open(path, "rb") as opened:
             parts.append((f'name="map"; filename="{name}"', opened.read()))
@@ -213,7 +239,7 @@ class Server:
             raise ValueError(f"{url} would get the token in clear text over the network: use https://")
         if not ca_file and not fingerprint:
             ca_file, fingerprint = os.environ.get("RUGO_CA_FILE"), os.environ.get("RUGO_FINGERPRINT")
-        self._open = urllib.request.build_opener(_Tls(ca_file, fingerprint), _NoRedirect).open
+        self._open = urllib.request.build_opener(_Plain, _Tls(ca_file, fingerprint), _NoRedirect).open
 
     def ask(self, method, path, query=None, body=None, accept="application/json", headers=None):
         """One request; the open answer, whose read() gives bytes as they were before compression."""
@@ -311,8 +337,18 @@ class Server:
 
     def fit(self, study, files):
         """The study (a dict, JSON or a path, as for submit) with what is fitted to the files that its /surface/like
-        names, which are sent: paths, of which the study has the last part. It needs no file any more."""
+        names, which are sent: a path or several, of which the study has the last part. It needs no file any more."""
         return self._characterised(_form(files, _document(study)), "study", {})
+
+    def _parts(self, answer):
+        """The parts of an answer, to its end; RugoError where it does not come whole."""
+        data = True
+        while data:
+            try:
+                data = answer.read(1 << 16)
+            except (OSError, EOFError, http.client.HTTPException) as error:
+                raise _no_answer(self.url, error) from error
+            yield data
 
     def snapshot(self, path):
         """Copies the database of the service to a file, for SQLite and pandas.read_sql. The file is there, in place of
@@ -320,7 +356,8 @@ class Server:
         part = f"{path}.part-{os.urandom(3).hex()}"
         try:
             with open(part, "xb") as file, self.ask("GET", "/v1/snapshot", accept="*/*") as answer:
-                shutil.copyfileobj(answer, file)
+                for data in self._parts(answer):
+                    file.write(data)
             os.replace(part, path)
         except BaseException:
             if os.path.exists(part):
@@ -331,7 +368,8 @@ class Server:
 
 def _no_answer(url, error):
     """A RugoError of a request without an answer; what was refused before it was sent is not lost."""
-    reason = getattr(error, "reason", error)
+    cut = isinstance(error, (EOFError, http.client.IncompleteRead))
+    reason = "the answer was cut off" if cut else getattr(error, "reason", error)
     told = RugoError(None, f"{url}: {reason}")
     told.lost = not isinstance(reason, (ConnectionRefusedError, ssl.SSLError)) and not (
         isinstance(reason, OSError) and reason.__class__.__name__ == "gaierror")
@@ -339,14 +377,14 @@ def _no_answer(url, error):
 
 
 def _problem(error):
-    """A RugoError of an answer that refuses."""
-    text = error.read()
-    if error.headers.get("Content-Encoding") == "gzip":
-        text = gzip.decompress(text)
+    """A RugoError of an answer that refuses, whose reason may have been cut off."""
     try:
+        text = error.read()
+        if error.headers.get("Content-Encoding") == "gzip":
+            text = gzip.decompress(text)
         problem = json.loads(text)
         return RugoError(error.code, problem["detail"], problem.get("errors", ()))
-    except (ValueError, KeyError, TypeError):
+    except (ValueError, KeyError, TypeError, OSError, EOFError, http.client.HTTPException):
         return RugoError(error.code, f"HTTP status {error.code}")
 
 
@@ -420,10 +458,10 @@ class Study:
 
     def table(self, columns=None, where=None):
         """A row a case: what the study sweeps, then scalars ("kappa") or values of curves ("mean_gap@0.1") with
-        their errors; columns: a list of these, where: a dict such as {"hurst": 0.8}, or lists of values."""
+        their errors; columns: one or a list of these, where: a dict such as {"hurst": 0.8}, or lists of values."""
         pairs = [(name, value) for name, given in (where or {}).items()
                  for value in (given if isinstance(given, (list, tuple)) else [given])]
-        query = {"columns": ",".join(columns) if columns else None,
+        query = {"columns": ",".join(_listed(columns)) if columns else None,
                  "where": ",".join(f"{name}={value}" for name, value in pairs) or None}
         return rows_of_csv(self.server.text("GET", self._path("/table"), query=query, accept="text/csv"))
 

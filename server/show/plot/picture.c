@@ -5,6 +5,7 @@
 #include "server/show/table/case_table.h"
 #include "server/show/table/sweep.h"
 #include "server/show/view.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -88,7 +89,7 @@ static int draw_sweep(struct drawing *drawing, struct error *err) {
     char *columns = columns_of(request);
     if (columns == NULL)
         return error_memory(err, strlen(request->quantity), "a name");
-    int status = case_table_add(&drawing->table, drawing->source, columns, err);
+    int status = case_table_add(&drawing->table, drawing->source, "quantity", columns, err);
     if (status == 0)
         status =
             sweep_draw(&drawing->table, columns, request->x, &drawing->plot, drawing->file, err);
@@ -239,6 +240,10 @@ int picture_draw(const struct picture_source *source, const struct picture_reque
                                        .axes = (enum plot_axes)request->axes,
                                        .without_total = request->without_total},
                               .file = file};
+    char *end = NULL;
+    if (request->level != NULL &&
+        (!isfinite(strtod(request->level, &end)) || end == request->level || *end != '\0'))
+        return error_set(err, ERROR_INPUT, "level: \"%.40s\" is no number", request->level);
     int status = plot_width_read(request->width, &drawing.plot.millimetres, err);
     if (status != 0)
         return status;

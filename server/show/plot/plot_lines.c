@@ -26,10 +26,13 @@ static bool is_level(const struct curve *curve, const char *level) {
     return end != level && *end == '\0' && fabs(number - curve->level) <= 1e-9 * fabs(number);
 }
 
+static bool is_named_series(const struct curve *curve) {
+    return curve->series != NULL && *curve->series != '\0';
+}
+
 /* A series without a name is that of the quantity, as the legend has it. */
 static bool is_series(const struct curve *curve, const char *series) {
-    bool named = curve->series != NULL && *curve->series != '\0';
-    return strcmp(named ? curve->series : curve->quantity, series) == 0;
+    return strcmp(is_named_series(curve) ? curve->series : curve->quantity, series) == 0;
 }
 
 /* Says whether a curve may be drawn; matrices may not. */
@@ -96,35 +99,103 @@ static const struct curve *first_candidate(const struct study_result *study,
     return NULL;
 }
 
-/* No curve is wanted: names the words that curves of the quantity have, or says that none has it.
- */
+/* What curves may be chosen by, as bits of those that a quantity has. */
+enum { HAS_MODEL = 1, HAS_SERIES = 2, HAS_LEVEL = 4 };
+
+static unsigned attributes_of(const struct curve *curve) {
+    return (curve->model != NULL ? HAS_MODEL : 0u) | (is_named_series(curve) ? HAS_SERIES : 0u) |
+           (!isnan(curve->level) ? HAS_LEVEL : 0u);
+}
+
+static void append(char *text, size_t size, const char *between, const char *word) {
+    size_t used = strlen(text);
+    if (used + strlen(between) + strlen(word) + 1 < size)
+        snprintf(text + used, size - used, "%s%s", used > 0 ? between : "", word);
+}
+
+/* Returns whether a word is one of those with "; " between them. */
+static bool is_listed(const char *words, const char *word) {
+    size_t length = strlen(word);
+    for (const char *at = words; at != NULL; at = strchr(at, ';')) {
+        at += strspn(at, "; ");
+        if (strncmp(at, word, length) == 0 && (at[length] == '\0' || at[length] == ';'))
+            return true;
+    }
+    return false;
+}
+
+/* Writes those of the attributes that a curve has: "halfspace edges 8". */
+static void describe(const struct curve *curve, unsigned attributes, char *text, size_t size) {
+    char word[40];
+    *text = '\0';
+    if ((attributes & HAS_MODEL) != 0)
+        append(text, size, " ", curve->model != NULL ? curve->model : "-");
+    if ((attributes & HAS_SERIES) != 0)
+        append(text, size, " ", is_named_series(curve) ? curve->series : curve->quantity);
+    snprintf(word, sizeof word, isnan(curve->level) ? "-" : "%.4g", curve->level);
+    if ((attributes & HAS_LEVEL) != 0)
+        append(text, size, " ", word);
+}
+
+/* Writes what the request chooses by: "model full, level 8". */
+static void describe_request(const struct lines_request *request, char *text, size_t size) {
+    const char *const chosen[][2] = {
+        {"model", request->model}, {"series", request->series}, {"level", request->level}};
+    *text = '\0';
+    for (size_t n = 0; n < sizeof chosen / sizeof *chosen; n++) {
+        char word[64];
+        snprintf(word, sizeof word, "%s %.40s", chosen[n][0],
+                 chosen[n][1] != NULL ? chosen[n][1] : "");
+        if (chosen[n][1] != NULL)
+            append(text, size, ", ", word);
+    }
+}
+
+/* The next curve of the quantity behind one of these numbers, which it moves on; NULL: none. */
+static const struct curve *next_candidate(const struct study_result *study,
+                                          const struct choosing *choosing, size_t *c, size_t *a) {
+    for (; *c < study->case_count; ++*c, *a = 0)
+        while (*a < study->cases[*c].curve_count) {
+            const struct curve *curve = &study->cases[*c].curves[(*a)++];
+            if (is_candidate(choosing, curve))
+                return curve;
+        }
+    return NULL;
+}
+
+/* No curve is wanted: names what curves of the quantity have of that by which they are chosen, or
+ * says that none has the quantity. */
 static int refuse(const struct study_result *study, const struct lines_request *request,
                   struct error *err) {
+    static const char *const NAMES[] = {"model", "series", "level"}; /* in the order of the bits */
     const struct lines_request plain = {.quantity = request->quantity, .y_label = request->y_label};
     const struct choosing choosing = {.request = &plain};
-    char words[256] = "";
-    for (size_t c = 0; c < study->case_count; c++)
-        for (size_t a = 0; a < study->cases[c].curve_count; a++) {
-            const struct curve *curve = &study->cases[c].curves[a];
-            char word[96];
-            if (curve == NULL || !is_candidate(&choosing, curve))
-                continue;
-            snprintf(
-                word, sizeof word, "%.30s %.30s %.4g", curve->model != NULL ? curve->model : "",
-                curve->series != NULL && *curve->series != '\0' ? curve->series : curve->quantity,
-                curve->level);
-            size_t used = strlen(words);
-            if (strstr(words, word) == NULL && used + strlen(word) + 2 < sizeof words)
-                snprintf(words + used, sizeof words - used, "%s%s", used > 0 ? "; " : "", word);
-        }
-    if (*words == '\0')
+    const struct curve *curve;
+    char words[320] = "", word[96], names[32] = "", asked[160];
+    unsigned attributes = 0;
+    bool any = false;
+    for (size_t c = 0, a = 0; (curve = next_candidate(study, &choosing, &c, &a)) != NULL;) {
+        attributes |= attributes_of(curve);
+        any = true;
+    }
+    if (!any)
         return error_set(err, ERROR_ABSENT, "no case has the quantity \"%.60s\"",
                          request->quantity);
-    return error_set(
-        err, ERROR_INPUT,
-        "no curve of %.60s is of this model, series and level at once; there is (model "
-        "series level): %s",
-        request->quantity, words);
+    describe_request(request, asked, sizeof asked);
+    if (attributes == 0)
+        return error_set(err, ERROR_INPUT,
+                         "no curve of %.60s is of %s: its curves have no model, series or level",
+                         request->quantity, asked);
+    for (size_t c = 0, a = 0; (curve = next_candidate(study, &choosing, &c, &a)) != NULL;) {
+        describe(curve, attributes, word, sizeof word);
+        if (!is_listed(words, word))
+            append(words, sizeof words, "; ", word);
+    }
+    for (unsigned n = 0; n < sizeof NAMES / sizeof *NAMES; n++)
+        if ((attributes & 1u << n) != 0)
+            append(names, sizeof names, " ", NAMES[n]);
+    return error_set(err, ERROR_INPUT, "no curve of %.60s is of %s; there is (%s): %s",
+                     request->quantity, asked, names, words);
 }
 
 /* Says what a step that left something out has kept. */

@@ -18,6 +18,7 @@ enum { TABLE_WORDS_MOST = 8 };
 
 /* A column as it is asked for: "contact_area:layered@0.1". */
 struct table_wish {
+    const char *asked_as;       /* what messages call the text that it is a part of */
     char text[TABLE_NAME_SIZE]; /* words are parts of it, ended by NUL */
     const char *quantity;       /* or the name of a scalar */
     size_t word_count;
@@ -36,6 +37,7 @@ static const char *part_name(int part) {
 }
 
 struct table_maker {
+    const char *asked_as;
     struct case_table *table;
     const struct picture_source *source;
     struct study_result curves; /* of the quantity that was asked for last; owned */
@@ -153,9 +155,10 @@ static struct table_value value_of(const struct scalar *scalar, struct table_col
     return value;
 }
 
-static int refuse_scalar(const struct case_table *table, const char *name, struct error *err) {
+static int refuse_scalar(const struct case_table *table, const struct table_wish *wish,
+                         struct error *err) {
     char names[240] = "", hint[NEAR_HINT_SIZE];
-    struct near_name near = {.typed = name};
+    struct near_name near = {.typed = wish->quantity};
     for (size_t c = 0; c < table->study.case_count && *names == '\0'; c++)
         for (size_t s = 0; s < table->study.cases[c].scalar_count; s++) {
             const char *scalar = table->study.cases[c].scalars[s].name;
@@ -163,20 +166,21 @@ static int refuse_scalar(const struct case_table *table, const char *name, struc
             near_name_see(&near, scalar);
         }
     return error_set(err, ERROR_INPUT,
-                     "columns: no case has a scalar \"%.60s\"%s; a value of a curve is named as "
+                     "%s: no case has a scalar \"%.60s\"%s; a value of a curve is named as "
                      "QUANTITY@X, scalars are: %s",
-                     name, near_name_hint(&near, hint), *names != '\0' ? names : "none yet");
+                     wish->asked_as, wish->quantity, near_name_hint(&near, hint),
+                     *names != '\0' ? names : "none yet");
 }
 
-/* A scalar that the view names, but no case has, is left out (optional). */
-static int add_scalar(struct case_table *table, const char *name, bool optional,
-                      struct error *err) {
+/* A scalar that nobody asked for but the view, and no case has, is left out. */
+static int add_scalar(struct case_table *table, const char *name,
+                      const struct table_wish *wish /* NULL: the view */, struct error *err) {
     bool found = false;
     struct table_value *values;
     for (size_t c = 0; c < table->study.case_count && !found; c++)
         found = result_scalar(&table->study.cases[c], name) != NULL;
     if (!found)
-        return optional ? 0 : refuse_scalar(table, name, err);
+        return wish == NULL ? 0 : refuse_scalar(table, wish, err);
     int status = table_add(
         table, (struct table_column){.type = COLUMN_SCALAR, .name = name, .x = NAN}, &values, err);
     for (size_t r = 0; status == 0 && r < table->row_count; r++) {
@@ -295,22 +299,27 @@ static int refuse_words(const struct study_result *study, const struct table_wis
                         struct error *err) {
     const struct table_wish plain = {.quantity = wish->quantity};
     char words[PLACES_TOLD] = "", number[32];
+    bool any = false;
     for (size_t c = 0; c < study->case_count; c++)
         for (size_t a = 0; a < study->cases[c].curve_count; a++) {
             const struct curve *curve = &study->cases[c].curves[a];
             if (!is_wished(curve, &plain))
                 continue;
+            any = true;
             append(words, sizeof words, curve->model);
             append(words, sizeof words, curve->kinematics);
             append(words, sizeof words, curve->series);
             snprintf(number, sizeof number, "%g", curve->level);
             append(words, sizeof words, isnan(curve->level) ? NULL : number);
         }
-    if (*words == '\0')
-        return error_set(err, ERROR_INPUT, "columns: no case has a curve of \"%.60s\" over one x",
-                         wish->quantity);
-    return error_set(err, ERROR_INPUT, "columns: %.60s has no such curve; its words are %s",
-                     wish->quantity, words);
+    if (any && *words == '\0')
+        return error_set(err, ERROR_INPUT, "%s: %.60s has no such curve; its curves have no words",
+                         wish->asked_as, wish->quantity);
+    if (!any)
+        return error_set(err, ERROR_INPUT, "%s: no case has a curve of \"%.60s\" over one x",
+                         wish->asked_as, wish->quantity);
+    return error_set(err, ERROR_INPUT, "%s: %.60s has no such curve; its words are %s",
+                     wish->asked_as, wish->quantity, words);
 }
 
 static int refuse_place(const struct curve *curve, const struct table_wish *wish,
@@ -325,8 +334,9 @@ static int refuse_place(const struct curve *curve, const struct table_wish *wish
         }
         snprintf(places + used, sizeof places - used, "%s%.10g", used > 0 ? ", " : "", curve->x[k]);
     }
-    return error_set(err, ERROR_INPUT, "columns: %.60s has no value at %.10g; it is known at %s",
-                     wish->quantity, wish->x, *places != '\0' ? places : "no point yet");
+    return error_set(err, ERROR_INPUT, "%s: %.60s has no value at %.10g; it is known at %s",
+                     wish->asked_as, wish->quantity, wish->x,
+                     *places != '\0' ? places : "no point yet");
 }
 
 /* --- columns --- */
@@ -443,8 +453,8 @@ static int table_add_quantity(struct table_maker *maker, const char *quantity, s
     for (size_t k = 0; k < first->n; k++)
         if (fabs(first->x[k] - last / 3) < fabs(third - last / 3))
             third = first->x[k];
-    const struct table_wish low = {.quantity = quantity, .x = third};
-    const struct table_wish high = {.quantity = quantity, .x = last};
+    const struct table_wish low = {maker->asked_as, .quantity = quantity, .x = third};
+    const struct table_wish high = {maker->asked_as, .quantity = quantity, .x = last};
     if (third < last)
         status = table_add_curves(maker, &low, err);
     return status != 0 ? status : table_add_curves(maker, &high, err);
@@ -467,12 +477,13 @@ static int read_part(const char *text, size_t *size) {
 }
 
 /* Reads "QUANTITY:WORD:WORD@X.PART" out of size characters. */
-static int read_wish(struct table_wish *wish, const char *text, size_t size, struct error *err) {
+static int read_wish(struct table_wish *wish, const char *asked_as, const char *text, size_t size,
+                     struct error *err) {
     char *end;
-    *wish = (struct table_wish){.x = NAN, .part = read_part(text, &size)};
+    *wish = (struct table_wish){asked_as, .x = NAN, .part = read_part(text, &size)};
     if (size == 0 || size >= sizeof wish->text)
         return error_set(err, ERROR_INPUT,
-                         "columns: \"%.*s\" is no name; names stand with commas between",
+                         "%s: \"%.*s\" is no name; names stand with commas between", asked_as,
                          (int)(size > 60 ? 60 : size), text);
     memcpy(wish->text, text, size);
     char *at = strchr(wish->text, '@');
@@ -480,7 +491,8 @@ static int read_wish(struct table_wish *wish, const char *text, size_t size, str
         errno = 0;
         wish->x = strtod(at + 1, &end);
         if (end == at + 1 || *end != '\0' || errno != 0 || !isfinite(wish->x))
-            return error_set(err, ERROR_INPUT, "columns: \"%.60s\" is no number behind @", at + 1);
+            return error_set(err, ERROR_INPUT, "%s: \"%.60s\" is no number behind @", asked_as,
+                             at + 1);
         *at = '\0';
     }
     char *rest = wish->text;
@@ -488,8 +500,8 @@ static int read_wish(struct table_wish *wish, const char *text, size_t size, str
     while (rest != NULL && wish->word_count < TABLE_WORDS_MOST)
         wish->words[wish->word_count++] = strsep(&rest, ":");
     if (rest != NULL || (at == NULL && wish->word_count > 0))
-        return error_set(err, ERROR_INPUT, "columns: \"%.*s\" is neither a scalar nor QUANTITY@X",
-                         (int)(size > 60 ? 60 : size), text);
+        return error_set(err, ERROR_INPUT, "%s: \"%.*s\" is neither a scalar nor QUANTITY@X",
+                         asked_as, (int)(size > 60 ? 60 : size), text);
     return 0;
 }
 
@@ -510,8 +522,9 @@ static struct table_value beside(const struct table_value *value, int part) {
 }
 
 /* Leaves of a column what stands beside its values. ERROR_INPUT where nothing does. */
-static int take_part(struct case_table *table, struct table_column *column, int part,
-                     struct error *err) {
+static int take_part(struct case_table *table, struct table_column *column,
+                     const struct table_wish *wish, struct error *err) {
+    int part = wish->part;
     bool any = false;
     char name[TABLE_NAME_SIZE];
     for (size_t r = 0; r < table->row_count; r++) {
@@ -519,7 +532,7 @@ static int take_part(struct case_table *table, struct table_column *column, int 
         any = any || !isnan(column->values[r].value);
     }
     if (!any)
-        return error_set(err, ERROR_INPUT, "columns: no case has %s.%s", column->name,
+        return error_set(err, ERROR_INPUT, "%s: no case has %s.%s", wish->asked_as, column->name,
                          part_name(part));
     snprintf(name, sizeof name, "%.160s.%s", column->name, part_name(part));
     column->name = result_text(&table->room, name);
@@ -532,10 +545,10 @@ static int take_part(struct case_table *table, struct table_column *column, int 
 static int add_one(struct table_maker *maker, const struct table_wish *wish, struct error *err) {
     struct case_table *table = maker->table;
     size_t before = table->column_count;
-    int status = isnan(wish->x) ? add_scalar(table, wish->quantity, false, err)
+    int status = isnan(wish->x) ? add_scalar(table, wish->quantity, wish, err)
                                 : table_add_curves(maker, wish, err);
     for (size_t n = before; n < table->column_count && status == 0 && wish->part != PART_VALUE; n++)
-        status = take_part(table, &table->columns[n], wish->part, err);
+        status = take_part(table, &table->columns[n], wish, err);
     return status;
 }
 
@@ -544,7 +557,7 @@ static int add_wished(struct table_maker *maker, const char *columns, struct err
     for (const char *next = columns; status == 0 && next != NULL;) {
         struct table_wish wish;
         size_t size = strcspn(next, ",");
-        status = read_wish(&wish, next, size, err);
+        status = read_wish(&wish, maker->asked_as, next, size, err);
         if (status == 0)
             status = add_one(maker, &wish, err);
         next = next[size] == ',' ? next + size + 1 : NULL;
@@ -557,7 +570,7 @@ static int add_wished(struct table_maker *maker, const char *columns, struct err
 static int add_scalars(struct case_table *table, const char *const *names, struct error *err) {
     int status = 0;
     for (; names != NULL && *names != NULL && status == 0; names++)
-        status = add_scalar(table, *names, true, err);
+        status = add_scalar(table, *names, NULL, err);
     return status;
 }
 
@@ -570,7 +583,7 @@ static int add_theoretical(struct case_table *table, struct error *err) {
             first = &table->study.cases[c];
     for (size_t s = 0; first != NULL && s < first->scalar_count && status == 0; s++)
         if (!isnan(first->scalars[s].theory))
-            status = add_scalar(table, first->scalars[s].name, true, err);
+            status = add_scalar(table, first->scalars[s].name, NULL, err);
     return status;
 }
 
@@ -611,8 +624,8 @@ int case_table_open(struct case_table *out, const struct picture_source *source,
 }
 
 int case_table_add(struct case_table *table, const struct picture_source *source,
-                   const char *columns, struct error *err) {
-    struct table_maker maker = {.table = table, .source = source};
+                   const char *asked_as, const char *columns, struct error *err) {
+    struct table_maker maker = {asked_as, table, source, .curves = {.id = NULL}};
     int status = columns != NULL ? add_wished(&maker, columns, err) : add_usual(&maker, err);
     study_result_clear(&maker.curves);
     return status;
@@ -626,7 +639,7 @@ int case_table_make(struct case_table *out, const struct picture_source *source,
         return status;
     status = add_parameters(&table, err);
     if (status == 0)
-        status = case_table_add(&table, source, request->columns, err);
+        status = case_table_add(&table, source, "columns", request->columns, err);
     if (status != 0)
         case_table_clear(&table);
     else

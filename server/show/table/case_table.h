@@ -64,11 +64,12 @@ struct case_table {
  * a column, point or parameter that no case has, and those that there are. */
 int case_table_make(struct case_table *out, const struct picture_source *source,
                     const struct table_request *request, struct error *err);
-/* The same by steps: rows without columns, then columns by their names, each at the end. */
+/* The same by steps: rows without columns, then columns by their names, each at the end; messages
+ * call these what they were asked as. */
 int case_table_open(struct case_table *out, const struct picture_source *source,
                     const char *const *where, struct error *err);
 int case_table_add(struct case_table *table, const struct picture_source *source,
-                   const char *columns, struct error *err);
+                   const char *asked_as, const char *columns, struct error *err);
 void case_table_clear(struct case_table *table);
 
 /* Print the table; JSON and CSV are false when out of memory. Write errors are left to the file.

@@ -1,11 +1,14 @@
 """What test_python.c runs: the client alone, as rugo.py, against a real service. Arguments: the URL, and a folder."""
 
 import contextlib
+import gzip
 import io
 import json
 import os
 import pathlib
+import socket
 import sys
+import threading
 
 import rugo
 
@@ -26,7 +29,11 @@ def refused(call, status, *words):
 
 
 def a_study_from_submission_to_tables(server):
-    study = server.submit(json.dumps(STUDY), key="a-key")
+    path = pathlib.Path(FOLDER, "client-study.json")
+    path.write_text(json.dumps(STUDY), encoding="utf-8")
+    study = server.submit(path, key="a-key")
+    assert server.submit(str(path), key="a-key").id == study.id
+    path.unlink()
     assert server.submit(STUDY, key="other").id != study.id
     assert server.submit(json.dumps(STUDY), key="a-key").id == study.id
     with contextlib.redirect_stderr(io.StringIO()) as told:
@@ -44,7 +51,7 @@ def a_study_from_submission_to_tables(server):
     slopes = [row for row in study.scalars() if row["name"] == "rms_slope"]
     assert [row["hurst"] for row in slopes] == [0.2, 0.8] and slopes[0]["value"] > slopes[1]["value"]
     table = study.table(["rms_slope"])
-    assert [row["hurst"] for row in table] == [0.2, 0.8]
+    assert [row["hurst"] for row in table] == [0.2, 0.8] and table == study.table("rms_slope")
     assert [row["rms_slope"] for row in table] == [row["value"] for row in slopes]
     assert [row["hurst"] for row in study.table(where={"hurst": 0.8})] == [0.8]
     assert study.plot("summit_height_pdf").startswith(("<?xml", "<svg"))
@@ -60,7 +67,7 @@ def a_study_from_submission_to_tables(server):
 def studies_are_found_and_changed(server, study):
     assert server.study(study.id[:9]).id == study.id
     assert server.study("again").id == server.studies()[-1]["id"]
-    refused(lambda: server.study("no / such"), 404)
+    refused(lambda: server.study("no / such"), 404, "name its id")
     second = server.submit(STUDY).wait(timeout=300)
     newest = server.study(STUDY["name"])
     assert newest.id == second.id != study.id
@@ -83,6 +90,40 @@ def faults_are_told(server):
     faults = refused(lambda: server.submit({"kind": "statistics", "surface": {"hurst": 1.4}}), 422, "1.4 is not in")
     assert "/surface/hurst" in [error["pointer"] for error in faults.errors]
     refused(lambda: rugo.Server("http://127.0.0.1:1").studies(), None, "127.0.0.1:1")
+
+
+def answering(head, body):
+    """A server on this machine that answers each request with this and ends the connection."""
+    listening = socket.create_server(("127.0.0.1", 0))
+
+    def serve():
+        with contextlib.suppress(OSError):
+            while True:
+                with listening.accept()[0] as peer:
+                    peer.recv(65536)
+                    peer.sendall(b"HTTP/1.1 " + head + b"\r\n\r\n" + body)
+
+    threading.Thread(target=serve, daemon=True).start()
+    return rugo.Server("http://127.0.0.1:%d" % listening.getsockname()[1], timeout=1)
+
+
+def answers_that_are_cut_off_are_none():
+    """Whatever says how long an answer is: what was there before stays."""
+    path, gzipped = pathlib.Path(FOLDER, "copy.db"), gzip.compress(b"hurst,kappa\n0.8,1\n")
+    for head, body in ((b"200 OK\r\nContent-Length: 100000", b"x" * 70000), (b"200 OK\r\nContent-Length: 9", b""),
+                       (b"200 OK\r\nTransfer-Encoding: chunked", b"4\r\nhalf\r\n"),
+                       (b"200 OK\r\nContent-Encoding: gzip\r\nContent-Length: 99", b""),
+                       (b"200 OK\r\nContent-Encoding: gzip\r\nContent-Length: %d" % len(gzipped), gzipped[:-1])):
+        cut = answering(head, body)
+        path.write_text("the good copy")
+        for call in (lambda: cut.snapshot(path), rugo.Study(cut, "1").table, cut.studies):
+            assert refused(call, None, "the answer was cut off").lost
+        assert path.read_text() == "the good copy" and list(path.parent.glob("copy.db.*")) == []
+    whole = answering(b"200 OK\r\nContent-Length: 4", b"good")
+    assert whole.snapshot(path) == path and path.read_text() == "good"
+    assert rugo.Study(answering(b"200 OK\r\nContent-Encoding: gzip", gzipped), "1").table() == [{"hurst": 0.8, "kappa": 1}]
+    refused(answering(b"422 No\r\nContent-Length: 99", b"{").studies, 422, "HTTP status 422")
+    path.unlink()
 
 
 def many_cases_are_asked_for_one_by_one(server):
@@ -115,6 +156,7 @@ def maps_are_characterised(server):
     fitted = server.fit(study, [path])
     assert fitted["surface"]["like"]["sha256"] and fitted["surface"]["hurst"] == 0.7
     server.submit(fitted).cancel()
+    assert server.fit(study, path) == server.fit(study, str(path)) == fitted
     refused(lambda: server.fit(study, [other]), 422, "no file of this name was sent")
     path.unlink()
     other.unlink()
@@ -149,6 +191,7 @@ one = a_study_from_submission_to_tables(here)
 studies_are_found_and_changed(here, one)
 faults_are_told(here)
 maps_are_characterised(here)
+answers_that_are_cut_off_are_none()
 many_cases_are_asked_for_one_by_one(here)
 tokens_are_read_as_commands_do()
 print("client: all as it should be")

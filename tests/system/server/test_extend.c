@@ -169,8 +169,11 @@ static void extended_over_http(void **state) {
         int status;
         const char *text;
     } ASKED[] = {{NULL, 400, "a JSON body"},
-                 {"{\"realisations\":2.5}", 422, "integer"},
-                 {"{\"realisations\":10000001}", 422, "above the largest number"},
+                 {"{\"realisations\":2.5}", 422, "2.5 is not an integer in [1, 10000000]"},
+                 {"{\"realisations\":\"2\"}", 422, "is not an integer in [1, 10000000]"},
+                 {"{\"realisations\":0}", 422, "0 is not an integer in [1, 10000000]"},
+                 {"{\"realisations\":10000001}", 422, "10000001 is not an integer in"},
+                 {"{}", 422, "missing: an integer in [1, 10000000]"},
                  {"{\"realisations\":3}", 409, "would not extend"},
                  {"{\"realisations\":8}", 200, "\"queued\":2"},
                  {"{\"realisations\":8}", 200, "\"queued\":0"}};

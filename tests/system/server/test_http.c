@@ -1,4 +1,5 @@
 /* Protects: the HTTP contract, request by request, against the real server. */
+#include "schema/json/json.h"
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include "tests/support/small_studies.h"
@@ -68,6 +69,17 @@ static void path_of(char *path, size_t size, const char *id, const char *rest) {
     snprintf(path, size, "/v1/studies/%s%s", id, rest);
 }
 
+/* Works until the study is done. */
+static void work(const char *id) {
+    char url[64], path[96];
+    snprintf(url, sizeof url, "http://127.0.0.1:%u", port);
+    path_of(path, sizeof path, id, "");
+    assert_int_equal(run_rugo("work", (const char *[]){"work", "--server", url, "--drain",
+                                                       "--workers", "1", NULL}),
+                     0);
+    wait_until_done(path);
+}
+
 /* --- a study's life --- */
 
 static void a_study_from_submission_to_curves(void **state) {
@@ -78,10 +90,7 @@ static void a_study_from_submission_to_curves(void **state) {
     check_answer("GET", path, NULL, 200, "\"state\":\"queued\"");
     check_answer("GET", "/v1/studies", NULL, 200, id);
     snprintf(url, sizeof url, "http://127.0.0.1:%u", port);
-    assert_int_equal(run_rugo("work", (const char *[]){"work", "--server", url, "--drain",
-                                                       "--workers", "1", NULL}),
-                     0);
-    wait_until_done(path);
+    work(id);
     path_of(path, sizeof path, id, "/study");
     check_answer("GET", path, NULL, 200, ONE_CASE);
     check_answer("GET", "/v1/studies/0123456789abcdef/study", NULL, 404, "there is no study");
@@ -159,11 +168,7 @@ static void a_case_less_another(void **state) {
     path_of(path, sizeof path, id, "/curves?difference=1,0");
     check_answer("GET", path, NULL, 409, "case 1 has no realisations yet");
     snprintf(url, sizeof url, "http://127.0.0.1:%u", port);
-    assert_int_equal(run_rugo("work", (const char *[]){"work", "--server", url, "--drain",
-                                                       "--workers", "1", NULL}),
-                     0);
-    path_of(path, sizeof path, id, "");
-    wait_until_done(path);
+    work(id);
     path_of(path, sizeof path, id, "/curves?difference=1,0");
     check_answer("GET", path, NULL, 200, "{\"case\":1,\"less\":0,");
     check_answer("GET", path, NULL, 200, "\"paired\":true");
@@ -244,6 +249,88 @@ static void curves_of_many_cases_are_sent_whole(void **state) {
     check_answer("DELETE", path, NULL, 200, "cancelled");
 }
 
+/* The part of a text between two others. */
+static char *part_between(const char *text, const char *begin, const char *end) {
+    const char *from = strstr(text, begin);
+    assert_non_null(from);
+    const char *to = strstr(from, end);
+    assert_non_null(to);
+    char *part = strndup(from, (size_t)(to - from));
+    assert_non_null(part);
+    return part;
+}
+
+/* The line that begins with a member's name; NULL: none. */
+static const char *line_of(const char *description, const char *name) {
+    size_t length = strlen(name);
+    for (const char *line = description; line != NULL; line = strchr(line, '\n')) {
+        line += strspn(line, "\n ");
+        if (strncmp(line, name, length) == 0 && line[length] == ':')
+            return line;
+    }
+    return NULL;
+}
+
+/* Each member is described by a line of its own, as one that may be null where it is. */
+static void check_described(const cJSON *object, const char *description) {
+    const cJSON *member;
+    assert_true(cJSON_IsObject(object) && object->child != NULL);
+    cJSON_ArrayForEach(member, object) {
+        const char *line = line_of(description, member->string);
+        bool described = line != NULL, null = cJSON_IsNull(member);
+        if (!described || (null && memmem(line, strcspn(line, "\n"), "\"null\"", 6) == NULL))
+            fail_msg("%s is not described%s", member->string, described ? " as null" : "");
+    }
+}
+
+/* A study whose curves, scalars and tables have as many members as there are. */
+static void members_of_results_are_described(void **state) {
+    (void)state;
+    static const char STUDY[] =
+        "{\"name\":\"described\",\"kind\":\"contact\",\"seed\":5,\"realisations\":6,\"surface\":{"
+        "\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":4,\"length_ratio\":2,\"rms_slope\":0.1,"
+        "\"points_per_wavelength\":8,\"amplitudes\":\"random\",\"unit\":1e-6,\"heights\":{"
+        "\"distribution\":\"weibull_min\",\"shape\":1.5}},\"contact\":{\"cell_error\":\"probed\","
+        "\"model\":[\"halfspace\",\"layered\"],\"levels\":[4,8],\"pressures\":{\"to\":0.3,"
+        "\"steps\":4},\"pressure_pdf\":{\"at\":[0.3]}}}";
+    char id[17], path[96], *answer, *part;
+    const cJSON *one;
+    submit(STUDY, id);
+    work(id);
+    assert_int_equal(ask("GET", "/v1/openapi.yaml", NULL, &answer), 200);
+    char *description = answer;
+    const char *all = strstr(description, "\n    Curves:");
+    assert_non_null(all);
+    path_of(path, sizeof path, id, "/curves");
+    assert_int_equal(ask("GET", path, NULL, &answer), 200);
+    cJSON *document = cJSON_Parse(answer);
+    const cJSON *first = cJSON_GetArrayItem(cJSON_GetObjectItem(document, "cases"), 0);
+    free(answer);
+    const cJSON *area = cJSON_GetArrayItem(cJSON_GetObjectItem(first, "curves"), 0);
+    assert_non_null(cJSON_GetObjectItem(area, "law_difference"));
+    part = part_between(all, "\n              scalars:", "\n              curves:");
+    cJSON_ArrayForEach(one, cJSON_GetObjectItem(first, "scalars")) check_described(one, part);
+    free(part);
+    part = strstr(all, "\n              curves:");
+    cJSON_ArrayForEach(one, cJSON_GetObjectItem(first, "curves")) check_described(one, part);
+    cJSON_Delete(document);
+    path_of(path, sizeof path, id, "/table?columns=contact_area@0.3,mean_gap_last");
+    assert_int_equal(ask("GET", path, NULL, &answer), 200);
+    document = cJSON_Parse(answer);
+    free(answer);
+    first = cJSON_GetArrayItem(cJSON_GetObjectItem(document, "rows"), 0);
+    assert_non_null(cJSON_GetObjectItem(first, "law_differences"));
+    const char *table = strstr(description, "\n    Table:");
+    part = part_between(table, "\n        rows:", "\n    UnknownErrors:");
+    check_described(first, part);
+    free(part);
+    part = part_between(table, "\n        columns:", "\n        rows:");
+    cJSON_ArrayForEach(one, cJSON_GetObjectItem(document, "columns")) check_described(one, part);
+    free(part);
+    cJSON_Delete(document);
+    free(description);
+}
+
 static void unchanged_curves_are_not_sent_again(void **state) {
     (void)state;
     char id[17], path[96], request[300], *reply, *tag;
@@ -271,6 +358,47 @@ static void unchanged_curves_are_not_sent_again(void **state) {
     check_answer("POST", path, NULL, 200, "\"retried\":1");
     path_of(path, sizeof path, id, "");
     check_answer("DELETE", path, NULL, 200, "cancelled");
+}
+
+/* A tag is that of one question: what has no answer has none that is known. */
+static void what_is_wrong_is_not_unchanged(void **state) {
+    (void)state;
+    static const struct {
+        const char *query;
+        int status;
+        bool whole; /* the tag is that of curves without a query, too */
+    } ASKED[] = {{"", 304, true},
+                 {"?case=0", 304, false},
+                 {"?quantity=summit_height_pdf", 304, false},
+                 {"?quantity=nope", 422, false},
+                 {"?case=77", 404, false},
+                 {"?difference=0,9", 404, false},
+                 {"?difference=0,0", 422, false},
+                 {"?quantity=", 422, false}};
+    static const char *const FORMS[] = {"", "Accept: text/csv\r\n"};
+    char id[17], path[96], request[300], header[160];
+    submit(ONE_CASE, id);
+    work(id);
+    for (size_t f = 0; f < 2; f++) {
+        path_of(path, sizeof path, id, "/curves");
+        snprintf(request, sizeof request,
+                 "HEAD %s HTTP/1.1\r\nHost: localhost\r\n%sConnection: close\r\n\r\n", path,
+                 FORMS[f]);
+        char *reply = http_raw(port, request, strlen(request)), *tag = strstr(reply, "ETag: ");
+        assert_non_null(tag);
+        tag[strcspn(tag, "\r")] = '\0';
+        for (size_t a = 0; a < sizeof ASKED / sizeof *ASKED; a++) {
+            char rest[64];
+            snprintf(rest, sizeof rest, "/curves%s", ASKED[a].query);
+            path_of(path, sizeof path, id, rest);
+            snprintf(header, sizeof header, "%sIf-None-Match: *\r\n", FORMS[f]);
+            assert_int_equal(http_exchange(port, "GET", path, header, NULL, NULL), ASKED[a].status);
+            snprintf(header, sizeof header, "%sIf-None-Match: %s\r\n", FORMS[f], tag + 6);
+            int status = ASKED[a].status == 304 && !ASKED[a].whole ? 200 : ASKED[a].status;
+            assert_int_equal(http_exchange(port, "GET", path, header, NULL, NULL), status);
+        }
+        free(reply);
+    }
 }
 
 static void a_key_makes_submission_safe_to_repeat(void **state) {
@@ -378,7 +506,9 @@ int main(void) {
         cmocka_unit_test(a_study_from_submission_to_curves),
         cmocka_unit_test(a_case_less_another),
         cmocka_unit_test(curves_of_many_cases_are_sent_whole),
+        cmocka_unit_test(members_of_results_are_described),
         cmocka_unit_test(unchanged_curves_are_not_sent_again),
+        cmocka_unit_test(what_is_wrong_is_not_unchanged),
         cmocka_unit_test(a_key_makes_submission_safe_to_repeat),
         cmocka_unit_test(a_lease_is_needed_to_report),
         cmocka_unit_test(descriptions_and_page),

@@ -136,11 +136,27 @@ static void over_http_too(void **state) {
 static void a_name_that_is_no_segment(void **state) {
     (void)state;
     char id[17];
+    static const struct {
+        const char *method, *path;
+    } ASKED[] = {{"GET", "/v1/studies/a%2Fb"},
+                 {"DELETE", "/v1/studies/a%2fb"},
+                 {"GET", "/v1/studies/one%2Freport"}, /* not the report of one */
+                 {"GET", "/v1/studies/a%2Fb/curves?case=0"}};
     submit("path.json", id);
     assert_int_equal(run_rugo("near", (const char *[]){"status", "--db", "rugo.db", "a/b", NULL}),
                      0);
     assert_int_equal(run_rugo("far", (const char *[]){"status", "--server", url, "a/b", NULL}), 2);
     assert_true(contains("far.err", "name its id"));
+    for (size_t a = 0; a < sizeof ASKED / sizeof *ASKED; a++) {
+        char *answer = NULL;
+        assert_int_equal(http_exchange(port, ASKED[a].method, ASKED[a].path, NULL, NULL, &answer),
+                         404);
+        assert_non_null(strstr(answer, "by a name with a /; name its id"));
+        free(answer);
+    }
+    /* Of what comes behind the path it means nothing. */
+    assert_int_equal(
+        http_exchange(port, "GET", "/v1/studies/one/table?columns=%2F", NULL, NULL, NULL), 422);
 }
 
 static void waiting_ends_as_the_study_does(void **state) {

@@ -144,6 +144,11 @@ static void prune_takes_what_is_old(void **state) {
     assert_int_equal(
         run_rugo("submit", (const char *[]){"submit", "--db", "prune.db", "small.json", NULL}), 0);
     assert_int_equal(run_rugo("prune", (const char *[]){"prune", "--db", "prune.db", NULL}), 2);
+    assert_true(contains("prune.err", "--older-than DAYS is missing"));
+    assert_int_equal(run_rugo("prune", (const char *[]){"prune", "--db", "prune.db", "--older-than",
+                                                        "100001", NULL}),
+                     2);
+    assert_true(contains("prune.err", "--older-than 100001 is not a whole number in [0, 100000]"));
     assert_int_equal(run_rugo("prune", (const char *[]){"prune", "--db", "prune.db", "--older-than",
                                                         "30", "--dry-run", NULL}),
                      0);

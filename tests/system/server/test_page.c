@@ -153,7 +153,7 @@ static void maps_are_those_of_the_realisation(void **state) {
 /* Every node of the study's two loads has a row; the pressures of a load have it as their mean. */
 static void nodes_are_those_of_the_realisation(void **state) {
     (void)state;
-    char *answer = NULL, path[120];
+    char *answer = NULL, path[120], request[240];
     const char *at;
     double load, pressure, sum[2] = {0};
     size_t rows[2] = {0};
@@ -173,6 +173,13 @@ static void nodes_are_those_of_the_realisation(void **state) {
     assert_true(fabs(sum[0] / (double)rows[0] - 0.05) < 1e-8); /* 9 digits are written */
     assert_true(fabs(sum[1] / (double)rows[1] - 0.1) < 1e-8);
     free(answer);
+    snprintf(request, sizeof request,
+             "HEAD %s HTTP/1.1\r\nHost: localhost\r\nAccept-Encoding: gzip\r\n"
+             "Connection: close\r\n\r\n",
+             path);
+    answer = http_raw(port, request, strlen(request));
+    assert_non_null(strstr(answer, "Content-Encoding: gzip")); /* a text of more than 4 KiB */
+    free(answer);
     assert_int_equal(
         http_exchange(port, "GET",
                       "/v1/studies/looked%20at/cases/1/realisations/2/nodes?load=0.1&format=vtu",
@@ -180,6 +187,38 @@ static void nodes_are_those_of_the_realisation(void **state) {
         200);
     assert_non_null(strstr(answer, "Name=\"pressure\""));
     free(answer);
+}
+
+/* What is asked for by a name may be of another study the next time. Words of the path may be names
+ * of studies. */
+static void maps_of_names_are_not_kept(void **state) {
+    (void)state;
+    static const char *const NAMES[] = {"cases", "realisations"};
+    static const char *const ENDS[] = {"map", "nodes?load=0.1"};
+    char study[sizeof STUDY + 8], request[200], name[40], id[20];
+    cJSON *known = get("/v1/studies/looked%20at");
+    snprintf(id, sizeof id, "%s", cJSON_GetObjectItem(known, "id")->valuestring);
+    cJSON_Delete(known);
+    snprintf(name, sizeof name, "%.8s", id);
+    const char *const asked[] = {id, "looked%20at", name, NAMES[0], NAMES[1]};
+    for (size_t n = 0; n < sizeof NAMES / sizeof *NAMES; n++) {
+        snprintf(study, sizeof study, "{\"name\":\"%s\"%s", NAMES[n], strchr(STUDY, ','));
+        assert_int_equal(http_exchange(port, "POST", "/v1/studies",
+                                       "Content-Type: application/json\r\n", study, NULL),
+                         201);
+    }
+    for (size_t a = 0; a < sizeof asked / sizeof *asked; a++)
+        for (size_t e = 0; e < sizeof ENDS / sizeof *ENDS; e++) {
+            snprintf(request, sizeof request,
+                     "GET /v1/studies/%s/cases/0/realisations/0/%s HTTP/1.1\r\n"
+                     "Host: localhost\r\nConnection: close\r\n\r\n",
+                     asked[a], ENDS[e]);
+            char *answer = http_raw(port, request, strlen(request));
+            assert_non_null(strstr(answer, " 200 "));
+            assert_int_equal(strstr(answer, "immutable") != NULL, a == 0);
+            assert_int_equal(strstr(answer, "no-cache") != NULL, a != 0);
+            free(answer);
+        }
 }
 
 static void maps_that_there_are_not(void **state) {
@@ -299,6 +338,7 @@ int main(void) {
         cmocka_unit_test(the_worker_is_listed),
         cmocka_unit_test(maps_are_those_of_the_realisation),
         cmocka_unit_test(nodes_are_those_of_the_realisation),
+        cmocka_unit_test(maps_of_names_are_not_kept),
         cmocka_unit_test(maps_that_there_are_not),
         cmocka_unit_test(maps_that_nobody_waits_for_are_given_up),
         cmocka_unit_test(a_picture_is_a_png),

@@ -169,10 +169,11 @@ static void what_there_is_not_is_told(void **state) {
         const char *columns, *where, *text;
     } FAULTS[] = {
         {"kapa", NULL,
-         "no case has a scalar \"kapa\" (did you mean kappa?); a value of a curve is named as "
+         "columns: no case has a scalar \"kapa\" (did you mean kappa?); a value of a curve is "
+         "named as "
          "QUANTITY@X, "
          "scalars are: kappa"},
-        {"area@0.07", NULL, "area has no value at 0.07; it is known at 0.03, 0.06, 0.1"},
+        {"area@0.07", NULL, "columns: area has no value at 0.07; it is known at 0.03, 0.06, 0.1"},
         {"gap@0.1", NULL, "no quantity 'gap'"},
         {"area:full@0.1", NULL, "its words are halfspace, edges, 16, 8, nodes, layered"},
         {"area@x", NULL, "\"x\" is no number"},

@@ -146,8 +146,19 @@ static void what_there_is_not_is_refused(void **state) {
         const char *word;
     } REFUSED[] = {
         {{.quantity = "colour"}, ERROR_ABSENT, "no case has the quantity \"colour\""},
-        {{.quantity = "contact_area", .model = "full"}, ERROR_INPUT, "layered nodes 4"},
-        {{.quantity = "contact_area", .level = "5"}, ERROR_INPUT, "halfspace edges 8"},
+        {{.quantity = "contact_area", .model = "full"},
+         ERROR_INPUT,
+         "no curve of contact_area is of model full; there is (model series level): halfspace "
+         "edges 8; halfspace edges 4; "},
+        {{.quantity = "contact_area", .series = "edges", .level = "5"},
+         ERROR_INPUT,
+         "is of series edges, level 5; there is"},
+        {{.quantity = "psd", .level = "16"},
+         ERROR_INPUT,
+         "no curve of psd is of level 16: its curves have no model, series or level"},
+        {{.quantity = "acf", .model = "full"},
+         ERROR_INPUT,
+         "no curve of acf is of model full; there is (series): acf; other"},
         {{.quantity = "contact_area", .names = {[CHANNEL_COLOUR] = "shape"}},
          ERROR_INPUT,
          "colour: \"shape\" does not differ between the lines; what differs: hurst"},
@@ -159,6 +170,9 @@ static void what_there_is_not_is_refused(void **state) {
          "has 7 values, at most 6"},
     };
     struct study_result study = contact_of(7, 2);
+    add_curve(&study.cases[0], "psd", "", NULL, NAN, 0);
+    add_curve(&study.cases[0], "acf", "", NULL, NAN, 0);
+    add_curve(&study.cases[0], "acf", "other", NULL, NAN, 0);
     for (size_t n = 0; n < sizeof REFUSED / sizeof *REFUSED; n++) {
         struct error err = {0};
         struct plot_lines lines = {0};

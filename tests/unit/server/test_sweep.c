@@ -52,7 +52,7 @@ static char *draw(struct study_result *study, const struct request *request, int
     FILE *file = open_memstream(&text, &size);
     assert_non_null(file);
     assert_int_equal(case_table_open(&table, &source, NULL, err), 0);
-    int status = case_table_add(&table, &source, request->name, err);
+    int status = case_table_add(&table, &source, "quantity", request->name, err);
     if (status == 0)
         status = sweep_draw(&table, request->name, request->x, &plot, file, err);
     assert_int_equal(fclose(file), 0);

@@ -532,6 +532,13 @@ static void a_case_that_cannot_be_merged_is_told(void **state) {
     assert_non_null(strstr(err.text, "case 0: "));
     assert_int_equal(read_curves(&fixture, fixture.study, -1, "colour", &none, &err), ERROR_INPUT);
     assert_non_null(strstr(err.text, "no quantity 'colour'"));
+    assert_int_equal(read_curves(&fixture, fixture.study, -1, "rms_slop", &none, &err),
+                     ERROR_INPUT);
+    assert_non_null(strstr(err.text, "(did you mean rms_slope?)"));
+    assert_int_equal(read_curves(&fixture, fixture.study, -1, "rms_slope", &none, &err),
+                     ERROR_INPUT);
+    assert_non_null(strstr(err.text, "rms_slope is a scalar, which has no curve: rugo table "
+                                     "--columns rms_slope (over HTTP, /table?columns=rms_slope)"));
     spoil(&fixture, -1);
     assert_int_equal(read_curves(&fixture, fixture.study, -1, NULL, &none, &err), ERROR_INPUT);
     assert_non_null(strstr(err.text, "case 0: "));

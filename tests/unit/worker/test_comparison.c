@@ -76,6 +76,7 @@ static void what_cannot_be_is_refused(void **state) {
                  {1, 2, NULL, ERROR_ABSENT, "has no case 2"},
                  {0, 1, "colour", ERROR_INPUT,
                   "no quantity 'colour' in this study; it has summit_height_pdf"},
+                 {0, 1, "rms_slope", ERROR_INPUT, "rms_slope is a scalar, which has no curve"},
                  {0, 1, "summit_joint_pdf", ERROR_INPUT, "summit_joint_pdf is a matrix"}};
     struct fixture fixture;
     struct study_result study = {0};
