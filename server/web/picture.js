@@ -1,6 +1,6 @@
 // Pictures of a sweep, which the service draws: rugo plot's choices as lists. What is left to it is as in the files of run --out.
 import { chooser, make, pretty, say, symbol, words } from "/web/elements.js";
-import { download, getJson, request } from "/web/session.js";
+import { download, getJson, reasonOf, request } from "/web/session.js";
 import { sweptOf, whereOf } from "/web/sweep.js";
 
 const AUTOMATIC = ["", "automatic"];
@@ -83,7 +83,7 @@ export function showPicture(root, signal, study, contents) {
     } catch (error) {
       if (signal.aborted || mine !== turn) return;
       figure.hidden = true;
-      say(message, [error.message, ...(error.faults ?? []).map((fault) => `${fault.pointer}: ${fault.detail}`)].join("; "));
+      say(message, reasonOf(error));
     }
   }
 

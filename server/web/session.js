@@ -11,6 +11,11 @@ export class Problem extends Error {
   }
 }
 
+/** What went wrong in words, with each fault that the server names. */
+export function reasonOf(error) {
+  return [error.message, ...(error.faults ?? []).map((fault) => `${fault.pointer}: ${fault.detail}`)].join("; ");
+}
+
 /** Calls back when a token is needed or refused, with what to say. */
 export function onTokenNeeded(listener) {
   listeners.add(listener);

@@ -153,6 +153,24 @@ test("realisations are shown: heights, gaps and pressures", async (t) => {
   assert.ok((await label()).startsWith("pressure in E* h′ over point"), await label());
 });
 
+test("a realisation stands as in the service's picture, y upwards, and goes where there is no such one", async (t) => {
+  const page = await tab(t, [404, 422]);
+  await page.goto(`${open}/#/study/${STATISTICS.id}/realisation`);
+  await page.waitForSelector("canvas.map");
+  const far = await page.evaluate(async (path) => {
+    const image = await createImageBitmap(await (await fetch(path, { headers: { Accept: "image/png" } })).blob());
+    const canvas = new OffscreenCanvas(image.width, image.height), context = canvas.getContext("2d");
+    context.drawImage(image, 0, 0);
+    const wanted = context.getImageData(0, 0, image.width, image.height).data;
+    const shown = document.querySelector("canvas.map").getContext("2d").getImageData(0, 0, image.width, image.height).data;
+    return wanted.reduce((most, value, k) => Math.max(most, Math.abs(value - shown[k])), 0);
+  }, `/v1/studies/${STATISTICS.id}/cases/0/realisations/0/map?field=height`);
+  assert.ok(far <= 1, `the colours of the points differ by ${far} of 255`); // both round
+  await page.$eval("input[type=number]", (one) => { one.value = "99999"; one.dispatchEvent(new Event("change")); });
+  await says(page, "99999");
+  assert.equal(await page.$("canvas.map"), null, "what was shown before is not taken for it");
+});
+
 test("a study that asks for an error says what it has reached, and who computed it", async (t) => {
   const page = await tab(t, [422]);
   const { id } = await send(open, "POST", "/v1/studies", TARGET);
