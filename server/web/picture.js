@@ -33,7 +33,8 @@ export function showPicture(root, signal, study, contents) {
   function asked() {
     const overParameter = about() && state.x !== "";
     const parts = [["quantity", overParameter ? `${state.quantity}@${state.at}` : state.quantity], ["where", where.query()]];
-    return [...parts, ...["x", "colour", "dash", "panel", "model", "series", "level", "log", "total"].map((name) => [name, state[name]])].filter(([, value]) => value !== "");
+    const names = about()?.matrix ? ["series"] : ["x", "colour", "dash", "panel", "model", "series", "level", "log", "total"];
+    return [...parts, ...names.map((name) => [name, state[name]])].filter(([, value]) => value !== "");
   }
   const address = () => `${path}/plot?${new URLSearchParams(asked())}`;
 
@@ -55,12 +56,12 @@ export function showPicture(root, signal, study, contents) {
     lists.x.set(over, state.x);
     lists.at.set(curve && state.x !== "" ? (loads.get(state.quantity) ?? []).map((x) => [x, String(x)]) : [], state.at);
     for (const name of ["colour", "dash", "panel"]) lists[name].set(channels, state[name]);
-    lists.model.set(values(curve?.models), state.model);
+    lists.model.set(curve?.matrix ? [] : values(curve?.models), state.model);
     lists.series.set(values(curve?.series), state.series);
-    lists.level.set(values(curve?.levels, (one) => one), state.level);
-    lists.log.set(AXES, state.log);
+    lists.level.set(curve?.matrix ? [] : values(curve?.levels, (one) => one), state.level);
+    lists.log.set(curve?.matrix ? [] : AXES, state.log);
     lists.total.set(curve?.matrix ? [] : ERRORS, state.total);
-    say(command, ["rugo plot", study.id, ...asked().map(([name, value]) => `--${name} ${value}`)].join(" "));
+    say(command, ["rugo plot", study.id, `--server ${location.origin}`, ...asked().map(([name, value]) => `--${name} ${value}`)].join(" "));
   }
 
   /** Draws what is chosen; quietly, where it was drawn before. */

@@ -135,8 +135,9 @@ function headOf(id, refresh) {
 }
 
 /** Shows a study, and of it the part that the address names: else its curves, or, where these are too many to tell apart, a picture of the sweep. */
-export async function showStudy(root, signal, id, part) {
-  const path = `/v1/studies/${encodeURIComponent(id)}`;
+export async function showStudy(root, left, id, part) {
+  const path = `/v1/studies/${encodeURIComponent(id)}`, stop = new AbortController(), { signal } = stop; // it ends where the view is left, or the study deleted
+  left.addEventListener("abort", () => stop.abort());
   const head = headOf(id, () => getJson(path, { signal }).then(update)), tabs = make("nav", { class: "tabs", "aria-label": "Parts of the study" }), body = make("section");
   root.append(make("p", { role: "status", class: "waiting" }, "Loading …"));
   let study, redraw = null, contents = null, following = false, drawing = false, again = false;
@@ -174,15 +175,22 @@ export async function showStudy(root, signal, id, part) {
     }
   }
 
-  /** Follows the study until it ends; once at a time, again where it goes on. */
+  /** Says that the study was deleted, in place of what was shown of it. */
+  function sayDeleted() {
+    stop.abort();
+    root.replaceChildren(make("p", { role: "alert" }, `Study “${study.name}” was deleted. `, make("a", { href: "#/" }, "Back to the studies")));
+  }
+
+  /** Follows the study until it ends or is deleted; once at a time, again where it goes on. */
   async function follow() {
     if (following) return;
     following = true;
     while (!signal.aborted && isLive(study)) {
       try {
-        await events(`${path}/events`, update, signal);
+        await events(`${path}/events`, (data, name) => (name === "deleted" ? sayDeleted() : update(data)), signal);
         update(await getJson(path, { signal }));
       } catch (error) {
+        if (error.status === 404) sayDeleted();
         if (!signal.aborted) await new Promise((done) => setTimeout(done, 3000));
       }
     }

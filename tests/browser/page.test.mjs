@@ -107,6 +107,15 @@ test("a difference of cases is drawn with the error of its pairs", async (t) => 
   await choose(page, "Difference:", "1");
   await page.waitForFunction(() => [...document.querySelectorAll(".legend li")].some((one) => one.textContent.includes("H = 0.8 less H = 0.2")));
   await picture(page, "difference");
+  const saved = [];
+  page.on("request", (request) => saved.push(request.url()));
+  await page.evaluate(() => { globalThis.names = []; HTMLAnchorElement.prototype.click = function () { globalThis.names.push(this.download); }; });
+  for (const [k, text] of ["JSON", "CSV", "SVG"].entries()) {
+    await click(page, text);
+    await page.waitForFunction((count) => globalThis.names.length === count, {}, k + 1);
+  }
+  assert.equal(saved.length, 3);
+  for (const address of saved) assert.equal(new URL(address).searchParams.get("difference"), "1,0", "what is saved is what is shown");
 });
 
 test("theory stands beside statistics, and a density is a picture", async (t) => {
@@ -118,6 +127,12 @@ test("theory stands beside statistics, and a density is a picture", async (t) =>
   await picture(page, "statistics");
   await choose(page, "Quantity", "summit_joint_pdf");
   await page.waitForFunction(() => document.querySelector("img.picture")?.naturalWidth > 100);
+  assert.equal(await page.evaluate(() => [...document.querySelectorAll("label.choice")].some((one) => one.textContent.startsWith("Difference") && one.offsetParent)), false, "densities have no differences");
+  await page.goto(`${open}/#/study/${STATISTICS.id}/picture`);
+  await choose(page, "Axes", "xy");
+  await choose(page, "Quantity", "summit_joint_pdf");
+  await page.waitForFunction(() => document.querySelector("img.picture")?.alt.startsWith("summit joint PDF") && !document.querySelector(".sheet").hidden);
+  assert.deepEqual(await page.$$eval(".tools label.choice", (all) => all.filter((one) => one.offsetParent && !one.closest(".tools").textContent.startsWith("Where")).map((one) => one.textContent.split(" ")[0])), ["Quantity"], "a density has one look");
 });
 
 test("the table has a row a case, and columns that are asked for", async (t) => {
