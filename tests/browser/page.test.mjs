@@ -40,6 +40,7 @@ async function choose(page, label, value) {
 }
 
 const legend = (page) => page.$$eval(".legend li", (all) => all.map((one) => one.textContent.trim()));
+const visibleButtons = (page) => page.$$eval("main button", (all) => all.filter((one) => one.offsetParent).map((one) => one.textContent));
 const picture = async (page, name) => PICTURES && page.screenshot({ path: join(PICTURES, `${name}.png`) });
 
 before(async () => {
@@ -192,6 +193,7 @@ test("a study that asks for an error says what it has reached, and who computed 
   await finished(open, id);
   await page.goto(`${open}/#/study/${id}/report`);
   await says(page, "asked 10 %, reached");
+  assert.ok(!(await visibleButtons(page)).includes("Extend …"), "its realisations are those that its error takes");
   await says(page, "times the work of plain sampling");
   await click(page, "Jobs");
   await says(page, "Jobs: ");
@@ -288,8 +290,11 @@ test("a new study is begun from a ready one, checked as it is written, and submi
 
 test("a running study shows its progress and can be cancelled; an ended one extended and deleted", async (t) => {
   const { id } = await send(open, "POST", "/v1/studies", LONG);
-  const page = await tab(t, [404]); // of the deleted study, whose state was being asked for
-  page.on("dialog", (dialog) => dialog.accept(dialog.type() === "prompt" ? "40" : undefined));
+  const page = await tab(t, [404, 422]); // of the deleted study, whose state was being asked for; of an extension that is none
+  const answers = ["", "many", "40"];
+  page.on("dialog", (dialog) => dialog.accept(dialog.type() === "prompt" ? answers.shift() : undefined));
+  let extensions = 0;
+  page.on("request", (request) => { extensions += request.url().endsWith("/extend"); });
   await page.goto(`${open}/#/study/${id}`);
   await page.waitForSelector("dd .running", { timeout: WAIT_MS });
   await click(page, "Cancel");
@@ -298,6 +303,10 @@ test("a running study shows its progress and can be cancelled; an ended one exte
   await page.waitForFunction(() => location.hash === "#/");
   await page.waitForFunction(() => document.querySelector("tbody tr") && !document.body.innerText.includes("a long one"));
   await page.goto(`${open}/#/study/${STATISTICS.id}`);
+  await click(page, "Extend …"); // nothing is typed
+  await click(page, "Extend …");
+  await says(page, "the extension is not valid; /realisations: "); // and what is wrong with it
+  assert.equal(extensions, 1, "an empty answer is none");
   await click(page, "Extend …");
   await says(page, "120 / 120");
 });
