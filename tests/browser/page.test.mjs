@@ -364,6 +364,46 @@ test("the keyboard keeps its place, and every control has a name", async (t) => 
   }
 });
 
+test("keys of the browser stay the browser's, and an address that is none has a page", async (t) => {
+  const page = await tab(t);
+  await page.goto(`${open}/#/study/${CONTACT.id}`);
+  await page.waitForSelector(".uplot canvas");
+  const isLeft = (keys) => page.$eval(".chart", (one, more) => one.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowLeft", bubbles: true, cancelable: true, ...more })), keys);
+  assert.deepEqual([await isLeft({}), await isLeft({ altKey: true }), await isLeft({ ctrlKey: true }), await isLeft({ metaKey: true })], [false, true, true, true]);
+  await page.goto(`${open}/#/study/100%`);
+  await says(page, "There is no such page");
+});
+
+test("texts and curves stand out from the page, in the light and in the dark", async (t) => {
+  const page = await tab(t);
+  await page.goto(open);
+  await says(page, "studies");
+  for (const scheme of ["light", "dark"]) {
+    await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: scheme }]);
+    const contrasts = await page.evaluate(async () => { // WCAG 2.1: (L1 + 0.05) / (L2 + 0.05) of relative luminances
+      const { colours } = await import("/web/chart.js");
+      const parts = (colour) => colour.match(/[\d.]+/g).slice(0, 3).map(Number), ground = parts(getComputedStyle(document.body).backgroundColor);
+      const luminance = (colour) => colour.map((part) => part / 255).map((part) => (part <= 0.03928 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4)).reduce((sum, part, k) => sum + part * [0.2126, 0.7152, 0.0722][k], 0);
+      const contrast = (colour) => {
+        const [low, high] = [luminance(colour), luminance(ground)].sort((a, b) => a - b);
+        return (high + 0.05) / (low + 0.05);
+      };
+      const seen = (element) => {
+        let share = 1;
+        for (let one = element; one; one = one.parentElement) share *= Number(getComputedStyle(one).opacity);
+        return contrast(parts(getComputedStyle(element).color).map((part, k) => share * part + (1 - share) * ground[k]));
+      };
+      const cell = document.createElement("span");
+      cell.className = "cancelled";
+      document.querySelector("main").append(cell);
+      return { curves: Math.min(...colours(20, true).map((colour) => contrast(parts(colour)))), footer: seen(document.querySelector("footer a")), cancelled: seen(cell) };
+    });
+    assert.ok(contrasts.curves >= 3, `${scheme}: ordered curves ${contrasts.curves}`);
+    assert.ok(contrasts.footer >= 4.5, `${scheme}: links below ${contrasts.footer}`);
+    assert.ok(contrasts.cancelled >= 4.5, `${scheme}: cancelled ${contrasts.cancelled}`);
+  }
+});
+
 test("it fits a phone, in the dark too", async (t) => {
   const page = await tab(t);
   await page.setViewport({ width: 390, height: 844, isMobile: true });
