@@ -349,6 +349,9 @@ static int characterise_one(const struct characterise_options *options, const ch
 
 static int characterise_files(const struct characterise_options *options, const char *const *files,
                               struct error *err) {
+    if (options->hold && options->format != FORMAT_STUDY)
+        return error_set(err, ERROR_INPUT,
+                         "--hold goes with --format study, whose surfaces hold the map");
     return options->together ? characterise_together(options, files, err)
                              : characterise_one(options, files, err);
 }
