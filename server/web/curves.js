@@ -53,6 +53,8 @@ export function showCurves(root, signal, study, contents) {
 
   const about = () => contents.curves.find((curve) => curve.quantity === state.quantity);
   const query = () => `quantity=${encodeURIComponent(state.quantity)}${state.difference ? `&difference=${state.difference.join(",")}` : ""}`;
+  /** The density that is shown: of the first case that is chosen, which may have some for summits and for pits. */
+  const densityOf = () => `plot?${query()}&case=${[...state.cases][0] ?? 0}${state.series ? `&series=${encodeURIComponent(state.series)}` : ""}`;
 
   async function part(asked) {
     const before = kept.get(asked);
@@ -130,7 +132,7 @@ export function showCurves(root, signal, study, contents) {
 
   async function drawMatrix(mine) {
     const one = [...state.cases][0] ?? 0;
-    const svg = await (await request(`${path}/plot?${query()}&case=${one}`, { signal })).text();
+    const svg = await (await request(`${path}/${densityOf()}`, { signal })).text();
     if (mine !== turn || signal.aborted) return;
     figure.replaceChildren(make("div", { class: "scroll", tabindex: "0", role: "figure", "aria-label": words(state.quantity) },
       make("img", { class: "picture", alt: `${words(state.quantity)} of case ${one}`, src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}` })));
@@ -174,7 +176,7 @@ export function showCurves(root, signal, study, contents) {
     draw();
   }
 
-  const oneOfMany = (alone = contents.cases.length > 64) => (alone && !state.difference ? `&case=${[...state.cases][0] ?? 0}` : "");
+  const oneOfMany = () => (!state.difference && contents.cases.length > 64 ? `&case=${[...state.cases][0] ?? 0}` : "");
   const save = (text, part, ending, accept) => make("button", { onclick: () => download(`${path}/${part()}`, `${study.name}-${state.quantity}.${ending}`, accept).catch((error) => { message.textContent = error.message; }) }, text);
   const quantityOf = chooser("Quantity", (quantity) => {
     const next = contents.curves.find((curve) => curve.quantity === quantity);
@@ -195,7 +197,7 @@ export function showCurves(root, signal, study, contents) {
   controls.append(quantityOf.element, seriesOf.element, meshOf.element, modelsOf,
     ...[["log x", "xLog"], ["log y", "yLog"], ["error bands", "band"], ["theory", "theory"]].map(([label, key]) => tick(label, state[key], (on) => set({ [key]: on }))),
     ...differenceOf.map((one) => one.element), casesOf,
-    make("span", { class: "links" }, save("JSON", () => `curves?${query()}`, "json"), " ", save("CSV", () => `curves?${query()}${oneOfMany()}`, "csv", "text/csv"), " ", save("SVG", () => `plot?${query()}${oneOfMany(about().matrix || undefined)}`, "svg")));
+    make("span", { class: "links" }, save("JSON", () => `curves?${query()}`, "json"), " ", save("CSV", () => `curves?${query()}${oneOfMany()}`, "csv", "text/csv"), " ", save("SVG", () => (about().matrix ? densityOf() : `plot?${query()}${oneOfMany()}`), "svg")));
 
   /** Shows in the controls what is chosen, and what can be. */
   function writeControls() {

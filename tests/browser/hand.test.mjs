@@ -291,6 +291,25 @@ test("a density that comes late does not replace what was chosen after it", asyn
   assert.ok(await page.$(".uplot canvas"));
 });
 
+test("a density of pits is shown and saved as such", async (t) => {
+  const { id } = await send(url, "POST", "/v1/studies", { ...LONG, name: "pits", realisations: 4, surface: { ...LONG.surface, hurst: [0.4, 0.6], heights: { distribution: "weibull_min", shape: 1.5, tolerance: 0.05 } } });
+  await finished(url, id);
+  const page = await tab(t), asked = [];
+  page.on("request", (request) => request.url().includes("/plot?") && asked.push(new URL(request.url()).searchParams));
+  await page.goto(`${url}/#/study/${id}/curves`);
+  await page.waitForSelector(".uplot canvas");
+  await press(page, ".cases summary");
+  await press(page, ".cases .grid label:first-child input"); // the second case alone is left
+  await pick(page, "Quantity", "summit joint PDF");
+  await page.waitForFunction(() => document.querySelector("img.picture")?.naturalWidth > 100);
+  await pick(page, "by", "pits");
+  await page.waitForFunction(() => !document.body.innerText.includes("Loading …"));
+  await page.evaluate(() => { HTMLAnchorElement.prototype.click = function () { globalThis.saved = this.download; }; });
+  await page.evaluate(() => [...document.querySelectorAll(".links button")].find((one) => one.textContent === "SVG").click());
+  await page.waitForFunction(() => globalThis.saved);
+  assert.deepEqual(asked.map((one) => [one.get("case"), one.get("series")]), [["1", null], ["1", "pits"], ["1", "pits"]]);
+});
+
 test("a study that is deleted elsewhere is said to be, and no longer asked for", async (t) => {
   const { id } = await send(url, "POST", "/v1/studies", { ...LONG, name: "gone" });
   t.after(() => send(url, "DELETE", `/v1/studies/${id}`));
