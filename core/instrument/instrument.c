@@ -1,3 +1,4 @@
+#include "core/file/text_mark.h"
 #include "core/instrument/archive/zip_archive.h"
 #include "core/instrument/foreign.h"
 #include "core/instrument/formats.h"
@@ -128,6 +129,9 @@ static void set_spacing(struct height_map *map, double dx) {
 int instrument_read(struct height_map *out, const char *name, const char *data, size_t size,
                     double dx, const struct instrument_request *request, const char **format,
                     struct error *err) {
+    const size_t mark = text_mark_length(data, size); /* texts of all formats may have one */
+    data += mark;
+    size -= mark;
     const struct instrument_format *foreign = format_of(name, data, size);
     enum height_map_format own = height_map_format_of(name);
     bool guessed = own == HEIGHT_MAP_FORMATS && (size == 0 || data[0] != '\x93');

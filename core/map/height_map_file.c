@@ -1,5 +1,6 @@
 #include "core/map/height_map_file.h"
 #include "core/file/point_locale.h"
+#include "core/file/text_mark.h"
 #include "core/map/height_map.h"
 #include "core/map/height_map_npy.h"
 #include <errno.h>
@@ -104,7 +105,10 @@ static int read_row(struct table *table, const char *at, const char *end, struct
 
 static int read_table(struct table *table, const char *text, size_t size, struct error *err) {
     const char *end = text + size;
-    if (memchr(text, 0, size) != NULL)
+    if (text_mark_is_utf16(text, size, NULL))
+        return error_set(err, ERROR_INPUT, "the text is in UTF-16; allowed: UTF-8");
+    text += text_mark_length(text, size);
+    if (memchr(text, 0, (size_t)(end - text)) != NULL)
         return error_set(err, ERROR_INPUT, "this is no text file: it holds a zero byte");
     for (const char *at = text; at < end;) {
         const char *stop = memchr(at, '\n', (size_t)(end - at));

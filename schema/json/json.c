@@ -1,4 +1,5 @@
 #include "schema/json/json.h"
+#include "core/file/text_mark.h"
 #include "schema/json/field.h"
 #include <ctype.h>
 #include <errno.h>
@@ -316,6 +317,11 @@ int json_parse(const char *text, size_t size, const struct json_limits *limits, 
     if (size > limits->bytes)
         return error_set(err, ERROR_INPUT, "%zu bytes of JSON; allowed: up to %zu", size,
                          limits->bytes);
+    if (text_mark_is_utf16(text, size, NULL))
+        return error_set(err, ERROR_INPUT, "the text is in UTF-16; JSON is in UTF-8");
+    size_t mark = text_mark_length(text, size);
+    text += mark;
+    size -= mark;
     char *copy = malloc(size + 1); /* ends with NUL, which strtod and cJSON need */
     if (copy == NULL)
         return error_memory(err, size + 1, "a JSON text");

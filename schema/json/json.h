@@ -16,8 +16,8 @@ struct json_limits {
 extern const struct json_limits JSON_LIMITS; /* 16 MiB, 32, 1 000 000 */
 
 /* Parses exactly one RFC 8259 value: valid UTF-8, strict numbers within double's range, no
- * duplicate keys, nothing behind it. ERROR_INPUT with line and column. limits may be NULL for
- * JSON_LIMITS. *out is the caller's to delete. */
+ * duplicate keys, nothing behind it, a mark of UTF-8 before it at most. ERROR_INPUT with line and
+ * column. limits may be NULL for JSON_LIMITS. *out is the caller's to delete. */
 int json_parse(const char *text, size_t size, const struct json_limits *limits, cJSON **out,
                struct error *err);
 /* Prints compact text in which numbers read back to the same double, NaN and infinities as null.

@@ -21,6 +21,15 @@ const VIEWS = [
   [/^#\/study\/([^/]+)(?:\/([a-z]+))?$/, showStudy],
 ];
 
+/** Parts of the address as they were before they were escaped; null where they cannot have been. */
+function unescaped(parts) {
+  try {
+    return parts.filter((part) => part !== undefined).map(decodeURIComponent);
+  } catch {
+    return null;
+  }
+}
+
 function show() {
   leave();
   const stop = new AbortController();
@@ -32,9 +41,9 @@ function show() {
     if (link.getAttribute("href") === (location.hash || "#/")) link.setAttribute("aria-current", "page");
     else link.removeAttribute("aria-current");
   for (const [pattern, view] of VIEWS) {
-    const found = location.hash.match(pattern);
-    if (found) {
-      view(root, stop.signal, ...found.slice(1).filter((part) => part !== undefined).map(decodeURIComponent));
+    const found = location.hash.match(pattern), parts = found ? unescaped(found.slice(1)) : null;
+    if (parts) {
+      view(root, stop.signal, ...parts);
       return;
     }
   }

@@ -52,18 +52,20 @@ export function showCurves(root, signal, study, contents) {
   root.append(controls, message, figure, legend, values);
 
   const about = () => contents.curves.find((curve) => curve.quantity === state.quantity);
+  const query = () => `quantity=${encodeURIComponent(state.quantity)}${state.difference ? `&difference=${state.difference.join(",")}` : ""}`;
+  /** The density that is shown: of the first case that is chosen, which may have some for summits and for pits. */
+  const densityOf = () => `plot?${query()}&case=${[...state.cases][0] ?? 0}${state.series ? `&series=${encodeURIComponent(state.series)}` : ""}`;
 
-  async function part(query) {
-    const before = kept.get(query);
-    const answer = await request(`${path}/curves?${query}`, { signal, headers: before ? { "If-None-Match": before.tag } : {} });
-    if (answer.status !== 304) kept.set(query, { tag: answer.headers.get("ETag") ?? "", document: await answer.json() });
-    return kept.get(query).document;
+  async function part(asked) {
+    const before = kept.get(asked);
+    const answer = await request(`${path}/curves?${asked}`, { signal, headers: before ? { "If-None-Match": before.tag } : {} });
+    if (answer.status !== 304) kept.set(asked, { tag: answer.headers.get("ETag") ?? "", document: await answer.json() });
+    return kept.get(asked).document;
   }
 
   async function fetched() {
-    const quantity = `quantity=${encodeURIComponent(state.quantity)}`;
-    if (state.difference) return (await part(`difference=${state.difference.join(",")}&${quantity}`)).cases;
-    const documents = await Promise.all([...state.cases].map((one) => part(`case=${one}&${quantity}`)));
+    if (state.difference) return (await part(query())).cases;
+    const documents = await Promise.all([...state.cases].map((one) => part(`case=${one}&${query()}`)));
     return documents.flatMap((document) => document.cases);
   }
 
@@ -128,9 +130,10 @@ export function showCurves(root, signal, study, contents) {
     patch(listed, make("table", {}, make("thead", {}, heads), make("tbody", {}, rows)));
   }
 
-  async function drawMatrix() {
+  async function drawMatrix(mine) {
     const one = [...state.cases][0] ?? 0;
-    const svg = await (await request(`${path}/plot?quantity=${encodeURIComponent(state.quantity)}&case=${one}`, { signal })).text();
+    const svg = await (await request(`${path}/${densityOf()}`, { signal })).text();
+    if (mine !== turn || signal.aborted) return;
     figure.replaceChildren(make("div", { class: "scroll", tabindex: "0", role: "figure", "aria-label": words(state.quantity) },
       make("img", { class: "picture", alt: `${words(state.quantity)} of case ${one}`, src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}` })));
     legend.replaceChildren();
@@ -143,7 +146,7 @@ export function showCurves(root, signal, study, contents) {
     const mine = ++turn;
     if (!quietly) message.textContent = "Loading …";
     try {
-      if (about().matrix) return await drawMatrix();
+      if (about().matrix) return await drawMatrix(mine);
       const results = await fetched();
       if (mine !== turn || signal.aborted) return;
       const lines = linesOf(results), banded = lines.filter((line) => line.low).length <= BANDS_MOST;
@@ -173,12 +176,11 @@ export function showCurves(root, signal, study, contents) {
     draw();
   }
 
-  const query = () => `quantity=${encodeURIComponent(state.quantity)}`;
-  const oneOfMany = () => (contents.cases.length > 64 ? `&case=${[...state.cases][0] ?? 0}` : "");
+  const oneOfMany = () => (!state.difference && contents.cases.length > 64 ? `&case=${[...state.cases][0] ?? 0}` : "");
   const save = (text, part, ending, accept) => make("button", { onclick: () => download(`${path}/${part()}`, `${study.name}-${state.quantity}.${ending}`, accept).catch((error) => { message.textContent = error.message; }) }, text);
   const quantityOf = chooser("Quantity", (quantity) => {
     const next = contents.curves.find((curve) => curve.quantity === quantity);
-    set({ quantity, series: next.series.includes(state.series) ? state.series : next.series[0], models: new Set(next.models), level: "finest" });
+    set({ quantity, series: next.series.includes(state.series) ? state.series : next.series[0], models: new Set(next.models), level: "finest", ...(next.matrix ? { difference: null } : {}) }); // densities have no differences
   });
   const seriesOf = chooser("by", (series) => set({ series })), meshOf = chooser("Mesh", (level) => set({ level })), modelsOf = make("span", { class: "models" });
   const differenceOf = [0, 1].map((place) => chooser(place === 0 ? "Difference:" : "less", (value) => {
@@ -195,7 +197,7 @@ export function showCurves(root, signal, study, contents) {
   controls.append(quantityOf.element, seriesOf.element, meshOf.element, modelsOf,
     ...[["log x", "xLog"], ["log y", "yLog"], ["error bands", "band"], ["theory", "theory"]].map(([label, key]) => tick(label, state[key], (on) => set({ [key]: on }))),
     ...differenceOf.map((one) => one.element), casesOf,
-    make("span", { class: "links" }, save("JSON", () => `curves?${query()}`, "json"), " ", save("CSV", () => `curves?${query()}${oneOfMany()}`, "csv", "text/csv"), " ", save("SVG", () => `plot?${query()}${oneOfMany()}`, "svg")));
+    make("span", { class: "links" }, save("JSON", () => `curves?${query()}`, "json"), " ", save("CSV", () => `curves?${query()}${oneOfMany()}`, "csv", "text/csv"), " ", save("SVG", () => (about().matrix ? densityOf() : `plot?${query()}${oneOfMany()}`), "svg")));
 
   /** Shows in the controls what is chosen, and what can be. */
   function writeControls() {
@@ -208,7 +210,7 @@ export function showCurves(root, signal, study, contents) {
       else state.models.delete(model);
       set({});
     }));
-    const named = contents.cases.length > 1 ? contents.cases.slice(0, DIFFERENT_MOST).map((other) => [other.case, caseName(other)]) : [];
+    const named = contents.cases.length > 1 && !one.matrix ? contents.cases.slice(0, DIFFERENT_MOST).map((other) => [other.case, caseName(other)]) : [];
     differenceOf[0].set(named.length > 0 ? [["", "no difference"], ...named] : [], state.difference?.[0]);
     differenceOf[1].set(state.difference ? named : [], state.difference?.[1]);
     say(count, `Cases: ${state.cases.size} of ${contents.cases.length}`);

@@ -1,6 +1,6 @@
 // Pictures of a sweep, which the service draws: rugo plot's choices as lists. What is left to it is as in the files of run --out.
 import { chooser, make, pretty, say, symbol, words } from "/web/elements.js";
-import { download, getJson, request } from "/web/session.js";
+import { download, getJson, reasonOf, request } from "/web/session.js";
 import { sweptOf, whereOf } from "/web/sweep.js";
 
 const AUTOMATIC = ["", "automatic"];
@@ -33,7 +33,8 @@ export function showPicture(root, signal, study, contents) {
   function asked() {
     const overParameter = about() && state.x !== "";
     const parts = [["quantity", overParameter ? `${state.quantity}@${state.at}` : state.quantity], ["where", where.query()]];
-    return [...parts, ...["x", "colour", "dash", "panel", "model", "series", "level", "log", "total"].map((name) => [name, state[name]])].filter(([, value]) => value !== "");
+    const names = about()?.matrix ? ["series"] : ["x", "colour", "dash", "panel", "model", "series", "level", "log", "total"];
+    return [...parts, ...names.map((name) => [name, state[name]])].filter(([, value]) => value !== "");
   }
   const address = () => `${path}/plot?${new URLSearchParams(asked())}`;
 
@@ -55,12 +56,12 @@ export function showPicture(root, signal, study, contents) {
     lists.x.set(over, state.x);
     lists.at.set(curve && state.x !== "" ? (loads.get(state.quantity) ?? []).map((x) => [x, String(x)]) : [], state.at);
     for (const name of ["colour", "dash", "panel"]) lists[name].set(channels, state[name]);
-    lists.model.set(values(curve?.models), state.model);
+    lists.model.set(curve?.matrix ? [] : values(curve?.models), state.model);
     lists.series.set(values(curve?.series), state.series);
-    lists.level.set(values(curve?.levels, (one) => one), state.level);
-    lists.log.set(AXES, state.log);
+    lists.level.set(curve?.matrix ? [] : values(curve?.levels, (one) => one), state.level);
+    lists.log.set(curve?.matrix ? [] : AXES, state.log);
     lists.total.set(curve?.matrix ? [] : ERRORS, state.total);
-    say(command, ["rugo plot", study.id, ...asked().map(([name, value]) => `--${name} ${value}`)].join(" "));
+    say(command, ["rugo plot", study.id, `--server ${location.origin}`, ...asked().map(([name, value]) => `--${name} ${value}`)].join(" "));
   }
 
   /** Draws what is chosen; quietly, where it was drawn before. */
@@ -83,7 +84,7 @@ export function showPicture(root, signal, study, contents) {
     } catch (error) {
       if (signal.aborted || mine !== turn) return;
       figure.hidden = true;
-      say(message, [error.message, ...(error.faults ?? []).map((fault) => `${fault.pointer}: ${fault.detail}`)].join("; "));
+      say(message, reasonOf(error));
     }
   }
 

@@ -1,6 +1,6 @@
 // One realisation: its heights, and the gap and pressures at a load, computed when asked for and coloured here.
 import { choice, make, number } from "/web/elements.js";
-import { request } from "/web/session.js";
+import { reasonOf, request } from "/web/session.js";
 import { caseName } from "/web/sweep.js";
 import { chart } from "/web/chart.js";
 
@@ -26,7 +26,7 @@ function colour(share) {
   return STOPS[below].map((a, k) => a + part * (STOPS[below + 1][k] - a));
 }
 
-/** Draws a map of rows x columns. Of gaps and pressures what is not above 0 is left out, and white, and the scale begins at the least of the rest. */
+/** Draws a map of rows x columns, y upwards as in all pictures: row 0 is the lowest. Of gaps and pressures what is not above 0 is left out, and white, and the scale begins at the least of the rest. */
 function mapOf({ shape, values }, field) {
   const [rows, columns] = shape, isBlank = (value) => field !== "height" && !(value > 0);
   let low = Infinity, high = -Infinity;
@@ -38,8 +38,11 @@ function mapOf({ shape, values }, field) {
   const about = labelOf(field), ends = [low, high].map((value) => number(isFinite(value) ? value : null));
   const canvas = make("canvas", { width: columns, height: rows, class: "map", role: "img", "aria-label": `${about}, ${rows} by ${columns} points, from ${ends[0]} to ${ends[1]}` });
   const context = canvas.getContext("2d"), image = context.createImageData(columns, rows);
-  for (let i = 0; i < values.length; i++)
-    if (!isBlank(values[i])) image.data.set([...colour(high > low ? (values[i] - low) / (high - low) : 0), 255], 4 * i);
+  for (let j = 0; j < rows; j++)
+    for (let i = 0; i < columns; i++) {
+      const value = values[j * columns + i];
+      if (!isBlank(value)) image.data.set([...colour(high > low ? (value - low) / (high - low) : 0), 255], 4 * ((rows - 1 - j) * columns + i));
+    }
   context.putImageData(image, 0, 0);
   canvas.style.width = `${SIDE * Math.min(1, columns / rows)}px`;
   const scale = make("canvas", { width: 256, height: 1, class: "scale", "aria-hidden": "true" });
@@ -75,7 +78,10 @@ export function showRealisation(root, signal, study, contents) {
       message.textContent = touching === null ? "" : `${(100 * touching).toPrecision(3)} % of the points are in contact.`;
     } catch (error) {
       if (signal.aborted || mine !== turn) return;
-      message.textContent = [error.message, ...(error.faults ?? []).map((fault) => `${fault.pointer}: ${fault.detail}`)].join("; ");
+      shown?.destroy();
+      shown = null;
+      place.replaceChildren(); // what was shown before is not what is asked for
+      message.textContent = reasonOf(error);
     }
   }
 

@@ -11,6 +11,11 @@ export class Problem extends Error {
   }
 }
 
+/** What went wrong in words, with each fault that the server names. */
+export function reasonOf(error) {
+  return [error.message, ...(error.faults ?? []).map((fault) => `${fault.pointer}: ${fault.detail}`)].join("; ");
+}
+
 /** Calls back when a token is needed or refused, with what to say. */
 export function onTokenNeeded(listener) {
   listeners.add(listener);
@@ -71,7 +76,7 @@ export async function download(path, name, accept) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
-/** Reads server-sent events, which EventSource could not ask for with a token; ends with the stream or the signal. */
+/** Reads server-sent events, which EventSource could not ask for with a token: calls back with data and name of each; ends with the stream or the signal. */
 export async function events(path, onevent, signal) {
   const answer = await request(path, { signal, headers: { Accept: "text/event-stream" } });
   const reader = answer.body.pipeThrough(new TextDecoderStream()).getReader();
@@ -82,8 +87,9 @@ export async function events(path, onevent, signal) {
     const parts = (waiting + value).split("\n\n");
     waiting = parts.pop();
     for (const part of parts) {
-      const data = part.split("\n").filter((line) => line.startsWith("data:")).map((line) => line.slice(5).trim());
-      if (data.length > 0) onevent(JSON.parse(data.join("\n")));
+      const valuesOf = (field) => part.split("\n").filter((line) => line.startsWith(`${field}:`)).map((line) => line.slice(field.length + 1).trim());
+      const data = valuesOf("data");
+      if (data.length > 0) onevent(JSON.parse(data.join("\n")), valuesOf("event").pop());
     }
   }
 }

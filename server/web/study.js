@@ -1,6 +1,6 @@
 // One study: its state and what can be done with it, and its parts: curves, table, report, realisations, document.
 import { bar, duration, each, make, number, patch, say, time } from "/web/elements.js";
-import { events, getJson, request, sendJson } from "/web/session.js";
+import { events, getJson, reasonOf, request, sendJson } from "/web/session.js";
 import { isLive, share, stateClass, stateText } from "/web/studies.js";
 import { showCurves } from "/web/curves.js";
 import { showPicture } from "/web/picture.js";
@@ -84,7 +84,7 @@ function headOf(id, refresh) {
   const path = `/v1/studies/${encodeURIComponent(id)}`;
   const title = make("h1"), progress = bar(0, ""), facts = make("dl", { class: "facts" }), message = make("span", { class: "actions-message", role: "alert" });
   const count = make("summary"), list = make("ul"), failures = make("details", { open: true, hidden: true }, count, list);
-  let study, asked = null; // asked: the error
+  let study, asked = null, extendable = false; // asked: the error; extendable: unless a target chooses the realisations
 
   const called = () => `study “${study.name}”`;
   const asks = (question, action) => async () => {
@@ -93,12 +93,12 @@ function headOf(id, refresh) {
     try {
       if ((await action()) !== "gone") await refresh();
     } catch (error) {
-      message.textContent = error.message;
+      message.textContent = reasonOf(error);
     }
   };
   async function extend() {
     const more = prompt(`How many realisations a case shall ${called()} have?`, String(2 * Math.round(study.realisations.total / Math.max(1, study.cases))));
-    return more === null ? "gone" : sendJson("POST", `${path}/extend`, { realisations: Number(more) });
+    return !more?.trim() ? "gone" : sendJson("POST", `${path}/extend`, { realisations: Number(more) });
   }
   async function remove() {
     await sendJson("DELETE", `${path}?results=true`);
@@ -108,7 +108,7 @@ function headOf(id, refresh) {
   const buttons = [
     [make("button", { onclick: asks(() => `Cancel ${called()}?`, () => sendJson("DELETE", path)) }, "Cancel"), isLive],
     [make("button", { onclick: asks(null, () => sendJson("POST", `${path}/retry`)) }, "Retry"), ({ jobs, cases_failed: failed }) => jobs.failed + jobs.cancelled > 0 || failed > 0],
-    [make("button", { onclick: asks(null, extend) }, "Extend …"), ({ state }) => state === "done"],
+    [make("button", { onclick: asks(null, extend) }, "Extend …"), ({ state }) => state === "done" && extendable],
     [make("button", { class: "danger", onclick: asks(() => `Delete ${called()} and its results for ever?`, remove) }, "Delete …"), (one) => !isLive(one)],
   ];
 
@@ -127,16 +127,18 @@ function headOf(id, refresh) {
   }
   const actions = make("div", { class: "tools" }, buttons.map(([button]) => button), make("a", { class: "button", href: `#/new/${encodeURIComponent(id)}` }, "Copy as a new study"), message);
   const element = make("div", {}, title, actions, progress, facts, failures); // what grows is below the buttons: they do not move under the pointer
-  getJson(`${path}/study`).then((document) => {
+  getJson(`${path}/study`).catch(() => ({})).then((document) => { // without it, the facts lack what was asked for
     asked = document.target?.error ?? null;
+    extendable = !document.target;
     if (study) update(study);
-  }, () => {}); // the facts then lack what was asked for
+  });
   return { element, update };
 }
 
 /** Shows a study, and of it the part that the address names: else its curves, or, where these are too many to tell apart, a picture of the sweep. */
-export async function showStudy(root, signal, id, part) {
-  const path = `/v1/studies/${encodeURIComponent(id)}`;
+export async function showStudy(root, left, id, part) {
+  const path = `/v1/studies/${encodeURIComponent(id)}`, stop = new AbortController(), { signal } = stop; // it ends where the view is left, or the study deleted
+  left.addEventListener("abort", () => stop.abort());
   const head = headOf(id, () => getJson(path, { signal }).then(update)), tabs = make("nav", { class: "tabs", "aria-label": "Parts of the study" }), body = make("section");
   root.append(make("p", { role: "status", class: "waiting" }, "Loading …"));
   let study, redraw = null, contents = null, following = false, drawing = false, again = false;
@@ -174,15 +176,22 @@ export async function showStudy(root, signal, id, part) {
     }
   }
 
-  /** Follows the study until it ends; once at a time, again where it goes on. */
+  /** Says that the study was deleted, in place of what was shown of it. */
+  function sayDeleted() {
+    stop.abort();
+    root.replaceChildren(make("p", { role: "alert" }, `Study “${study.name}” was deleted. `, make("a", { href: "#/" }, "Back to the studies")));
+  }
+
+  /** Follows the study until it ends or is deleted; once at a time, again where it goes on. */
   async function follow() {
     if (following) return;
     following = true;
     while (!signal.aborted && isLive(study)) {
       try {
-        await events(`${path}/events`, update, signal);
+        await events(`${path}/events`, (data, name) => (name === "deleted" ? sayDeleted() : update(data)), signal);
         update(await getJson(path, { signal }));
       } catch (error) {
+        if (error.status === 404) sayDeleted();
         if (!signal.aborted) await new Promise((done) => setTimeout(done, 3000));
       }
     }

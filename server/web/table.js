@@ -1,6 +1,6 @@
 // A row a case: what was swept, then scalars, or curves at one place, with their errors; in an order, and in pages.
 import { each, make, measured, number, say, symbol, words } from "/web/elements.js";
-import { download, getJson } from "/web/session.js";
+import { download, getJson, reasonOf } from "/web/session.js";
 import { whereOf } from "/web/sweep.js";
 
 const PAGE = 100; // rows
@@ -86,7 +86,7 @@ export function showTable(root, signal, study, contents) {
       if (signal.aborted || mine !== turn) return;
       table = null;
       place.hidden = pages.hidden = true;
-      message.textContent = [error.message, ...(error.faults ?? []).map((fault) => `${fault.pointer}: ${fault.detail}`)].join("; ");
+      message.textContent = reasonOf(error);
     }
   }
 

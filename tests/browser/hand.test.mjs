@@ -158,7 +158,7 @@ test("a sweep of sixty cases is a picture with the choices of rugo plot, and a t
   await page.goto(`${url}/#/study/${id}`);
   await page.waitForFunction(() => document.querySelector("img.picture")?.naturalWidth > 100);
   assert.equal(await page.$eval(".tabs [aria-current]", (one) => one.textContent), "Pictures");
-  assert.equal(await command(), `rugo plot ${id} --quantity contact_area`, "nothing is chosen but what run --out draws");
+  assert.equal(await command(), `rugo plot ${id} --server ${url} --quantity contact_area`, "nothing is chosen but what run --out draws");
   await picture(page, "sweep");
   await pick(page, "over", "H"); // a value over a parameter, at a load
   await page.waitForFunction(() => [...document.querySelectorAll("main code")].pop().textContent.includes("@0.2 --x hurst"));
@@ -264,4 +264,68 @@ test("Cancel is pressed while events come in, and its button stays what it is", 
   }
   await page.waitForSelector("dd .cancelled");
   t.diagnostic(`share ${began} before, ${await share()} behind`);
+});
+
+test("a density that comes late does not replace what was chosen after it", async (t) => {
+  const { id } = await send(url, "POST", "/v1/studies", { ...LONG, name: "late", realisations: 4 });
+  await finished(url, id);
+  const page = await tab(t);
+  let late = null;
+  await page.setRequestInterception(true);
+  page.on("request", (request) => {
+    if (late === null && request.url().includes("/plot?quantity=summit_joint_pdf")) late = request;
+    else request.continue();
+  });
+  await page.goto(`${url}/#/study/${id}/curves`);
+  await page.waitForSelector(".uplot canvas");
+  await pick(page, "Quantity", "summit joint PDF");
+  for (const until = Date.now() + WAIT_MS; late === null && Date.now() < until;) await new Promise((done) => setTimeout(done, 20));
+  await pick(page, "Quantity", "height PDF");
+  await page.waitForFunction(() => document.querySelector(".chart")?.getAttribute("aria-label").includes("over"));
+  await page.waitForFunction(() => document.querySelectorAll(".legend li").length > 0 && !document.body.innerText.includes("Loading …"));
+  const answer = page.waitForResponse((one) => one.url().includes("/plot?quantity=summit_joint_pdf"));
+  late.continue();
+  await (await answer).text();
+  await new Promise((done) => setTimeout(done, 500)); // for what the page would do with it
+  assert.equal(await page.$("img.picture"), null);
+  assert.ok(await page.$(".uplot canvas"));
+});
+
+test("a density of pits is shown and saved as such", async (t) => {
+  const { id } = await send(url, "POST", "/v1/studies", { ...LONG, name: "pits", realisations: 4, surface: { ...LONG.surface, hurst: [0.4, 0.6], heights: { distribution: "weibull_min", shape: 1.5, tolerance: 0.05 } } });
+  await finished(url, id);
+  const page = await tab(t), asked = [];
+  page.on("request", (request) => request.url().includes("/plot?") && asked.push(new URL(request.url()).searchParams));
+  await page.goto(`${url}/#/study/${id}/curves`);
+  await page.waitForSelector(".uplot canvas");
+  await press(page, ".cases summary");
+  await press(page, ".cases .grid label:first-child input"); // the second case alone is left
+  await pick(page, "Quantity", "summit joint PDF");
+  await page.waitForFunction(() => document.querySelector("img.picture")?.naturalWidth > 100);
+  await pick(page, "by", "pits");
+  await page.waitForFunction(() => !document.body.innerText.includes("Loading …"));
+  await page.evaluate(() => { HTMLAnchorElement.prototype.click = function () { globalThis.saved = this.download; }; });
+  await page.evaluate(() => [...document.querySelectorAll(".links button")].find((one) => one.textContent === "SVG").click());
+  await page.waitForFunction(() => globalThis.saved);
+  assert.deepEqual(asked.map((one) => [one.get("case"), one.get("series")]), [["1", null], ["1", "pits"], ["1", "pits"]]);
+});
+
+test("a study that is deleted elsewhere is said to be, and no longer asked for", async (t) => {
+  const { id } = await send(url, "POST", "/v1/studies", { ...LONG, name: "gone" });
+  t.after(() => send(url, "DELETE", `/v1/studies/${id}`));
+  const page = await tab(t);
+  let asked = 0;
+  await page.setRequestInterception(true);
+  page.on("request", (request) => {
+    asked += request.url().includes(id);
+    if (request.url().endsWith("/events")) request.respond({ contentType: "text/event-stream", body: "event: deleted\ndata: {}\n\n" });
+    else request.continue();
+  });
+  await page.goto(`${url}/#/study/${id}/jobs`);
+  await says(page, "Study “gone” was deleted.");
+  assert.deepEqual(await page.$$eval("main button", (all) => all.map((one) => one.textContent)), []);
+  assert.ok(!(await page.title()).includes("undefined"), await page.title());
+  const before = asked;
+  await new Promise((done) => setTimeout(done, 4000)); // views ask every 3 s
+  assert.equal(asked, before);
 });

@@ -40,6 +40,7 @@ async function choose(page, label, value) {
 }
 
 const legend = (page) => page.$$eval(".legend li", (all) => all.map((one) => one.textContent.trim()));
+const visibleButtons = (page) => page.$$eval("main button", (all) => all.filter((one) => one.offsetParent).map((one) => one.textContent));
 const picture = async (page, name) => PICTURES && page.screenshot({ path: join(PICTURES, `${name}.png`) });
 
 before(async () => {
@@ -107,6 +108,15 @@ test("a difference of cases is drawn with the error of its pairs", async (t) => 
   await choose(page, "Difference:", "1");
   await page.waitForFunction(() => [...document.querySelectorAll(".legend li")].some((one) => one.textContent.includes("H = 0.8 less H = 0.2")));
   await picture(page, "difference");
+  const saved = [];
+  page.on("request", (request) => saved.push(request.url()));
+  await page.evaluate(() => { globalThis.names = []; HTMLAnchorElement.prototype.click = function () { globalThis.names.push(this.download); }; });
+  for (const [k, text] of ["JSON", "CSV", "SVG"].entries()) {
+    await click(page, text);
+    await page.waitForFunction((count) => globalThis.names.length === count, {}, k + 1);
+  }
+  assert.equal(saved.length, 3);
+  for (const address of saved) assert.equal(new URL(address).searchParams.get("difference"), "1,0", "what is saved is what is shown");
 });
 
 test("theory stands beside statistics, and a density is a picture", async (t) => {
@@ -118,6 +128,12 @@ test("theory stands beside statistics, and a density is a picture", async (t) =>
   await picture(page, "statistics");
   await choose(page, "Quantity", "summit_joint_pdf");
   await page.waitForFunction(() => document.querySelector("img.picture")?.naturalWidth > 100);
+  assert.equal(await page.evaluate(() => [...document.querySelectorAll("label.choice")].some((one) => one.textContent.startsWith("Difference") && one.offsetParent)), false, "densities have no differences");
+  await page.goto(`${open}/#/study/${STATISTICS.id}/picture`);
+  await choose(page, "Axes", "xy");
+  await choose(page, "Quantity", "summit_joint_pdf");
+  await page.waitForFunction(() => document.querySelector("img.picture")?.alt.startsWith("summit joint PDF") && !document.querySelector(".sheet").hidden);
+  assert.deepEqual(await page.$$eval(".tools label.choice", (all) => all.filter((one) => one.offsetParent && !one.closest(".tools").textContent.startsWith("Where")).map((one) => one.textContent.split(" ")[0])), ["Quantity"], "a density has one look");
 });
 
 test("the table has a row a case, and columns that are asked for", async (t) => {
@@ -153,12 +169,31 @@ test("realisations are shown: heights, gaps and pressures", async (t) => {
   assert.ok((await label()).startsWith("pressure in E* h′ over point"), await label());
 });
 
+test("a realisation stands as in the service's picture, y upwards, and goes where there is no such one", async (t) => {
+  const page = await tab(t, [404, 422]);
+  await page.goto(`${open}/#/study/${STATISTICS.id}/realisation`);
+  await page.waitForSelector("canvas.map");
+  const far = await page.evaluate(async (path) => {
+    const image = await createImageBitmap(await (await fetch(path, { headers: { Accept: "image/png" } })).blob());
+    const canvas = new OffscreenCanvas(image.width, image.height), context = canvas.getContext("2d");
+    context.drawImage(image, 0, 0);
+    const wanted = context.getImageData(0, 0, image.width, image.height).data;
+    const shown = document.querySelector("canvas.map").getContext("2d").getImageData(0, 0, image.width, image.height).data;
+    return wanted.reduce((most, value, k) => Math.max(most, Math.abs(value - shown[k])), 0);
+  }, `/v1/studies/${STATISTICS.id}/cases/0/realisations/0/map?field=height`);
+  assert.ok(far <= 1, `the colours of the points differ by ${far} of 255`); // both round
+  await page.$eval("input[type=number]", (one) => { one.value = "99999"; one.dispatchEvent(new Event("change")); });
+  await says(page, "99999");
+  assert.equal(await page.$("canvas.map"), null, "what was shown before is not taken for it");
+});
+
 test("a study that asks for an error says what it has reached, and who computed it", async (t) => {
   const page = await tab(t, [422]);
   const { id } = await send(open, "POST", "/v1/studies", TARGET);
   await finished(open, id);
   await page.goto(`${open}/#/study/${id}/report`);
   await says(page, "asked 10 %, reached");
+  assert.ok(!(await visibleButtons(page)).includes("Extend …"), "its realisations are those that its error takes");
   await says(page, "times the work of plain sampling");
   await click(page, "Jobs");
   await says(page, "Jobs: ");
@@ -255,8 +290,11 @@ test("a new study is begun from a ready one, checked as it is written, and submi
 
 test("a running study shows its progress and can be cancelled; an ended one extended and deleted", async (t) => {
   const { id } = await send(open, "POST", "/v1/studies", LONG);
-  const page = await tab(t, [404]); // of the deleted study, whose state was being asked for
-  page.on("dialog", (dialog) => dialog.accept(dialog.type() === "prompt" ? "40" : undefined));
+  const page = await tab(t, [404, 422]); // of the deleted study, whose state was being asked for; of an extension that is none
+  const answers = ["", "many", "40"];
+  page.on("dialog", (dialog) => dialog.accept(dialog.type() === "prompt" ? answers.shift() : undefined));
+  let extensions = 0;
+  page.on("request", (request) => { extensions += request.url().endsWith("/extend"); });
   await page.goto(`${open}/#/study/${id}`);
   await page.waitForSelector("dd .running", { timeout: WAIT_MS });
   await click(page, "Cancel");
@@ -265,6 +303,10 @@ test("a running study shows its progress and can be cancelled; an ended one exte
   await page.waitForFunction(() => location.hash === "#/");
   await page.waitForFunction(() => document.querySelector("tbody tr") && !document.body.innerText.includes("a long one"));
   await page.goto(`${open}/#/study/${STATISTICS.id}`);
+  await click(page, "Extend …"); // nothing is typed
+  await click(page, "Extend …");
+  await says(page, "the extension is not valid; /realisations: "); // and what is wrong with it
+  assert.equal(extensions, 1, "an empty answer is none");
   await click(page, "Extend …");
   await says(page, "120 / 120");
 });
@@ -319,6 +361,46 @@ test("the keyboard keeps its place, and every control has a name", async (t) => 
     await page.goto(`${open}/#/${hash}`);
     await page.waitForSelector(`main ${control}`);
     assert.deepEqual(await page.$$eval("main :is(input, select, textarea, button, a)", (all) => all.filter((one) => !(one.labels?.length > 0) && !one.getAttribute("aria-label") && one.textContent.trim() === "").map((one) => one.outerHTML)), [], hash);
+  }
+});
+
+test("keys of the browser stay the browser's, and an address that is none has a page", async (t) => {
+  const page = await tab(t);
+  await page.goto(`${open}/#/study/${CONTACT.id}`);
+  await page.waitForSelector(".uplot canvas");
+  const isLeft = (keys) => page.$eval(".chart", (one, more) => one.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowLeft", bubbles: true, cancelable: true, ...more })), keys);
+  assert.deepEqual([await isLeft({}), await isLeft({ altKey: true }), await isLeft({ ctrlKey: true }), await isLeft({ metaKey: true })], [false, true, true, true]);
+  await page.goto(`${open}/#/study/100%`);
+  await says(page, "There is no such page");
+});
+
+test("texts and curves stand out from the page, in the light and in the dark", async (t) => {
+  const page = await tab(t);
+  await page.goto(open);
+  await says(page, "studies");
+  for (const scheme of ["light", "dark"]) {
+    await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: scheme }]);
+    const contrasts = await page.evaluate(async () => { // WCAG 2.1: (L1 + 0.05) / (L2 + 0.05) of relative luminances
+      const { colours } = await import("/web/chart.js");
+      const parts = (colour) => colour.match(/[\d.]+/g).slice(0, 3).map(Number), ground = parts(getComputedStyle(document.body).backgroundColor);
+      const luminance = (colour) => colour.map((part) => part / 255).map((part) => (part <= 0.03928 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4)).reduce((sum, part, k) => sum + part * [0.2126, 0.7152, 0.0722][k], 0);
+      const contrast = (colour) => {
+        const [low, high] = [luminance(colour), luminance(ground)].sort((a, b) => a - b);
+        return (high + 0.05) / (low + 0.05);
+      };
+      const seen = (element) => {
+        let share = 1;
+        for (let one = element; one; one = one.parentElement) share *= Number(getComputedStyle(one).opacity);
+        return contrast(parts(getComputedStyle(element).color).map((part, k) => share * part + (1 - share) * ground[k]));
+      };
+      const cell = document.createElement("span");
+      cell.className = "cancelled";
+      document.querySelector("main").append(cell);
+      return { curves: Math.min(...colours(20, true).map((colour) => contrast(parts(colour)))), footer: seen(document.querySelector("footer a")), cancelled: seen(cell) };
+    });
+    assert.ok(contrasts.curves >= 3, `${scheme}: ordered curves ${contrasts.curves}`);
+    assert.ok(contrasts.footer >= 4.5, `${scheme}: links below ${contrasts.footer}`);
+    assert.ok(contrasts.cancelled >= 4.5, `${scheme}: cancelled ${contrasts.cancelled}`);
   }
 });
 

@@ -1,5 +1,6 @@
 /* Text exports with headers: matrices of heights and lists of points, as Gwyddion, SPIP, Keyence's
  * programs and many others write them (README.md). */
+#include "core/file/text_mark.h"
 #include "core/instrument/formats.h"
 #include "core/instrument/layers.h"
 #include "core/instrument/point_grid.h"
@@ -276,11 +277,7 @@ static int text_trace_map(struct height_map *map, const struct text_table *table
 }
 
 static bool owns(const char *data, size_t size) {
-    static const char *const MARKS[] = {"\xff\xfe", "\xfe\xff"};
-    for (size_t mark = 0; mark < 2; mark++)
-        if (size >= 2 && memcmp(data, MARKS[mark], 2) == 0)
-            return true;
-    return text_blocks_own(data, size);
+    return text_mark_is_utf16(data, size, NULL) || text_blocks_own(data, size);
 }
 
 static int choose_block(const struct text_blocks *blocks, const char *asked, size_t *out,

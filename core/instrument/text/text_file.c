@@ -1,4 +1,5 @@
 #include "core/instrument/text/text_file.h"
+#include "core/file/text_mark.h"
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,11 +42,12 @@ static int decode_utf16(struct text_file *out, const char *data, size_t size, bo
 int text_file_open(struct text_file *out, const char *data, size_t size, struct error *err) {
     struct text_file file = {.text = data, .size = size};
     int status = 0;
-    bool low = size >= 2 && memcmp(data, "\xff\xfe", 2) == 0;
-    if (low || (size >= 2 && memcmp(data, "\xfe\xff", 2) == 0))
+    bool low = false;
+    size_t mark = text_mark_length(data, size);
+    if (text_mark_is_utf16(data, size, &low))
         status = decode_utf16(&file, data, size, low, err);
-    else if (size >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0)
-        file = (struct text_file){.text = data + 3, .size = size - 3};
+    else
+        file = (struct text_file){.text = data + mark, .size = size - mark};
     if (status == 0 && memchr(file.text, 0, file.size) != NULL)
         status = error_set(err, ERROR_INPUT, "this is no text file: it holds a zero byte");
     if (status != 0)

@@ -10,6 +10,7 @@
 #include "server/show/map/figure/map_figure.h"
 #include "server/show/map/map_report.h"
 #include "server/show/map/map_summary.h"
+#include "server/show/quantity.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -146,7 +147,7 @@ struct plane_file {
     const char *path; /* NULL: none */
     int (*make)(struct map_plane *out, const struct measured_map *map, struct error *err);
     struct map_picture labels;
-    bool logarithmic; /* in pictures */
+    bool spectral; /* over wave vectors, with logarithms in pictures; else over lags */
 };
 enum { PLANE_FILES = 2 };
 
@@ -156,16 +157,16 @@ static void plane_files(const struct characterise_options *options,
                                  map_acf_plane,
                                  {.name = "autocorrelation",
                                   .subject = "",
-                                  .x_label = "tx from the left side",
-                                  .y_label = "ty from the lower side",
+                                  .x_label = "tx",
+                                  .y_label = "ty",
                                   .z_label = "R"},
                                  false};
     out[1] = (struct plane_file){options->psd,
                                  map_psd_plane,
                                  {.name = "spectral density",
                                   .subject = "",
-                                  .x_label = "kx from the left side",
-                                  .y_label = "ky from the lower side",
+                                  .x_label = "kx",
+                                  .y_label = "ky",
                                   .z_label = "log10 C"},
                                  true};
 }
@@ -180,15 +181,83 @@ static int check_planes(const struct characterise_options *options, struct error
     return status;
 }
 
-/* Values many decades below the highest are of no interest in a picture. */
-static void take_logarithms(struct map_plane *plane) {
-    static const double SEEN = 1e-8;
-    size_t n = grid_points(&plane->grid);
+static double largest_of(const struct map_plane *plane) {
     double most = 0;
-    for (size_t a = 0; a < n; a++)
+    for (size_t a = 0; a < grid_points(&plane->grid); a++)
         most = fmax(most, plane->values[a]);
-    for (size_t a = 0; a < n && most > 0; a++)
-        plane->values[a] = log10(fmax(plane->values[a], SEEN * most));
+    return most;
+}
+
+/* Takes logarithms of values over the scale. Those many decades below the highest are of no
+ * interest in a picture. */
+static void take_logarithms(struct map_plane *plane, double scale) {
+    static const double SEEN = 1e-8;
+    const double most = largest_of(plane);
+    for (size_t a = 0; a < grid_points(&plane->grid) && most > 0; a++)
+        plane->values[a] = log10(fmax(plane->values[a], SEEN * most) / scale);
+}
+
+enum { PLANE_UNIT = 48 };
+
+/* Writes the unit of the lags or wave vectors of a map, "" where its lengths have none. */
+static void plane_unit(const struct height_map *map, bool spectral, char out[PLANE_UNIT]) {
+    const char *unit = map->xy_unit;
+    snprintf(out, PLANE_UNIT, "%s%s", spectral && *unit != '\0' ? "rad/" : "", unit);
+}
+
+/* Writes the unit of heights squared, of a density times an area or, of a profile, a length. */
+static void value_unit(const struct height_map *map, bool spectral, char out[PLANE_UNIT]) {
+    const char *z = map->z_unit, *xy = map->xy_unit;
+    const int power = grid_is_profile(&map->grid) ? 1 : 2;
+    out[0] = '\0';
+    if (*z == '\0' || (spectral && *xy == '\0'))
+        return;
+    if (!spectral)
+        snprintf(out, PLANE_UNIT, "%s^2", z);
+    else if (strcmp(z, xy) == 0)
+        snprintf(out, PLANE_UNIT, "%s^%d", z, 2 + power);
+    else
+        snprintf(out, PLANE_UNIT, "%s^2 %s%s", z, xy, power == 2 ? "^2" : "");
+}
+
+/* Prepares values and labels for a picture, in which 0 is in the middle. A picture of pixels has no
+ * units. */
+static void plane_show(const struct plane_file *file, const struct height_map *map,
+                       struct map_plane *plane, char units[2][PLANE_UNIT],
+                       struct map_picture *labels) {
+    const struct grid *grid = &plane->grid;
+    const size_t half_x = grid->nx / 2, half_y = grid->ny / 2;
+    double scale = 1;
+    plane_unit(map, file->spectral, units[0]);
+    value_unit(map, file->spectral, units[1]);
+    labels->xy_unit = units[0];
+    labels->z_unit = units[1];
+    labels->x0 = -(double)half_x * grid_dx(grid);
+    labels->y0 = -(double)half_y * grid_dy(grid);
+    if (!file->spectral)
+        return;
+    const bool metres = strcmp(map->z_unit, "m") == 0 && strcmp(map->xy_unit, "m") == 0;
+    if (metres && !output_file_is_png(file->path)) {
+        char unit[PLANE_UNIT];
+        snprintf(unit, sizeof unit, "%s", units[1]);
+        scale = unit_readable(unit, largest_of(plane), units[1], PLANE_UNIT);
+    }
+    take_logarithms(plane, scale);
+}
+
+/* Makes a plane, and writes its file. */
+static int write_plane(const struct plane_file *file, const struct height_map *map,
+                       const struct measured_map *measured, struct error *err) {
+    struct map_plane plane = {0};
+    struct map_picture labels = file->labels;
+    char units[2][PLANE_UNIT];
+    int status = file->make(&plane, measured, err);
+    if (status == 0 && map_output_is_picture(file->path))
+        plane_show(file, map, &plane, units, &labels);
+    if (status == 0)
+        status = map_output_write(file->path, &labels, &plane.grid, plane.values, err);
+    map_plane_clear(&plane);
+    return status;
 }
 
 static int write_planes(const struct characterise_options *options, const struct height_map *map,
@@ -197,18 +266,9 @@ static int write_planes(const struct characterise_options *options, const struct
     struct plane_file files[PLANE_FILES];
     int status = 0;
     plane_files(options, files);
-    for (size_t f = 0; f < PLANE_FILES && status == 0; f++) {
-        struct map_plane plane = {0};
-        if (files[f].path == NULL)
-            continue;
-        status = files[f].make(&plane, &measured, err);
-        if (status == 0 && files[f].logarithmic && map_output_is_picture(files[f].path))
-            take_logarithms(&plane);
-        if (status == 0)
-            status =
-                map_output_write(files[f].path, &files[f].labels, &plane.grid, plane.values, err);
-        map_plane_clear(&plane);
-    }
+    for (size_t f = 0; f < PLANE_FILES && status == 0; f++)
+        if (files[f].path != NULL)
+            status = write_plane(&files[f], map, &measured, err);
     return status;
 }
 
@@ -349,6 +409,9 @@ static int characterise_one(const struct characterise_options *options, const ch
 
 static int characterise_files(const struct characterise_options *options, const char *const *files,
                               struct error *err) {
+    if (options->hold && options->format != FORMAT_STUDY)
+        return error_set(err, ERROR_INPUT,
+                         "--hold goes with --format study, whose surfaces hold the map");
     return options->together ? characterise_together(options, files, err)
                              : characterise_one(options, files, err);
 }

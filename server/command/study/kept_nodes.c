@@ -4,9 +4,12 @@
 #include "jobs/surface/realisation_map.h"
 #include "jobs/surface/surface_case.h"
 #include "server/command/command.h"
+#include <dirent.h>
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* --- the realisations of a case --- */
 
@@ -163,4 +166,65 @@ int kept_nodes_write(struct store *store, const char *id, const char *folder, st
     }
     study_status_clear(&study);
     return status;
+}
+
+/* --- what an earlier study left --- */
+
+/* What a folder holds: nodes/, in it folders of cases, in these of realisations, and so on. */
+enum depth { DEPTH_NODES, DEPTH_CASES, DEPTH_REALISATIONS, DEPTH_MODELS, DEPTH_FILES };
+enum { PATH_SIZE = 4096 };
+
+/* Returns whether a name is these words around a number, as "case-3" is. */
+static bool is_numbered(const char *name, const char *before, const char *behind) {
+    size_t length = strlen(before);
+    if (strncmp(name, before, length) != 0)
+        return false;
+    size_t digits = strspn(name + length, "0123456789");
+    return digits > 0 && strcmp(name + length + digits, behind) == 0;
+}
+
+/* Returns whether kept_nodes_write gives this name to what lies in a folder of this depth. */
+static bool is_own_name(enum depth depth, const char *name) {
+    if (depth == DEPTH_CASES)
+        return is_numbered(name, "case-", "");
+    if (depth == DEPTH_REALISATIONS)
+        return is_numbered(name, "realisation-", "");
+    if (depth == DEPTH_MODELS)
+        return name[0] != '.';
+    return strcmp(name, "nodes.csv") == 0 || strcmp(name, "steps.pvd") == 0 ||
+           is_numbered(name, "step-", ".vtu");
+}
+
+static int remove_own(enum depth depth, const char *folder, struct error *err);
+
+static int remove_one(enum depth depth, const char *folder, const char *name, struct error *err) {
+    char path[PATH_SIZE];
+    if (snprintf(path, sizeof path, "%s/%s", folder, name) >= (int)sizeof path)
+        return error_set(err, ERROR_INPUT, "the path %.100s... is too long", folder);
+    if (depth != DEPTH_FILES)
+        return remove_own(depth + 1, path, err);
+    return unlink(path) == 0 || errno == EISDIR /* somebody's own */
+               ? 0
+               : error_set(err, ERROR_SYSTEM, "%s: %s", path, strerror(errno));
+}
+
+/* Removes what has a name of this depth, and the folder where that was all. */
+static int remove_own(enum depth depth, const char *folder, struct error *err) {
+    int status = 0;
+    DIR *list = opendir(folder);
+    if (list == NULL)
+        return errno == ENOENT || errno == ENOTDIR
+                   ? 0
+                   : error_set(err, ERROR_SYSTEM, "folder %s: %s", folder, strerror(errno));
+    for (const struct dirent *one; status == 0 && (one = readdir(list)) != NULL;)
+        if (is_own_name(depth, one->d_name))
+            status = remove_one(depth, folder, one->d_name, err);
+    (void)closedir(list);
+    if (status == 0)
+        (void)rmdir(folder); /* it stays where it holds something else */
+    return status;
+}
+
+int kept_nodes_remove(const char *folder, struct error *err) {
+    return remove_one(DEPTH_NODES, folder, "nodes", err);
 }

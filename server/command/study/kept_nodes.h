@@ -10,5 +10,8 @@
  * gets a warning, and its files hold the loads before. Ends with ERROR_STOPPED where a signal asks
  * for it. */
 int kept_nodes_write(struct store *store, const char *id, const char *folder, struct error *err);
+/* Removes these files of any study from the folder, by their names, and the folders of them that
+ * hold nothing else then. ERROR_SYSTEM names what could not be removed. */
+int kept_nodes_remove(const char *folder, struct error *err);
 
 #endif

@@ -2,6 +2,8 @@
 #include "core/file/file.h"
 #include "core/file/whole_file.h"
 #include "schema/json/json.h"
+#include "schema/store/store.h"
+#include "server/command/study/kept_nodes.h"
 #include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
@@ -119,21 +121,45 @@ static bool is_picture_of(const char *path, const char *id) {
     return strstr(head, words) != NULL;
 }
 
-static int remove_pictures(const struct result_folder *folder, const char *id, struct error *err) {
+/* Whether a file is of `rugo export` and of this study, whose id stands in its first lines: a
+ * README.txt may be somebody's own. */
+static bool is_exported_of(const char *name, const char *path, const char *id) {
+    static const char *const NAMES[] = {"README.txt", "provenance.json", "scalars.csv",
+                                        "table.csv",  "report.txt",      "report.json"};
+    char head[HEAD_SIZE];
+    bool named = false;
+    for (size_t n = 0; n < sizeof NAMES / sizeof *NAMES; n++)
+        named = named || strcmp(name, NAMES[n]) == 0;
+    if (!named || strlen(id) != STUDY_ID_SIZE - 1) /* theories are not exported */
+        return false;
+    read_head(path, head);
+    return strstr(head, id) != NULL;
+}
+
+static bool is_of_study(const char *name, const char *path, const char *id) {
+    return file_ends_in(name, ".svg") ? is_picture_of(path, id) : is_exported_of(name, path, id);
+}
+
+/* Removes pictures of a study, and what `rugo export` wrote of it; curves and the document are
+ * written over. */
+static int remove_files(const struct result_folder *folder, const char *id, struct error *err) {
     char path[PATH_SIZE];
     int status = 0;
     DIR *list = opendir(folder->path);
     if (list == NULL)
         return error_set(err, ERROR_SYSTEM, "folder %s: %s", folder->path, strerror(errno));
     for (const struct dirent *one; status == 0 && (one = readdir(list)) != NULL;) {
-        if (!file_ends_in(one->d_name, ".svg"))
-            continue;
         status = path_in(folder, one->d_name, path, err);
-        if (status == 0 && is_picture_of(path, id) && unlink(path) != 0)
+        if (status == 0 && is_of_study(one->d_name, path, id) && unlink(path) != 0)
             status = error_set(err, ERROR_SYSTEM, "%s: %s", path, strerror(errno));
     }
     (void)closedir(list);
     return status;
+}
+
+static int remove_results(const struct result_folder *folder, const char *id, struct error *err) {
+    int status = remove_files(folder, id, err);
+    return status == 0 ? kept_nodes_remove(folder->path, err) : status;
 }
 
 static int write_document(const struct result_folder *folder, const cJSON *document,
@@ -159,7 +185,7 @@ int result_folder_take(const struct result_folder *folder, const char *id, const
         return 0;
     int status = read_holder(folder, &holder, err);
     if (status == 0 && !is_of(&holder, id, document))
-        status = remove_pictures(folder, holder.id, err);
+        status = remove_results(folder, holder.id, err);
     cJSON_Delete(holder.document);
     return status == 0 ? write_document(folder, document, err) : status;
 }

@@ -69,13 +69,10 @@ static void refuse_without_quantity(struct exchange *exchange) {
 
 /* Reads ?log=; false after a 422. */
 static bool read_axes(struct exchange *exchange, int *axes) {
-    static const char *const NAMES[] = {
-        [AXES_AUTOMATIC] = "auto", [AXES_LINEAR] = "none",      [AXES_X] = "x", [AXES_Y] = "y",
-        [AXES_XY] = "xy",          [AXES_ONE_PLUS] = "one-plus"};
     const char *asked = exchange_query(exchange, "log");
     struct fault_list faults = {0};
     for (int a = AXES_AUTOMATIC; asked != NULL && a < AXES_COUNT; a++)
-        if (strcmp(NAMES[a], asked) == 0) {
+        if (strcmp(AXES_NAMES[a], asked) == 0) {
             *axes = a;
             return true;
         }

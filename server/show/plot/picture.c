@@ -119,6 +119,25 @@ static int read_curves(const struct drawing *drawing, int64_t case_number,
     return drawing->source->results(drawing->source->context, &filter, study, err);
 }
 
+/* A density has one look: what belongs to lines is refused, where it asks for another. */
+static int check_density(const struct picture_request *request, struct error *err) {
+    const char *const asked[][2] = {
+        {"colour", request->colour},
+        {"dash", request->dash},
+        {"panel", request->panel},
+        {"model", request->model},
+        {"level", request->level},
+        {"log", request->axes != AXES_AUTOMATIC ? AXES_NAMES[request->axes] : NULL},
+        {"total", request->without_total ? "no" : NULL}};
+    for (size_t a = 0; a < sizeof asked / sizeof *asked; a++)
+        if (asked[a][1] != NULL)
+            return error_set(err, ERROR_INPUT,
+                             "%s %.40s belongs to lines, and %.60s is a density; allowed: case, "
+                             "where, series and width",
+                             asked[a][0], asked[a][1], request->quantity);
+    return 0;
+}
+
 /* Draws a density, which is of one case, or of one case what was asked for; *done: it is drawn. */
 static int draw_case(const struct drawing *drawing, bool *done, struct error *err) {
     struct study_result study = {0};
@@ -128,6 +147,8 @@ static int draw_case(const struct drawing *drawing, bool *done, struct error *er
     if (status == 0 && one != NULL)
         status =
             density_curve(one, drawing->request->quantity, drawing->request->series, &density, err);
+    if (status == 0 && density != NULL)
+        status = check_density(drawing->request, err);
     *done = density != NULL || status != 0 || drawing->request->case_number >= 0;
     if (status == 0 && density != NULL)
         status = plot_density(&drawing->table.study, one, density, drawing->plot.millimetres,

@@ -10,6 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+const char *const AXES_NAMES[AXES_COUNT] = {
+    [AXES_AUTOMATIC] = "auto", [AXES_LINEAR] = "none",      [AXES_X] = "x", [AXES_Y] = "y",
+    [AXES_XY] = "xy",          [AXES_ONE_PLUS] = "one-plus"};
+
 /* Theories beside the lines of a picture. */
 
 enum { NAMES_MOST = 16 };

@@ -10,6 +10,7 @@
  * y as log10(1 + y), which shows high peaks beside low parts and zero. */
 enum plot_axes { AXES_AUTOMATIC, AXES_LINEAR, AXES_X, AXES_Y, AXES_XY, AXES_ONE_PLUS, AXES_COUNT };
 #define AXES_WORDS "auto|none|x|y|xy|one-plus"
+extern const char *const AXES_NAMES[AXES_COUNT]; /* the same words */
 
 struct plot_request {
     struct lines_request lines;

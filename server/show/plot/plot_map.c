@@ -45,8 +45,9 @@ static void draw_summits(struct map_plot *plot) {
         fprintf(plot->pen.file,
                 "<circle class=\"summit\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" fill=\"%s\" "
                 "stroke=\"#222\" stroke-width=\".8\"/>\n",
-                frame_x(&plot->pen.frame, summit->x),
-                frame_y(&plot->pen.frame, profile ? summit->height : summit->y), radius, fill);
+                frame_x(&plot->pen.frame, plot->picture->x0 + summit->x),
+                frame_y(&plot->pen.frame, profile ? summit->height : plot->picture->y0 + summit->y),
+                radius, fill);
     }
     if (count < all)
         snprintf(text, sizeof text, "circles: the %zu highest of %zu summits", count, all);
@@ -89,8 +90,8 @@ size_t map_trace(const struct measured_map *map, size_t groups, double *x, doubl
     return count;
 }
 
-/* Draws the trace of a line of heights in the frame of the pen. */
-static int draw_trace(const struct plot_pen *pen, const struct measured_map *line,
+/* Draws the trace of a line of heights, whose first point is at x0, in the frame of the pen. */
+static int draw_trace(const struct plot_pen *pen, const struct measured_map *line, double x0,
                       struct error *err) {
     static const char STYLE[] = "class=\"curve\" stroke=\"#0072b2\" stroke-width=\"1.2\"";
     double *points = array_create(4 * GROUPS_MOST + 2, sizeof *points);
@@ -98,6 +99,8 @@ static int draw_trace(const struct plot_pen *pen, const struct measured_map *lin
         return error_memory(err, (4 * GROUPS_MOST + 2) * sizeof *points, "a trace");
     double *heights = points + 2 * GROUPS_MOST + 1;
     size_t count = map_trace(line, GROUPS_MOST, points, heights);
+    for (size_t n = 0; n < count; n++)
+        points[n] += x0;
     pen_line(pen, count, points, heights, STYLE);
     free(points);
     return 0;
@@ -110,10 +113,10 @@ static int draw_profile(struct map_plot *plot, struct error *err) {
     double range[2];
     range_of(picture->grid->nx, picture->z, range);
     double margin = 0.06 * (range[1] - range[0]);
-    frame_set(&pen->frame, (const double[]){0, picture->grid->lx},
+    frame_set(&pen->frame, (const double[]){picture->x0, picture->x0 + picture->grid->lx},
               (const double[]){range[0] - margin, range[1] + margin}, false);
     frame_draw(pen->file, &pen->frame, picture->x_label, picture->z_label);
-    return draw_trace(pen, &map, err);
+    return draw_trace(pen, &map, picture->x0, err);
 }
 
 /* --- a surface --- */
@@ -141,7 +144,7 @@ static int draw_row(const struct map_plot *plot, struct error *err) {
     struct plot_pen below = plot->pen;
     double range[2];
     size_t row = (size_t)fmod(rint(picture->trace / grid_dy(grid)), (double)grid->ny);
-    double y = frame_y(&plot->pen.frame, (double)row * grid_dy(grid));
+    double y = frame_y(&plot->pen.frame, picture->y0 + (double)row * grid_dy(grid));
     const struct grid line = {.nx = grid->nx, .ny = 1, .lx = grid->lx, .ly = 1};
     const struct measured_map map = {&line, picture->z + row * grid->nx, picture->boundary};
     fprintf(below.file,
@@ -153,7 +156,7 @@ static int draw_row(const struct map_plot *plot, struct error *err) {
     double margin = 0.06 * (range[1] - range[0]);
     below.frame.y = (struct plot_axis){.low = range[0] - margin, .high = range[1] + margin};
     frame_draw(below.file, &below.frame, picture->x_label, picture->z_label);
-    return draw_trace(&below, &map, err);
+    return draw_trace(&below, &map, picture->x0, err);
 }
 
 static int draw_surface(struct map_plot *plot, struct error *err) {
@@ -171,9 +174,9 @@ static int draw_surface(struct map_plot *plot, struct error *err) {
     const struct measured_map map = {grid, picture->z, picture->boundary};
     map_join_points(&map, step, values);
     cells.values = values;
-    cells.x[0] = -dx / 2; /* a point lies in the middle of its square */
+    cells.x[0] = picture->x0 - dx / 2; /* a point lies in the middle of its square */
     cells.x[1] = cells.x[0] + (double)(cells.nx * step) * dx;
-    cells.y[0] = -dy / 2;
+    cells.y[0] = picture->y0 - dy / 2;
     cells.y[1] = cells.y[0] + (double)(cells.ny * step) * dy;
     range_of(grid_points(grid), picture->z, range);
     const struct heat_scale scale = heat_scale_between(range[0], range[1], 10, HEAT_HEIGHT);
@@ -210,15 +213,29 @@ static int draw_as_it_is(const struct map_picture *picture, FILE *file, struct e
 
 /* --- units --- */
 
+/* Writes the unit in which values up to `most` of an SI unit are best read; returns what it stands
+ * for. Other units stay as they are. */
+static double readable(const char *unit, double most, char *out, size_t size) {
+    static const double HUNDREDTHS = 100; /* of areas: 0.9 nm^2 rather than 900 000 pm^2 */
+    char inverse[24];
+    if (strcmp(unit, "m") == 0 || strcmp(unit, "Pa") == 0)
+        return unit_readable(unit, most, out, size);
+    if (strcmp(unit, "m^2") == 0)
+        return unit_readable(unit, HUNDREDTHS * most, out, size);
+    if (strcmp(unit, "rad/m") != 0) {
+        snprintf(out, size, "%s", unit);
+        return 1;
+    }
+    double scale = unit_readable("1/m", most, inverse, sizeof inverse);
+    snprintf(out, size, "rad%s", inverse + 1); /* "/um" */
+    return scale;
+}
+
 /* Writes "x (nm)", for values up to `most` in that unit. Returns what is drawn as one. */
 static double label_with_unit(const char *label, const char *unit, double most,
                               char out[PLOT_LABEL_SIZE]) {
     char name[32] = "";
-    double scale = 1;
-    if (unit != NULL && (strcmp(unit, "m") == 0 || strcmp(unit, "Pa") == 0))
-        scale = unit_readable(unit, most, name, sizeof name);
-    else if (unit != NULL)
-        snprintf(name, sizeof name, "%s", unit);
+    double scale = unit != NULL ? readable(unit, most, name, sizeof name) : 1;
     snprintf(out, PLOT_LABEL_SIZE, *name != '\0' ? "%.100s (%s)" : "%.100s", label, name);
     return scale;
 }
@@ -226,10 +243,12 @@ static double label_with_unit(const char *label, const char *unit, double most,
 int plot_map(const struct map_picture *picture, FILE *file, struct error *err) {
     char x_label[PLOT_LABEL_SIZE], y_label[PLOT_LABEL_SIZE], z_label[PLOT_LABEL_SIZE];
     size_t points = grid_points(picture->grid);
-    double range[2], longer = fmax(picture->grid->lx, picture->grid->ly);
+    double range[2], longer = picture->grid->lx;
     struct map_picture own = *picture;
     struct grid grid = *picture->grid;
     range_of(points, picture->z, range);
+    if (!grid_is_profile(picture->grid))
+        longer = fmax(longer, picture->grid->ly);
     double xy = label_with_unit(picture->x_label, picture->xy_unit, longer, x_label);
     (void)label_with_unit(picture->y_label, picture->xy_unit, longer, y_label);
     double z = label_with_unit(picture->z_label, picture->z_unit,
@@ -243,6 +262,8 @@ int plot_map(const struct map_picture *picture, FILE *file, struct error *err) {
     grid.ly /= xy;
     own.grid = &grid;
     own.z = values;
+    own.x0 = picture->x0 / xy;
+    own.y0 = picture->y0 / xy;
     own.trace = picture->trace / xy;
     own.x_label = x_label;
     own.y_label = y_label;

@@ -8,10 +8,11 @@
 struct map_picture { /* borrows */
     const char *name, *subject;
     const char *x_label, *y_label, *z_label;
-    const char *xy_unit, *z_unit; /* "m" and "Pa" are drawn with the prefix that is read best, other
-                                     units as they are; NULL or "": none */
+    const char *xy_unit, *z_unit; /* "m", "m^2", "rad/m" and "Pa" are drawn with the prefix that is
+                                     read best, other units as they are; NULL or "": none */
     const char *note;             /* in the legend; NULL: none */
     const struct grid *grid;
+    double x0, y0;          /* of the first point */
     const double *z;        /* grid_points; NaN: a hole, of an open map */
     enum boundary boundary; /* periodic where nothing is said */
     bool unmarked;          /* no summits: the values may be those of anything */

@@ -162,6 +162,8 @@ static void several_maps_are_sent_as_a_form(void **state) {
     refused("format=json", FORM, form, 422, "several files");
     refused("together=true&name=a.csv", FORM, form, 422, "names of their own");
     refused("together=true&hold=true&format=study&fill=true", FORM, form, 422, "hold one map");
+    refused("together=true&hold=true&fill=true", FORM, form, 422,
+            "--hold goes with --format study");
     refused("together=true", "Content-Type: multipart/form-data\r\n", form, 422, "boundary");
     refused("together=true", "Content-Type: multipart/form-data; boundary=b1\r\n", form, 422,
             "without files by the boundary");

@@ -1,10 +1,12 @@
 /* Protects: no command overwrites the results of one study with those of another, unless it is
- * asked to; and then no picture of the older one stays beside them. */
+ * asked to; and then nothing of the older one stays beside them, and all that is somebody's own
+ * does. */
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include "tests/support/small_studies.h"
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #define PRESSED                                                                                    \
@@ -12,6 +14,11 @@
     "\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":4,\"length_ratio\":4,"                     \
     "\"points_per_wavelength\":8},\"contact\":{\"model\":\"halfspace\",\"levels\":[8],"            \
     "\"pressures\":{\"values\":[0.1]}}}"
+#define KEPT                                                                                       \
+    "{\"name\":\"kept\",\"kind\":\"contact\",\"seed\":1,\"realisations\":2,\"surface\":{"          \
+    "\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":4,\"length_ratio\":4,"                     \
+    "\"points_per_wavelength\":8},\"contact\":{\"model\":\"halfspace\",\"levels\":[8],"            \
+    "\"pressures\":{\"values\":[0.1]},\"keep\":{\"realisations\":[1]}}}"
 
 static int run(const char *name, const char *file, const char *store, const char *more) {
     return run_rugo(name, (const char *[]){"run", file, "--db", store, "--out", "results",
@@ -61,11 +68,67 @@ static void what_is_replaced_goes(void **state) {
     assert_true(contains("back.err", "\"pressed\""));
 }
 
+static const char *const EXPORTED[] = {"README.txt", "provenance.json", "scalars.csv", "table.csv",
+                                       "report.txt", "report.json",     "report.svg"};
+enum { EXPORTED_COUNT = sizeof EXPORTED / sizeof *EXPORTED };
+
+static bool is_there(const char *folder, const char *name) {
+    char path[200];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return access(path, F_OK) == 0;
+}
+
+/* Nodes under the new study would be taken for its own, and so would tables and the report. */
+static void nodes_and_exports_go_with_their_study(void **state) {
+    (void)state;
+    spit("kept.json", KEPT);
+    assert_int_equal(run_rugo("kept", (const char *[]){"run", "kept.json", "--db", "a.db", "--out",
+                                                       "kout", "--workers", "1", NULL}),
+                     0);
+    assert_int_equal(run_rugo("export", (const char *[]){"export", "--db", "a.db", "kept", "--out",
+                                                         "kout", NULL}),
+                     0);
+    for (size_t n = 0; n < EXPORTED_COUNT; n++)
+        assert_true(is_there("kout", EXPORTED[n]));
+    assert_true(is_there("kout", "nodes/case-0/realisation-1/halfspace/step-1.vtu"));
+    assert_int_equal(run_rugo("over", (const char *[]){"curves", "--db", "a.db", "one", "--out",
+                                                       "kout", "--replace", NULL}),
+                     0);
+    for (size_t n = 0; n < EXPORTED_COUNT; n++)
+        assert_false(is_there("kout", EXPORTED[n]));
+    assert_false(is_there("kout", "nodes"));
+    assert_false(is_there("kout", "contact_area.svg"));
+    assert_true(is_there("kout", "psd.svg"));
+}
+
+static void what_is_somebodys_own_stays(void **state) {
+    (void)state;
+    assert_int_equal(run_rugo("kept", (const char *[]){"run", "kept.json", "--db", "a.db", "--out",
+                                                       "own", "--workers", "1", NULL}),
+                     0);
+    spit("own/README.txt", "my notes\n");
+    spit("own/table.csv", "a,b\n1,2\n");
+    spit("own/nodes/case-0/realisation-1/halfspace/notes.txt", "mine\n");
+    assert_int_equal(mkdir("own/nodes/case-of-mine", 0700), 0);
+    spit("own/nodes/case-of-mine/nodes.csv", "x\n");
+    assert_int_equal(run_rugo("over", (const char *[]){"curves", "--db", "a.db", "one", "--out",
+                                                       "own", "--replace", NULL}),
+                     0);
+    assert_true(is_there("own", "README.txt"));
+    assert_true(is_there("own", "table.csv"));
+    assert_true(is_there("own", "nodes/case-0/realisation-1/halfspace/notes.txt"));
+    assert_true(is_there("own", "nodes/case-of-mine/nodes.csv"));
+    assert_false(is_there("own", "nodes/case-0/realisation-1/halfspace/nodes.csv"));
+    assert_false(is_there("own", "nodes/case-0/realisation-1/halfspace/step-1.vtu"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(another_study_is_refused),
         cmocka_unit_test(the_same_study_goes_there_again),
         cmocka_unit_test(what_is_replaced_goes),
+        cmocka_unit_test(nodes_and_exports_go_with_their_study),
+        cmocka_unit_test(what_is_somebodys_own_stays),
     };
     return cmocka_run_group_tests(tests, start, NULL);
 }

@@ -591,6 +591,24 @@ static void a_comma_in_the_environment_changes_nothing(void **state) {
         0);
 }
 
+/* Pictures of the autocorrelation and the spectrum have units, also of logarithms, as maps have;
+ * maps without units have none. */
+static void planes_have_units(void **state) {
+    (void)state;
+    assert_int_equal(run_shell("$RUGO generate -o plane.csv one.json >/dev/null && $RUGO "
+                               "characterise plane.csv --boundary open --dx 0.1um --z-unit nm "
+                               "--acf acf.svg --psd psd.svg >/dev/null && $RUGO characterise "
+                               "plane.csv --boundary open --acf bare.svg >/dev/null"),
+                     0);
+    assert_true(contains("acf.svg", ">tx (\xc2\xb5m)<"));
+    assert_true(contains("acf.svg", ">R (nm<"));
+    assert_true(contains("psd.svg", ">kx (rad/\xc2\xb5m)<"));
+    assert_true(contains("psd.svg", ">ky (rad/\xc2\xb5m)<"));
+    assert_true(contains("psd.svg", ">log10 C (nm<"));
+    assert_true(contains("bare.svg", ">tx<"));
+    assert_true(contains("bare.svg", ">R<"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_surface_goes_out_and_in),
@@ -606,6 +624,7 @@ int main(void) {
         cmocka_unit_test(what_instruments_leave_is_removed),
         cmocka_unit_test(columns_are_a_trace),
         cmocka_unit_test(groups_are_printed),
+        cmocka_unit_test(planes_have_units),
         cmocka_unit_test(a_measured_map_is_pressed_in_units),
         cmocka_unit_test(threads_give_the_same_digits),
         cmocka_unit_test(steps_and_ranges_are_written),

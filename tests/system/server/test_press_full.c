@@ -158,6 +158,12 @@ static void what_has_no_meaning_is_refused(void **state) {
         {"--model layered --areas current", "--areas current belongs to --model full"},
         {"--model halfspace --gap-direction normal", "--gap-direction normal belongs to --model"},
         {"--model full --areas current --kinematics small", "which --kinematics small leaves"},
+        {"--kinematics small", "--kinematics small belongs to --model full"},
+        {"--model layered --kinematics neo_hooke",
+         "--kinematics neo_hooke belongs to --model full"},
+        {"--model layered --transition-depth 4", "--transition-depth 4 belongs to --model full"},
+        {"--gap-weighting dual", "--gap-weighting dual belongs to models with meshes"},
+        {"--direction y", "--direction y is that of the tangential load, which --friction gives"},
         {"--model halfspace,full --mesh m.vtu", "--mesh: the model halfspace, the first, has no"},
         {"--model full --limit 0.001", "no map of this shape with 16 points along a side is small"},
         {"--model full --mesh no/such.vtu", "cannot write no/such.vtu"}};

@@ -207,7 +207,12 @@ static void csv_separators(void **state) {
         assert_true(map.z[0] == 1 && map.z[2] == 3 && map.z[5] == 6);
         height_map_clear(&map);
     }
-    struct height_map map = parse(HEIGHT_MAP_CSV, "1\n2\n3\n", 6, 0);
+    static const char MARKED[] = "\xef\xbb\xbf" /* as Excel saves it */
+                                 "1,2\n3,4\n";
+    struct height_map map = parse(HEIGHT_MAP_CSV, MARKED, sizeof MARKED - 1, 1);
+    assert_true(map.grid.nx == 2 && map.grid.ny == 2 && map.z[0] == 1 && map.z[3] == 4);
+    height_map_clear(&map);
+    map = parse(HEIGHT_MAP_CSV, "1\n2\n3\n", 6, 0);
     assert_true(map.grid.nx == 3 && map.grid.ny == 1);
     height_map_clear(&map);
 }
@@ -234,6 +239,12 @@ static void refused_text(void **state) {
         {HEIGHT_MAP_XYZ, "0 0 1\n1 0 1\n0 1 1\n", "regular grid"},
         {HEIGHT_MAP_XYZ, "0 0 1\n1 0 1\n0 1 1\n2 1 1\n", "point 4"},
         {HEIGHT_MAP_XYZ, "1 0 1\n0 0 1\n", "x must rise"},
+        {HEIGHT_MAP_CSV, "\xef\xbb\xbfx,2\n", "row 1, column 1 (line 1): 'x' is not a number"},
+        {HEIGHT_MAP_CSV,
+         "\xff\xfe"
+         "1",
+         "the text is in UTF-16; allowed: UTF-8"},
+        {HEIGHT_MAP_XYZ, "\xfe\xff", "the text is in UTF-16"},
     };
     for (size_t a = 0; a < sizeof cases / sizeof *cases; a++)
         refused(cases[a].format, cases[a].text, strlen(cases[a].text), cases[a].words);

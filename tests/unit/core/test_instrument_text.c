@@ -43,6 +43,15 @@ static void check_layout(const struct layout *layout) {
     height_map_clear(&map);
 }
 
+/* The same behind the mark of UTF-8 that Excel and Notepad write. */
+static void check_marked(const struct layout *layout) {
+    char text[1024];
+    struct layout marked = *layout;
+    snprintf(text, sizeof text, "\xef\xbb\xbf%s", layout->text);
+    marked.text = text;
+    check_layout(&marked);
+}
+
 static void matrices(void **state) {
     (void)state;
     const struct layout layouts[] = {
@@ -195,8 +204,11 @@ static void grids(void **state) {
          2.5, 5, 1, "", ""},
         {"zygo.xyz", ZYGO, 1e-6, 1e-6, 1e-6, "m", "m"},
     };
-    for (size_t l = 0; l < sizeof layouts / sizeof layouts[0]; l++)
+    for (size_t l = 0; l < sizeof layouts / sizeof layouts[0]; l++) {
         check_layout(&layouts[l]);
+        check_marked(&layouts[l]);
+    }
+    check_marked(&(struct layout){"plain.csv", "1.5,-2,nan\n4,5,6.25\n", 1, 1, 1, "", ""});
 }
 
 struct refusal {

@@ -33,7 +33,11 @@ static void malformed_texts_are_told_apart(void **state) {
         {"{\"a\":1,}", "a member name was expected"},
         {"{\"a\":1 \"b\":2}", "a ',' or '}' was expected"},
         {"{\"a\":1}x", "text behind the end"},
-        {"\xef\xbb\xbf{}", "something that is no JSON value"},
+        {"\xef\xbb\xbf\xef\xbb\xbf{}", "something that is no JSON value"},
+        {"\xef\xbb\xbf", "line 1, column 1: the text ends where a value was expected"},
+        {"\xef\xbb\xbf[\n x]", "line 2, column 2: something that is no JSON value"},
+        {"\xff\xfe[", "the text is in UTF-16; JSON is in UTF-8"},
+        {"\xfe\xff", "the text is in UTF-16"},
         {"[\"\x01\"]", "a control character"},
         {"[\"\\q\"]", "an unknown escape"},
         {"[\"\\u00g0\"]", "a malformed \\u escape"},
@@ -72,7 +76,8 @@ static void well_formed_texts_pass(void **state) {
                                        "[\"\xf0\x9f\x98\x80\"]",
                                        "[9007199254740992]",
                                        "{\"a\":{\"a\":[1,2,{\"b\":true}]}}",
-                                       "1e308"};
+                                       "1e308",
+                                       "\xef\xbb\xbf{\"a\":1}"}; /* as Notepad saves it */
     for (size_t g = 0; g < sizeof GOOD / sizeof *GOOD; g++) {
         cJSON *value = NULL;
         assert_int_equal(json_parse(GOOD[g], strlen(GOOD[g]), NULL, &value, NULL), 0);

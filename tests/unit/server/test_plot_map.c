@@ -261,10 +261,58 @@ static void units_are_readable(void **state) {
     free(z);
 }
 
+/* A plane of wave vectors or lags has 0 in its middle, and units of their own; those of a profile
+ * are of its length alone. */
+static void planes_have_their_middle(void **state) {
+    (void)state;
+    const struct {
+        struct grid grid;
+        const char *xy_unit, *z_unit, *x_label, *z_label;
+    } planes[] = {{{33, 33, 33e6, 33e6}, "rad/m", "m^2", ">x (rad/\xc2\xb5m)<", ">z (nm<"},
+                  {{33, 1, 33e-6, 1}, "m", "V^2", ">x (\xc2\xb5m)<", ">z (V<"}};
+    for (size_t p = 0; p < sizeof planes / sizeof *planes; p++) {
+        const struct grid *grid = &planes[p].grid;
+        double *z = waves_of(grid, 2);
+        for (size_t n = 0; n < grid_points(grid); n++)
+            z[n] *= 0.3e-18;
+        const struct map_picture picture = {.name = "plane",
+                                            .subject = "",
+                                            .x_label = "x",
+                                            .y_label = "y",
+                                            .z_label = "z",
+                                            .xy_unit = planes[p].xy_unit,
+                                            .z_unit = planes[p].z_unit,
+                                            .grid = grid,
+                                            .x0 = -16 * grid_dx(grid),
+                                            .y0 = -16 * grid_dy(grid),
+                                            .z = z,
+                                            .boundary = BOUNDARY_OPEN,
+                                            .unmarked = true};
+        char *text = NULL;
+        size_t size = 0;
+        struct error err = {0};
+        FILE *file = open_memstream(&text, &size);
+        assert_non_null(file);
+        assert_int_equal(plot_map(&picture, file, &err), 0);
+        assert_int_equal(fclose(file), 0);
+        const int axes = grid_is_profile(grid) ? 1 : 2;
+        assert_int_equal(count_of(text, planes[p].x_label), 1);
+        assert_int_equal(count_of(text, planes[p].z_label), 1);
+        assert_int_equal(count_of(text, ">\xe2\x88\x92" /* minus */
+                                        "10</text>"),
+                         axes);
+        assert_int_equal(count_of(text, ">10</text>"), axes);
+        assert_int_equal(count_of(text, ">20</text>"), 0);
+        free(text);
+        free(z);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_trace_has_its_peaks),
         cmocka_unit_test(units_are_readable),
+        cmocka_unit_test(planes_have_their_middle),
         cmocka_unit_test(a_row_is_drawn_below),
         cmocka_unit_test(a_surface_has_its_summits),
         cmocka_unit_test(extremes_of_long_traces_are_seen),

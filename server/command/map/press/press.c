@@ -705,6 +705,7 @@ static int order_models(struct press_order *order, struct error *err) {
                                  .normal_gaps = options->normal_gaps != 0,
                                  .leaks = options->leak};
     if (press_face_check(order->blocks, order->model_count, err) != 0 ||
+        press_options_check(order->blocks, order->model_count, err) != 0 ||
         order_friction(order, err) != 0)
         return err->code;
     if (order->loads.resistivity > 0 && options->coating != NULL)
