@@ -101,7 +101,7 @@ static void owners_take_turns_and_keep_their_own(void **state) {
             check_answer(OTHERS[o], CHANGES[c].method, anna, CHANGES[c].rest, 403,
                          "is of anna, who may change it");
         check_answer("carl-token-00000", CHANGES[c].method, anna, CHANGES[c].rest, 403,
-                     "role does not allow");
+                     "role, read, does not allow this");
     }
     check_answer("anna-token-00000", "POST", anna, "/extend", 200, "\"queued\":2");
     check_answer("anna-token-00000", "DELETE", anna, "", 200, "\"state\":\"cancelled\"");
