@@ -27,7 +27,7 @@ static void each_swept_value_is_a_column(void **state) {
     built_parameter(&study.cases[0], "/a/bc", NULL, 1); /* no member of b */
     check_columns(&study, (const char *[]){"surface/hurst", "counter/hurst", "b", NULL});
     study_result_clear(&study);
-    study = make("null", 0);
+    study = make("null", 1);
     check_columns(&study, (const char *[]){NULL});
     study_result_clear(&study);
 }
