@@ -174,10 +174,12 @@ static void highest_nodes_are_equally_high(void **state) {
     for (size_t cut = 0; cut < sizeof CUT / sizeof *CUT; cut++) {
         struct scene scene;
         scene_open(&scene, grid, DEEP, 1e-9);
-        for (size_t i = 0; i < grid_points(&grid); i++)
-            scene.z[i] = fmin(0.01 * (cos(2 * M_PI * ((double)(i % 32) + 0.5) / 32) +
-                                      cos(2 * M_PI * ((double)(i / 32) + 0.5) / 32)),
+        for (size_t i = 0; i < grid_points(&grid); i++) {
+            const size_t row = i / grid.nx, column = i % grid.nx;
+            scene.z[i] = fmin(0.01 * (cos(2 * M_PI * ((double)column + 0.5) / (double)grid.nx) +
+                                      cos(2 * M_PI * ((double)row + 0.5) / (double)grid.ny)),
                               CUT[cut]);
+        }
         scene_harden(&scene, hardness);
         for (size_t l = 0; l < sizeof LOADS / sizeof *LOADS; l++) {
             scene_begin(&scene);
