@@ -9,6 +9,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Returns the picture; the caller frees. */
+static char *draw_picture(const struct map_picture *picture) {
+    char *text = NULL;
+    size_t size = 0;
+    struct error err = {0};
+    FILE *file = open_memstream(&text, &size);
+    assert_non_null(file);
+    assert_int_equal(plot_map(picture, file, &err), 0);
+    assert_int_equal(fclose(file), 0);
+    assert_null(strstr(text, "nan"));
+    assert_non_null(strstr(text, "</svg>"));
+    return text;
+}
+
 static char *draw_map(const struct grid *grid, const double *z, enum boundary boundary) {
     const struct map_picture picture = {.name = "a & b",
                                         .subject = "case 1",
@@ -18,16 +32,7 @@ static char *draw_map(const struct grid *grid, const double *z, enum boundary bo
                                         .grid = grid,
                                         .z = z,
                                         .boundary = boundary};
-    char *text = NULL;
-    size_t size = 0;
-    struct error err = {0};
-    FILE *file = open_memstream(&text, &size);
-    assert_non_null(file);
-    assert_int_equal(plot_map(&picture, file, &err), 0);
-    assert_int_equal(fclose(file), 0);
-    assert_null(strstr(text, "nan"));
-    assert_non_null(strstr(text, "</svg>"));
-    return text;
+    return draw_picture(&picture);
 }
 
 static char *draw(const struct grid *grid, const double *z) {
@@ -288,13 +293,7 @@ static void planes_have_their_middle(void **state) {
                                             .z = z,
                                             .boundary = BOUNDARY_OPEN,
                                             .unmarked = true};
-        char *text = NULL;
-        size_t size = 0;
-        struct error err = {0};
-        FILE *file = open_memstream(&text, &size);
-        assert_non_null(file);
-        assert_int_equal(plot_map(&picture, file, &err), 0);
-        assert_int_equal(fclose(file), 0);
+        char *text = draw_picture(&picture);
         const int axes = grid_is_profile(grid) ? 1 : 2;
         assert_int_equal(count_of(text, planes[p].x_label), 1);
         assert_int_equal(count_of(text, planes[p].z_label), 1);
