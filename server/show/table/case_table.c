@@ -521,19 +521,14 @@ static struct table_value beside(const struct table_value *value, int part) {
     return out;
 }
 
-/* Leaves of a column what stands beside its values. ERROR_INPUT where nothing does. */
+/* Leaves of a column what stands beside its values. Nothing may be known yet: small studies have no
+ * error of some sources. */
 static int take_part(struct case_table *table, struct table_column *column,
                      const struct table_wish *wish, struct error *err) {
     int part = wish->part;
-    bool any = false;
     char name[TABLE_NAME_SIZE];
-    for (size_t r = 0; r < table->row_count; r++) {
+    for (size_t r = 0; r < table->row_count; r++)
         column->values[r] = beside(&column->values[r], part);
-        any = any || !isnan(column->values[r].value);
-    }
-    if (!any)
-        return error_set(err, ERROR_INPUT, "%s: no case has %s.%s", wish->asked_as, column->name,
-                         part_name(part));
     snprintf(name, sizeof name, "%.160s.%s", column->name, part_name(part));
     column->name = result_text(&table->room, name);
     column->physical = NULL;
