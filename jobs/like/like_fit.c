@@ -113,7 +113,6 @@ static int refuse_grooves(const struct map_groove *first, const char *unit, stru
 
 /* Takes the grooves out of the heights that are fitted. Of several maps none may have any. */
 static int take_grooves(struct fit *fit, const cJSON *surface, struct error *err) {
-    const size_t points = grid_points(fit->map.grid);
     const bool refused =
         fit->count > 1 || cJSON_GetObjectItemCaseSensitive(surface, "grooves") != NULL;
     struct map_grooves *found = &fit->grooves.found;
@@ -130,13 +129,10 @@ static int take_grooves(struct fit *fit, const cJSON *surface, struct error *err
     }
     if (found->families == 0)
         return 0;
-    fit->rest = array_create(points, sizeof *fit->rest);
-    if (fit->rest == NULL)
-        return error_memory(err, points * sizeof *fit->rest, "a map without its grooves");
-    memcpy(fit->rest, fit->map.z, points * sizeof *fit->rest);
-    map_grooves_take(found, fit->map.grid, fit->rest);
-    fit->map.z = fit->rest;
-    return 0;
+    int status = map_grooves_rest(&fit->rest, found, fit->map.grid, fit->map.z, err);
+    if (status == 0)
+        fit->map.z = fit->rest;
+    return status;
 }
 
 /* --- parameters, each only where the study has none --- */

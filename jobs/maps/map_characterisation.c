@@ -231,19 +231,17 @@ static int measure_spectra(struct map_characterisation *out, const struct measur
 static int measure_rest(struct map_characterisation *out, const struct measured_map *map,
                         const struct low_modes *modes, const struct spectrum_fit_request *trusted,
                         enum map_extent extent, struct error *err) {
-    const size_t points = grid_points(map->grid);
     struct map_directions directions = {.p_value = 1};
     struct map_spectrum *spectrum = NULL;
     struct roughness roughness;
-    double *z = array_create(points, sizeof *z);
-    if (z == NULL)
-        return error_memory(err, points * sizeof *z, "a map without its grooves");
+    double *z;
+    int status = map_grooves_rest(&z, &out->grooves, map->grid, map->z, err);
+    if (status != 0)
+        return status;
     const struct measured_map rest = {map->grid, z, map->boundary};
-    memcpy(z, map->z, points * sizeof *z);
-    map_grooves_take(&out->grooves, map->grid, z);
     open_roughness_measure(&rest, &roughness);
     out->rest_height = roughness.rms_height;
-    int status = map_spectrum_create(&spectrum, &rest, err);
+    status = map_spectrum_create(&spectrum, &rest, err);
     if (status == 0 && !grid_is_profile(map->grid))
         status = map_directions_find(&directions, &rest, spectrum, err);
     if (status == 0)

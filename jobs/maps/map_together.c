@@ -36,13 +36,10 @@ static int measure(struct together_map *one, const struct measured_map *map, str
 
 static int measure_rest(struct together_map *one, const struct measured_map *map,
                         struct error *err) {
-    const size_t points = grid_points(map->grid);
-    double *z = array_create(points, sizeof *z);
-    if (z == NULL)
-        return error_memory(err, points * sizeof *z, "a map without its grooves");
-    memcpy(z, map->z, points * sizeof *z);
-    map_grooves_take(&one->grooves, map->grid, z);
-    int status = measure(one, &(struct measured_map){map->grid, z, map->boundary}, err);
+    double *z;
+    int status = map_grooves_rest(&z, &one->grooves, map->grid, map->z, err);
+    if (status == 0)
+        status = measure(one, &(struct measured_map){map->grid, z, map->boundary}, err);
     free(z);
     return status;
 }

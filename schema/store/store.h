@@ -125,9 +125,9 @@ int store_retry(struct store *store, const char *id, uint64_t *count, struct err
 
 /* Queues the realisations that a study lacks to this number for each case, and requeues what failed
  * or was cancelled: *jobs in all. Nothing is done, and *jobs is 0, with the number that it has
- * (store_retry requeues). ERROR_STATE for fewer realisations
- * than it has, or for results of another version of the program (study.h). ERROR_INPUT for a study
- * that asks for an error, or above STUDY_REALISATIONS_MOST. */
+ * (store_retry requeues). ERROR_STATE for fewer realisations than it has, or for results of another
+ * version of the program (study.h). ERROR_INPUT for a study that asks for an error, or above
+ * STUDY_REALISATIONS_MOST. */
 int store_extend(struct store *store, const char *id, uint64_t realisations, uint64_t edition,
                  uint64_t *jobs, struct error *err);
 

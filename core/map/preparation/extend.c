@@ -371,17 +371,14 @@ int extension_grooves(struct map_grooves *out, const struct height_map *map, str
 /* Takes the grooves out of the map, to go on by themselves: no law of a random face has them. */
 static int take_grooves(struct extension *e, struct error *err) {
     const struct grid *grid = &e->map->grid;
-    const size_t points = grid_points(grid);
     int status = extension_grooves(&e->grooves, e->map, err);
     if (status != 0 || e->grooves.families == 0)
         return status;
-    e->rest = (struct height_map){.grid = *grid, .z = array_create(points, sizeof(double))};
-    if (e->rest.z == NULL)
-        return error_memory(err, points * sizeof(double), "a map without its grooves");
-    memcpy(e->rest.z, e->map->z, points * sizeof(double));
-    map_grooves_take(&e->grooves, grid, e->rest.z);
-    e->map = &e->rest;
-    return 0;
+    e->rest = (struct height_map){.grid = *grid};
+    status = map_grooves_rest(&e->rest.z, &e->grooves, grid, e->map->z, err);
+    if (status == 0)
+        e->map = &e->rest;
+    return status;
 }
 
 static int check(const struct extension *e, struct error *err) {

@@ -319,3 +319,14 @@ void map_grooves_take(const struct map_grooves *grooves, const struct grid *grid
     for (size_t f = 0; f < grooves->families; f++)
         family_take(&grooves->family[f], grid, z);
 }
+
+int map_grooves_rest(double **rest, const struct map_grooves *grooves, const struct grid *grid,
+                     const double *z, struct error *err) {
+    const size_t points = grid_points(grid);
+    *rest = array_create(points, sizeof **rest);
+    if (*rest == NULL)
+        return error_memory(err, points * sizeof **rest, "a map without its grooves");
+    memcpy(*rest, z, points * sizeof **rest);
+    map_grooves_take(grooves, grid, *rest);
+    return 0;
+}

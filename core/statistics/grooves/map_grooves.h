@@ -32,5 +32,8 @@ struct map_grooves {
 int map_grooves_find(struct map_grooves *out, const struct measured_map *map, struct error *err);
 /* Takes the mean profiles of all families out of heights on the grid of the map. */
 void map_grooves_take(const struct map_grooves *grooves, const struct grid *grid, double *z);
+/* Makes a copy of the heights without them, which the caller frees. ERROR_MEMORY. */
+int map_grooves_rest(double **rest, const struct map_grooves *grooves, const struct grid *grid,
+                     const double *z, struct error *err);
 
 #endif
