@@ -1,4 +1,6 @@
 #include "core/file/text_mark.h"
+#include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* The code point U+FEFF (RFC 3629, RFC 2781). */
@@ -18,4 +20,51 @@ bool text_mark_is_utf16(const char *text, size_t size, bool *low_first) {
     if (low_first != NULL)
         *low_first = low;
     return low || begins(text, size, UTF16_HIGH);
+}
+
+static size_t put_utf8(char *to, uint32_t code) {
+    if (code < 0x80) {
+        to[0] = (char)code;
+        return 1;
+    }
+    if (code < 0x800) {
+        to[0] = (char)(0xc0 | code >> 6);
+        to[1] = (char)(0x80 | (code & 0x3f));
+        return 2;
+    }
+    to[0] = (char)(0xe0 | code >> 12);
+    to[1] = (char)(0x80 | (code >> 6 & 0x3f));
+    to[2] = (char)(0x80 | (code & 0x3f));
+    return 3;
+}
+
+static int decode_utf16(struct unmarked_text *out, const char *data, size_t size, bool low_first,
+                        struct error *err) {
+    size_t used = 0, room = size / 2 * 3 + 1;
+    char *text = malloc(room);
+    if (text == NULL)
+        return error_memory(err, room, "a text in UTF-16");
+    for (size_t at = strlen(UTF16_LOW); at + 1 < size; at += 2) {
+        unsigned char first = (unsigned char)data[at], second = (unsigned char)data[at + 1];
+        uint32_t code =
+            low_first ? (uint32_t)(second << 8 | first) : (uint32_t)(first << 8 | second);
+        used += put_utf8(text + used, code >= 0xd800 && code < 0xe000 ? '?' : code);
+    }
+    text[used] = '\0';
+    *out = (struct unmarked_text){text, used, text};
+    return 0;
+}
+
+int text_unmark(struct unmarked_text *out, const char *data, size_t size, struct error *err) {
+    bool low_first;
+    if (text_mark_is_utf16(data, size, &low_first))
+        return decode_utf16(out, data, size, low_first, err);
+    const size_t mark = text_mark_length(data, size);
+    *out = (struct unmarked_text){data + mark, size - mark, NULL};
+    return 0;
+}
+
+void unmarked_text_clear(struct unmarked_text *text) {
+    free(text->owned);
+    *text = (struct unmarked_text){0};
 }

@@ -2,6 +2,7 @@
 #ifndef RUGO_CORE_TEXT_MARK_H
 #define RUGO_CORE_TEXT_MARK_H
 
+#include "core/error.h"
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -11,5 +12,18 @@ size_t text_mark_length(const char *text, size_t size);
 /* Returns whether a text begins with a mark of UTF-16. *low_first: the low byte of each pair comes
  * first; may be NULL. */
 bool text_mark_is_utf16(const char *text, size_t size, bool *low_first);
+
+/* Bytes without the mark that they began with. */
+struct unmarked_text {
+    const char *text; /* borrowed from the bytes, or owned; text[size] is 0 where data[size] is */
+    size_t size;
+    char *owned; /* NULL where the text is the bytes themselves */
+};
+
+/* Removes the mark of UTF-8, and converts UTF-16 with a mark to UTF-8; what has no mark stays as it
+ * is. Surrogates, which no file of numbers needs, become '?'. ERROR_MEMORY; *out is then untouched.
+ */
+int text_unmark(struct unmarked_text *out, const char *data, size_t size, struct error *err);
+void unmarked_text_clear(struct unmarked_text *text);
 
 #endif

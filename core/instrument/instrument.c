@@ -54,7 +54,8 @@ static bool is_known_archive(const char *data, size_t size) {
 }
 
 bool instrument_takes(const char *name, const char *data, size_t size) {
-    if (size == 0 || memchr(data, 0, size) == NULL || data[0] == '\x93')
+    if (size == 0 || memchr(data, 0, size) == NULL || data[0] == '\x93' ||
+        text_mark_is_utf16(data, size, NULL))
         return true;
     const struct instrument_format *owner = owner_of(data, size);
     if (owner != NULL)
@@ -126,12 +127,9 @@ static void set_spacing(struct height_map *map, double dx) {
     map->grid.ly = dx * (double)map->grid.ny;
 }
 
-int instrument_read(struct height_map *out, const char *name, const char *data, size_t size,
-                    double dx, const struct instrument_request *request, const char **format,
-                    struct error *err) {
-    const size_t mark = text_mark_length(data, size); /* texts of all formats may have one */
-    data += mark;
-    size -= mark;
+static int read_unmarked(struct height_map *out, const char *name, const char *data, size_t size,
+                         double dx, const struct instrument_request *request, const char **format,
+                         struct error *err) {
     const struct instrument_format *foreign = format_of(name, data, size);
     enum height_map_format own = height_map_format_of(name);
     bool guessed = own == HEIGHT_MAP_FORMATS && (size == 0 || data[0] != '\x93');
@@ -155,4 +153,15 @@ int instrument_read(struct height_map *out, const char *name, const char *data, 
     if (format != NULL)
         *format = foreign != NULL ? foreign->name : HEIGHT_MAP_NAMES[own];
     return 0;
+}
+
+int instrument_read(struct height_map *out, const char *name, const char *data, size_t size,
+                    double dx, const struct instrument_request *request, const char **format,
+                    struct error *err) {
+    struct unmarked_text file = {0}; /* texts of all formats may have a mark */
+    int status = text_unmark(&file, data, size, err);
+    if (status == 0)
+        status = read_unmarked(out, name, file.text, file.size, dx, request, format, err);
+    unmarked_text_clear(&file);
+    return status;
 }

@@ -99,16 +99,13 @@ typedef int grid_reader(struct height_map *map, struct word_reader *reader, stru
 static int read_grid(struct height_map *out, const char *data, size_t size,
                      const struct instrument_request *request, grid_reader *read,
                      struct error *err) {
-    struct text_file file = {0};
     struct height_map map = {0};
     if (layer_check_only(request->layer, err) != 0)
         return ERROR_INPUT;
-    int status = text_file_open(&file, data, size, err);
-    if (status == 0) {
-        struct word_reader reader = word_reader_of(file.text, file.size);
+    struct word_reader reader = word_reader_of(data, size);
+    int status = text_check(data, size, err);
+    if (status == 0)
         status = read(&map, &reader, err);
-    }
-    text_file_close(&file);
     if (status == 0)
         *out = map;
     else

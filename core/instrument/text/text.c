@@ -1,6 +1,5 @@
 /* Text exports with headers: matrices of heights and lists of points, as Gwyddion, SPIP, Keyence's
  * programs and many others write them (README.md). */
-#include "core/file/text_mark.h"
 #include "core/instrument/formats.h"
 #include "core/instrument/layers.h"
 #include "core/instrument/point_grid.h"
@@ -276,10 +275,6 @@ static int text_trace_map(struct height_map *map, const struct text_table *table
     return text_scale_heights(map, &block->header, err);
 }
 
-static bool owns(const char *data, size_t size) {
-    return text_mark_is_utf16(data, size, NULL) || text_blocks_own(data, size);
-}
-
 static int choose_block(const struct text_blocks *blocks, const char *asked, size_t *out,
                         struct error *err) {
     struct layer *layers = array_create(blocks->count, sizeof *layers);
@@ -354,20 +349,17 @@ static int read_block(struct height_map *map, const struct text_block *block, co
 
 static int read_text(struct height_map *out, const char *data, size_t size, bool points,
                      const struct instrument_request *request, struct error *err) {
-    struct text_file file = {0};
     struct text_blocks blocks = {0};
     struct height_map map = {0};
     size_t chosen;
-    int status = text_file_open(&file, data, size, err);
+    int status = text_check(data, size, err);
     if (status == 0)
-        status = text_blocks_find(&blocks, &file, err);
+        status = text_blocks_find(&blocks, data, size, err);
     if (status == 0)
         status = choose_block(&blocks, request->layer, &chosen, err);
     if (status == 0)
-        status =
-            read_block(&map, &blocks.blocks[chosen], file.text + file.size, points, request, err);
+        status = read_block(&map, &blocks.blocks[chosen], data + size, points, request, err);
     text_blocks_clear(&blocks);
-    text_file_close(&file);
     if (status == 0)
         *out = map;
     else
@@ -385,7 +377,7 @@ static int read_points(struct height_map *out, const char *data, size_t size,
                        const struct instrument_request *request, struct error *err) {
     struct error why;
     const bool list = request->columns == COLUMNS_AUTO || request->columns == COLUMNS_XYZ;
-    if (request->layer == NULL && list && !owns(data, size)) {
+    if (request->layer == NULL && list && !text_blocks_own(data, size)) {
         int status = height_map_parse(out, HEIGHT_MAP_XYZ, data, size, 0, &why);
         if (status == ERROR_MEMORY)
             return error_set(err, ERROR_MEMORY, "%s", why.text);
@@ -395,5 +387,5 @@ static int read_points(struct height_map *out, const char *data, size_t size,
     return read_text(out, data, size, true, request, err);
 }
 
-const struct instrument_format INSTRUMENT_TEXT = {"text", "", owns, read_export};
+const struct instrument_format INSTRUMENT_TEXT = {"text", "", text_blocks_own, read_export};
 const struct instrument_format INSTRUMENT_POINTS = {"xyz", "xyz", NULL, read_points};

@@ -466,11 +466,11 @@ bool text_goes_on(struct text_line line, char separator) {
            text_value_of(&field, &dialect, &number) != TEXT_OTHER;
 }
 
-int text_blocks_find(struct text_blocks *out, const struct text_file *file, struct error *err) {
+int text_blocks_find(struct text_blocks *out, const char *text, size_t size, struct error *err) {
     struct text_blocks blocks = {0};
     struct text_block block = {0};
     struct text_line line = {0};
-    const char *next = file->text, *end = file->text + file->size;
+    const char *next = text, *end = text + size;
     char separator = '\0'; /* of the block whose numbers are being passed; 0: none */
     int status = 0;
     while (status == 0 && text_line_next(&line, &next, end)) {

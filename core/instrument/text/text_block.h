@@ -69,7 +69,7 @@ struct text_blocks {
 
 /* Finds the blocks that have numbers. ERROR_INPUT where none has, or for a line among numbers that
  * is neither header nor numbers. */
-int text_blocks_find(struct text_blocks *out, const struct text_file *file, struct error *err);
+int text_blocks_find(struct text_blocks *out, const char *text, size_t size, struct error *err);
 /* Returns whether a non-empty line that follows a line of numbers is one too: its first field is a
  * number or a hole, or a damaged one. Its reader reports the damage. */
 bool text_goes_on(struct text_line line, char separator);

@@ -1,4 +1,4 @@
-/* The text of an instrument's export line by line, in UTF-8 or its own encoding. */
+/* The text of an instrument's export line by line, in UTF-8 or Latin-1, without a mark. */
 #ifndef RUGO_CORE_INSTRUMENT_TEXT_TEXT_FILE_H
 #define RUGO_CORE_INSTRUMENT_TEXT_TEXT_FILE_H
 
@@ -6,16 +6,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-struct text_file {
-    char *owned;      /* NULL where the text is the bytes of the file themselves */
-    const char *text; /* borrowed or owned; followed by 0, with none inside */
-    size_t size;
-};
-
-/* Converts UTF-16 with a mark to UTF-8, and removes the mark of UTF-8. ERROR_INPUT where the bytes
- * are no text. */
-int text_file_open(struct text_file *out, const char *data, size_t size, struct error *err);
-void text_file_close(struct text_file *file);
+/* ERROR_INPUT where the bytes are no text. */
+int text_check(const char *data, size_t size, struct error *err);
 
 /* A line without its end and without blanks around it. */
 struct text_line {

@@ -155,14 +155,12 @@ static int read_file(struct height_map *map, const char *text, size_t size, stru
 
 static int read_zygo(struct height_map *out, const char *data, size_t size,
                      const struct instrument_request *request, struct error *err) {
-    struct text_file file = {0};
     struct height_map map = {0};
     if (layer_check_only(request->layer, err) != 0)
         return ERROR_INPUT;
-    int status = text_file_open(&file, data, size, err);
+    int status = text_check(data, size, err);
     if (status == 0)
-        status = read_file(&map, file.text, file.size, err);
-    text_file_close(&file);
+        status = read_file(&map, data, size, err);
     if (status == 0)
         *out = map;
     else

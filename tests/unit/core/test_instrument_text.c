@@ -105,17 +105,36 @@ static void matrices(void **state) {
         check_layout(&layouts[l]);
 }
 
-/* The same in UTF-16, as some instruments write it. */
+/* Texts of all formats in UTF-16, of either order, as some instruments and spreadsheets write them:
+ * as in UTF-8. Latin-1 is UTF-16 with zeros. */
 static void sixteen_bits(void **state) {
     (void)state;
-    static const char text[] = "Width: 3 \xb5m\n1 2 3\n4 5 6\n"; /* Latin-1 is UTF-16 with zeros */
-    char wide[2 * sizeof text] = {'\xff', '\xfe'};
-    for (size_t c = 0; c + 1 < sizeof text; c++)
-        wide[2 + 2 * c] = text[c];
-    struct height_map map = bytes_map(bytes_of(wide, 2 * sizeof text), "wide.csv", NULL);
-    assert_int_equal(map.grid.nx, 3);
-    assert_true(fabs(grid_dx(&map.grid) - 1e-6) <= 1e-18 && map.z[5] == 6);
-    height_map_clear(&map);
+    const struct {
+        const char *name, *text;
+        double dx;
+    } files[] = {
+        {"wide.csv", "Width: 3 \xb5m\n1 2 3\n4 5 6\n", 1e-6},
+        {"plain.csv", "1,2,3\n4,5,6\n", 1},
+        {"plain.xyz", "0 0 1\n2 0 2\n4 0 3\n0 2 4\n2 2 5\n4 2 6\n", 2},
+        {"esri.asc", "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 0.5\n4 5 6\n1 2 3\n",
+         0.5},
+        {"surfer.grd", "DSAA\n3 2\n0 4\n0 2\n1 6\n1 2 3\n4 5 6\n", 2},
+    };
+    for (size_t f = 0; f < sizeof files / sizeof files[0]; f++)
+        for (size_t high_first = 0; high_first < 2; high_first++) {
+            const size_t count = strlen(files[f].text);
+            char wide[512] = {0};
+            wide[high_first] = '\xff';
+            wide[1 - high_first] = '\xfe';
+            for (size_t c = 0; c < count; c++)
+                wide[2 + 2 * c + high_first] = files[f].text[c];
+            struct height_map map = bytes_map(bytes_of(wide, 2 + 2 * count), files[f].name, NULL);
+            assert_true(map.grid.nx == 3 && map.grid.ny == 2);
+            assert_true(fabs(grid_dx(&map.grid) / files[f].dx - 1) <= 1e-12);
+            for (size_t p = 0; p < 6; p++)
+                assert_true(map.z[p] == (double)p + 1);
+            height_map_clear(&map);
+        }
 }
 
 /* Several layers, a block each: by title and by number. */
@@ -243,7 +262,7 @@ static void refused(void **state) {
         {"a.xyz", "0 0 1\n200 0 2\n0 1 1\n1 7 1\n", "one point for 64 nodes"},
         {"a.xyz", "0 0 1\n", "1 points make no map"},
         {"a.xyz", "no numbers\n", "holds no line of numbers"},
-        {"a.csv", "\xff\xfe", "holds no line of numbers"},
+        {"a.csv", "\xff\xfe", "holds no number"},
         {"a.grd", "DSAA\n3 2\n0 1\n0 1\n0 1\n1 2 3 4 5\n", "the file ends before a height"},
         {"a.grd", "DSAA\n3 2\n0 1\n0 1\n0 1\n1 2 3 4 5 6 7\n",
          "line 6: more heights than the 3 x 2"},
