@@ -1,4 +1,5 @@
 #include "server/command/service/token_file.h"
+#include "core/file/text_mark.h"
 #include "schema/store/store.h"
 #include "server/command/service/secret_file.h"
 #include <stdio.h>
@@ -65,6 +66,7 @@ static void line_read(char *text, struct token_line *line) {
 int token_lines_visit(char *text, token_visit *visit, void *context, struct error *err) {
     size_t number = 0;
     int status = 0;
+    text += text_mark_length(text, strlen(text));
     for (char *line = text, *rest = NULL; status == 0 && line != NULL; line = rest) {
         struct token_line read = {.number = ++number};
         rest = strchr(line, '\n');

@@ -101,12 +101,14 @@ static void beyond_loopback_tokens_are_needed(void **state) {
     assert_true(contains("bad.err", "bad-tokens, line 1"));
 }
 
-/* One file for the server and for all who ask it; or one with a single token and no role. */
+/* One file for the server and for all who ask it; or one with a single token and no role. Both
+ * begin with a byte-order mark, as editors write it. */
 static void one_file_for_both_ends(void **state) {
     (void)state;
     static const char *const FILES[] = {
-        "# ours\nread:read-token-000000\r\n\nsubmit:submit-token-0000\nwork:work-token-000000\n",
-        "only-token-0000000\n"};
+        "\xef\xbb\xbf# "
+        "ours\nread:read-token-000000\r\n\nsubmit:submit-token-0000\nwork:work-token-000000\n",
+        "\xef\xbb\xbfonly-token-0000000\n"};
     spit("one.json", ONE_CASE);
     for (size_t f = 0; f < 2; f++) {
         struct process other = {0};
