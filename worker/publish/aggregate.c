@@ -433,16 +433,6 @@ int aggregate_write(struct store *store, const struct merged_case *merged, struc
                                 &merged->result, &texts, err);
 }
 
-int aggregate_publish(struct store *store, const char *study, uint64_t case_number,
-                      struct error *err) {
-    struct merged_case merged;
-    int status = aggregate_prepare(store, study, case_number, &merged, err);
-    if (status == 0)
-        status = aggregate_write(store, &merged, err);
-    merged_case_clear(&merged);
-    return status;
-}
-
 /* --- reports --- */
 
 static void spend(struct case_report *report, const struct case_cost *cost) {

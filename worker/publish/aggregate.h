@@ -56,9 +56,6 @@ int aggregate_prepare(struct store *store, const char *study, uint64_t case_numb
                       struct merged_case *out, struct error *err);
 int aggregate_write(struct store *store, const struct merged_case *merged, struct error *err);
 void merged_case_clear(struct merged_case *merged);
-/* Does both. */
-int aggregate_publish(struct store *store, const char *study, uint64_t case_number,
-                      struct error *err);
 
 /* Fails with ERROR_INPUT and the error of a result that has one. */
 int aggregate_refuse(const struct case_result *result, struct error *err);
