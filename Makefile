@@ -196,8 +196,8 @@ $(BUILD)/rugo.1: $(BUILD)/rugo
 $(BUILD)/rugo.bash: $(BUILD)/rugo
 	@$< help bash >$@
 
-# Tests: tests/<ladder>/<layer>/<name>.c is a program; tests/*.c are shared by all of them. They compute little
-# themselves, and are compiled in half of the time; all are linked by gold in half of it, where there is one. It
+# Tests: tests/<ladder>/<layer>/[<room>/]<name>.c is a program; tests/support/*.c are shared by all of them. They
+# compute little themselves, and are compiled in half of the time; all are linked by gold in half of it, where there is one. It
 # warns of hundreds of symbols of clang's sanitizers, with which lld takes a quarter.
 $(foreach folder,support system faults fuzz unit validation,$(eval \
     $(BUILD)/tests/$(folder)/%.c.o: private LEVEL = $$(call LEVEL_OF,-O1)) \
@@ -209,7 +209,7 @@ DRAWING = $(BUILD)/libdrawing.a
 $(DRAWING): $(call objects,$(filter-out %/replay.c,$(wildcard tests/support/fuzz/*.c)))
 	$(Q)rm -f $@; $(AR) rcs $@ $^
 define TESTS
-TESTS_$(1)_$(2) = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/$(1)/$(2)/*.c))
+TESTS_$(1)_$(2) = $(patsubst %.c,$(BUILD)/%,$(wildcard tests/$(1)/$(2)/*.c tests/$(1)/$(2)/*/*.c))
 $$(TESTS_$(1)_$(2)): $(BUILD)/%: $(BUILD)/%.c.o $(SUPPORT) $(DRAWING) $(call archive,$(BELOW_$(2)))
 	$(say) LD $$@
 	$(Q)$(LINK) $(LINKER) -pie -o $$@ $$^ -lcmocka $(LIBS_$(2)) $(LDLIBS)

@@ -10,7 +10,7 @@ enum { SIDE_LEAST = 16 };
 /* The area of a linear model after the first order of sideways strain, less that of `full`, is
  * within the sum of these shares: of the area, which is what one mesh knows of edges; of the
  * strain's part; and of the area times the square of the RMS slope. Measured at slopes up to
- * STRAIN_SLOPE_MOST by tests/unit/jobs/test_map_press_error.c. */
+ * STRAIN_SLOPE_MOST by tests/unit/jobs/maps/test_map_press_error.c. */
 static const double STRAIN_MESH = 0.002, STRAIN_SHARE = 0.6, STRAIN_SQUARE = 0.4,
                     STRAIN_SLOPE_MOST = 0.5;
 
