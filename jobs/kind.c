@@ -1,6 +1,6 @@
 #include "jobs/kind.h"
 #include "core/rugo.h"
-#include "schema/result/bytes.h"
+#include "schema/result/bytes/bytes.h"
 #include "schema/study/value.h"
 #include <stdlib.h>
 #include <string.h>

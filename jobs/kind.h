@@ -14,7 +14,7 @@
 #include "core/surface/surface.h"
 #include "core/team.h"
 #include "schema/result/block_result.h"
-#include "schema/result/bytes.h"
+#include "schema/result/bytes/bytes.h"
 #include "schema/result/result.h"
 #include "schema/study/fault.h"
 #include "schema/study/parameter.h"

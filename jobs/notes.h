@@ -5,7 +5,7 @@
 #define RUGO_JOBS_NOTES_H
 
 #include "core/error.h"
-#include "schema/result/bytes.h"
+#include "schema/result/bytes/bytes.h"
 #include "schema/result/result.h"
 
 enum { NOTES_MOST = 20, NOTE_SIZE = sizeof((struct error *)0)->text };

@@ -13,7 +13,7 @@
 #define RUGO_JOBS_TALLY_H
 
 #include "jobs/estimate.h"
-#include "schema/result/bytes.h"
+#include "schema/result/bytes/bytes.h"
 
 void exact_sum_put(struct bytes *bytes, const struct exact_sum *sum);
 /* Reads any total: merging marks sums that overflow as lost. */

@@ -16,7 +16,7 @@
 
 #include "schema/program.h"
 #include "schema/result/block_result.h"
-#include "schema/result/packed_bytes.h"
+#include "schema/result/bytes/packed_bytes.h"
 #include "schema/result/report.h"
 #include "schema/result/work_time.h"
 #include "schema/study/study.h"

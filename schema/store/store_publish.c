@@ -1,8 +1,8 @@
 /* Publication: writes a case's result as rows for the views, its curves as bytes, its report as
  * JSON. */
 #include "core/file/memory_file.h"
-#include "schema/result/curve_bytes.h"
-#include "schema/result/packed_bytes.h"
+#include "schema/result/bytes/curve_bytes.h"
+#include "schema/result/bytes/packed_bytes.h"
 #include "schema/result/result_json.h"
 #include "schema/result/total.h"
 #include "schema/store/store_internal.h"

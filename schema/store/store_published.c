@@ -1,5 +1,5 @@
 /* Reads what is published of a case. */
-#include "schema/result/curve_bytes.h"
+#include "schema/result/bytes/curve_bytes.h"
 #include "schema/result/result_json.h"
 #include "schema/store/store_seal.h"
 #include <stdio.h>

@@ -1,5 +1,5 @@
 #include "schema/store/store_seal.h"
-#include "schema/result/bytes.h"
+#include "schema/result/bytes/bytes.h"
 #include <string.h>
 
 static uint64_t add_word(uint64_t hash, char type, uint64_t word) {

@@ -1,7 +1,7 @@
 /* Submission: inserts a study with its cases, their components and their jobs. */
 #include "schema/hex.h"
 #include "schema/program.h"
-#include "schema/result/bytes.h"
+#include "schema/result/bytes/bytes.h"
 #include "schema/store/store_internal.h"
 #include "schema/store/store_seal.h"
 #include <stdio.h>

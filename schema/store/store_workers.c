@@ -1,5 +1,5 @@
 /* Workers at work: their leases, and the jobs that they ended lately. */
-#include "schema/result/bytes.h"
+#include "schema/result/bytes/bytes.h"
 #include "schema/store/store_internal.h"
 #include <stdlib.h>
 #include <string.h>

@@ -7,7 +7,7 @@
 #define RUGO_JOBS_CONTACT_CONTACT_ROWS_H
 
 #include "jobs/contact/companion/companion_tally.h"
-#include "schema/result/bytes.h"
+#include "schema/result/bytes/bytes.h"
 
 struct contact_rows { /* initialise with {0} and a width */
     size_t width;     /* values of a realisation */

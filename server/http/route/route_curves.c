@@ -1,7 +1,7 @@
 /* Curves and reports over HTTP. A study of ten thousand cases has gigabytes of them: as JSON they
  * are read and sent case by case, and end early when the server does. */
 #include "core/file/memory_file.h"
-#include "schema/result/bytes.h"
+#include "schema/result/bytes/bytes.h"
 #include "schema/result/csv.h"
 #include "schema/result/result_json.h"
 #include "server/http/accept.h"

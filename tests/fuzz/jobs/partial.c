@@ -2,7 +2,7 @@
  * case, the second the number of realisations, the rest is the data, under a checksum made for it.
  * Data that fit are merged and make curves; others are refused by both. */
 #include "jobs/merger.h"
-#include "schema/result/bytes.h"
+#include "schema/result/bytes/bytes.h"
 #include "tests/support/fuzz/fuzz.h"
 
 enum { CASES = 5, REALISATIONS_MOST = 4, SCALARS_MOST = 128 };

@@ -3,10 +3,10 @@
  * written as what they mean. Packed bytes likewise, which never take more memory than they may. */
 #include "core/file/memory_file.h"
 #include "schema/json/json.h"
-#include "schema/result/bytes.h"
+#include "schema/result/bytes/bytes.h"
 #include "schema/result/csv.h"
-#include "schema/result/curve_bytes.h"
-#include "schema/result/packed_bytes.h"
+#include "schema/result/bytes/curve_bytes.h"
+#include "schema/result/bytes/packed_bytes.h"
 #include "schema/result/result_json.h"
 #include "tests/support/fuzz/fuzz.h"
 

@@ -1,6 +1,6 @@
 /* The encoding of partial results: what is written is read back, and no bytes at all can make the
  * reader pass its end or give a number that was not written in its one shortest form. */
-#include "schema/result/bytes.h"
+#include "schema/result/bytes/bytes.h"
 #include "tests/support/seed.h"
 #include <float.h>
 #include <setjmp.h>

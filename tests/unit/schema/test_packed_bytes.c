@@ -1,6 +1,6 @@
 /* Protects: what is packed for the store comes back to the bit; damaged, cut and hostile bytes are
  * refused with a word, before much memory is taken; what older programs stored is read as it is. */
-#include "schema/result/packed_bytes.h"
+#include "schema/result/bytes/packed_bytes.h"
 #include "tests/support/check.h"
 #include "tests/support/seed.h"
 #include <stdbool.h>

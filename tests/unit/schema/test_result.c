@@ -1,9 +1,9 @@
 /* A result comes back from each of its formats as it went in: JSON, bytes; and its table and report
  * say what it holds. */
 #include "core/file/memory_file.h"
-#include "schema/result/bytes.h"
+#include "schema/result/bytes/bytes.h"
 #include "schema/result/csv.h"
-#include "schema/result/curve_bytes.h"
+#include "schema/result/bytes/curve_bytes.h"
 #include "schema/result/report.h"
 #include "schema/result/result.h"
 #include "schema/result/result_json.h"

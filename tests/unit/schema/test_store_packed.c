@@ -1,6 +1,6 @@
 /* Protects: large results and published cases are stored packed, and read as they were handed in;
  * those that an older program stored as they are, too; damaged ones are refused by name. */
-#include "schema/result/curve_bytes.h"
+#include "schema/result/bytes/curve_bytes.h"
 #include "schema/store/store.h"
 #include "schema/study/study_reader.h"
 #include "tests/support/fake_kind.h"

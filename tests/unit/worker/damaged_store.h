@@ -2,8 +2,8 @@
 #ifndef RUGO_TESTS_UNIT_WORKER_DAMAGED_STORE_H
 #define RUGO_TESTS_UNIT_WORKER_DAMAGED_STORE_H
 
-#include "schema/result/bytes.h"
-#include "schema/result/curve_bytes.h"
+#include "schema/result/bytes/bytes.h"
+#include "schema/result/bytes/curve_bytes.h"
 #include "tests/support/seed.h"
 #include "tests/support/sql.h"
 #include "tests/support/store_files.h"

@@ -6,7 +6,7 @@
 #include "jobs/merger.h"
 #include "jobs/runner.h"
 #include "schema/json/json.h"
-#include "schema/result/bytes.h"
+#include "schema/result/bytes/bytes.h"
 #include "tests/support/effort.h"
 #include "tests/support/merging.h"
 #include "tests/support/seed.h"

@@ -1,7 +1,7 @@
 /* Protects: statistics from parameters to bytes of blocks and back: any split into blocks and any
  * order of merging gives the same document; foreign and damaged results are refused whole; a run
  * that is stopped gives nothing. */
-#include "schema/result/bytes.h"
+#include "schema/result/bytes/bytes.h"
 #include "tests/support/effort.h"
 #include "tests/support/seed.h"
 #include "tests/support/statistics_study.h"

@@ -1,5 +1,5 @@
-#include "schema/result/curve_bytes.h"
-#include "schema/result/bytes.h"
+#include "schema/result/bytes/curve_bytes.h"
+#include "schema/result/bytes/bytes.h"
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* Curves as portable bytes with a checksum, in which the store keeps them; every number is exact.
  * Of theories that are made on demand (y NULL) only the name is kept. */
-#ifndef RUGO_SCHEMA_RESULT_CURVE_BYTES_H
-#define RUGO_SCHEMA_RESULT_CURVE_BYTES_H
+#ifndef RUGO_SCHEMA_RESULT_BYTES_CURVE_BYTES_H
+#define RUGO_SCHEMA_RESULT_BYTES_CURVE_BYTES_H
 
 #include "schema/result/result.h"
 

@@ -5,8 +5,8 @@
  *
  * A transposition of the bytes of doubles before deflate was tried: blocks of contact then took 70
  * instead of 49 % of their size, curves 44 instead of 38 %, as their doubles repeat. */
-#ifndef RUGO_SCHEMA_RESULT_PACKED_BYTES_H
-#define RUGO_SCHEMA_RESULT_PACKED_BYTES_H
+#ifndef RUGO_SCHEMA_RESULT_BYTES_PACKED_BYTES_H
+#define RUGO_SCHEMA_RESULT_BYTES_PACKED_BYTES_H
 
 #include "core/error.h"
 #include <stddef.h>

@@ -1,4 +1,4 @@
-#include "schema/result/packed_bytes.h"
+#include "schema/result/bytes/packed_bytes.h"
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* A byte string that grows, and a reader that never passes its end: how partial results are
  * encoded. Integers are LEB128 varints (signed ones zigzag), doubles 8 bytes little endian. */
-#ifndef RUGO_SCHEMA_RESULT_BYTES_H
-#define RUGO_SCHEMA_RESULT_BYTES_H
+#ifndef RUGO_SCHEMA_RESULT_BYTES_BYTES_H
+#define RUGO_SCHEMA_RESULT_BYTES_BYTES_H
 
 #include "core/statistics/heights/histogram.h"
 #include <stdbool.h>

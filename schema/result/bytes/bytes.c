@@ -1,4 +1,4 @@
-#include "schema/result/bytes.h"
+#include "schema/result/bytes/bytes.h"
 #include <stdlib.h>
 #include <string.h>
 
