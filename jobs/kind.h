@@ -94,6 +94,7 @@ struct steps_order {
     const char *model; /* NULL: the most complete one, the first of those with a mesh if `meshed` */
     bool meshed;       /* models without a mesh are refused */
     size_t load_count; /* 0: all loads of the case */
+    bool kept; /* of all loads of the case those alone are given that it keeps (kept_steps) */
     const double *loads; /* p/(E* h'), rising; 0: out of contact */
     /* Called repeatedly while a load is solved: non-zero stops it with ERROR_STOPPED; may be
      * NULL. */
@@ -104,7 +105,6 @@ struct steps_order {
 struct kept_steps {
     size_t count, load_count, model_count;
     const double *realisations; /* whole numbers, rising */
-    const double *loads;        /* as of an order */
     const char *models[KEPT_MODELS_MOST];
 };
 struct nodal_step; /* core/nodal/nodal_step.h */

@@ -188,7 +188,14 @@ int contact_press_steps(const void *of, const struct steps_order *order,
     const struct contact_case *one_case = of;
     struct steps_press press = {.one_case = one_case};
     size_t m = 0, count = order->load_count > 0 ? order->load_count : one_case->load_count;
+    size_t given = count, put = 0; /* to the sink: in all, and so far */
     const double *loads = order->load_count > 0 ? order->loads : one_case->loads;
+    const size_t *kept = order->kept ? one_case->kept_loads : NULL;
+    if (kept != NULL) {
+        /* A state of `full` is the one that its loads led to. */
+        given = one_case->kept_load_count;
+        count = kept[given - 1] + 1;
+    }
     int status = find_model(one_case, order, &m, err);
     if (status == 0)
         status = press_open(&press, order, m, err);
@@ -196,8 +203,8 @@ int contact_press_steps(const void *of, const struct steps_order *order,
         bool stopped = order->stop != NULL && order->stop(order->stop_context) != 0;
         status = stopped ? error_set(err, ERROR_STOPPED, "stopped at load %zu of %zu", k, count)
                          : press_load(&press, loads[k], err);
-        if (status == 0)
-            status = sink->put(sink->context, &press.step.step, k, count, err);
+        if (status == 0 && (kept == NULL || kept[put] == k))
+            status = sink->put(sink->context, &press.step.step, put++, given, err);
     }
     press_clear(&press);
     return status;
@@ -213,8 +220,7 @@ struct kept_steps contact_kept_steps(const void *of) {
     struct kept_steps out = {.count = one_case->kept_count,
                              .load_count = all ? one_case->load_count : one_case->kept_load_count,
                              .model_count = one_case->model_count,
-                             .realisations = one_case->kept,
-                             .loads = all ? one_case->loads : one_case->kept_loads};
+                             .realisations = one_case->kept};
     for (size_t m = 0; m < out.model_count; m++)
         out.models[m] = contact_model_name(one_case->models[m]);
     return out;
@@ -241,8 +247,11 @@ struct study_kept contact_kept_cost(const struct contact_case *one_case, double 
     if (kept.count == 0)
         return (struct study_kept){.path = NULL};
     out.past = (uint64_t)kept.realisations[kept.count - 1] + 1;
+    const size_t pressed = one_case->kept_loads != NULL
+                               ? one_case->kept_loads[one_case->kept_load_count - 1] + 1
+                               : one_case->load_count;
     for (size_t m = 0; m < one_case->model_count; m++) {
-        double share = (double)kept.load_count / (double)one_case->load_count;
+        double share = (double)pressed / (double)one_case->load_count;
         out.seconds += generation + share * one_case->models[m]->seconds(one_case, m, grid);
         out.bytes += (double)kept.load_count * step_bytes(one_case, m, grid);
     }

@@ -88,7 +88,7 @@ struct contact_case {
     size_t kept_count;    /* realisations whose nodes are written */
     double *kept;         /* owned: their numbers, rising */
     size_t kept_load_count;
-    double *kept_loads; /* owned: rising, out of the loads; NULL: all of them */
+    size_t *kept_loads; /* owned: positions among the loads, rising; NULL: all of them */
 };
 void contact_case_clear(struct contact_case *one_case);
 

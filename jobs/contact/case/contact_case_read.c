@@ -195,13 +195,15 @@ static const char SLIDE_TO[] = "/contact/slip/to", SLIDE_STEPS[] = "/contact/sli
 
 /* Checks the turning points of the flat. */
 static void check_turns(const double *turns, size_t count, size_t steps, struct values *values) {
-    double from = 0;
-    for (size_t a = 0; a < count; from = turns[a++])
-        if (turns[a] == from) {
-            values_fault(values, SLIDE_TO, "number %zu, %g, is where the flat was before", a,
-                         turns[a]);
-            return;
-        }
+    const size_t going_on = contact_loads_turns(turns, count);
+    if (going_on < count) {
+        values_fault(values, SLIDE_TO,
+                     "number %zu, %g, is no turning point: from %g the flat comes to %g; allowed: "
+                     "numbers that go forth and back",
+                     going_on, turns[going_on], going_on > 1 ? turns[going_on - 2] : 0,
+                     going_on > 0 ? turns[going_on - 1] : 0);
+        return;
+    }
     if (count * steps >= CONTACT_LOADS_MOST)
         values_fault(values, SLIDE_STEPS,
                      "%zu steps to each of %zu turning points; allowed: %d in all", steps, count,
@@ -352,19 +354,30 @@ static int read_pdf(struct contact_case *out, struct values *values, struct erro
 static int read_kept(struct contact_case *out, struct values *values, struct error *err) {
     static const char realisations[] = "/contact/keep/realisations",
                       loads[] = "/contact/keep/loads";
+    double *at = NULL;
     int status = values_numbers(values, realisations, &out->kept, &out->kept_count, err);
     if (status == 0)
-        status = values_numbers(values, loads, &out->kept_loads, &out->kept_load_count, err);
-    if (status != 0)
+        status = values_numbers(values, loads, &at, &out->kept_load_count, err);
+    if (status == 0 && at != NULL) {
+        out->kept_loads = array_create(out->kept_load_count, sizeof *out->kept_loads);
+        if (out->kept_loads == NULL)
+            status = error_memory(err, out->kept_load_count * sizeof *out->kept_loads, "loads");
+    }
+    if (status != 0) {
+        free(at);
         return status;
+    }
     check_rising(values, realisations, out->kept_count, out->kept);
-    check_rising(values, loads, out->kept_load_count, out->kept_loads);
+    check_rising(values, loads, out->kept_load_count, at);
     for (size_t a = 0; a < out->kept_count; a++)
         if (out->kept[a] != floor(out->kept[a]))
             values_fault(values, realisations, "%g is no whole number", out->kept[a]);
-    for (size_t a = 0; a < out->kept_load_count && out->load_count > 0; a++)
-        if (load_find(out, out->kept_loads[a]) == out->load_count)
-            values_fault(values, loads, "%g is none of the study's pressures", out->kept_loads[a]);
+    for (size_t a = 0; a < out->kept_load_count && out->load_count > 0; a++) {
+        out->kept_loads[a] = load_find(out, at[a]);
+        if (out->kept_loads[a] == out->load_count)
+            values_fault(values, loads, "%g is none of the study's pressures", at[a]);
+    }
+    free(at);
     if (out->kept_load_count > 0 && out->kept_count == 0)
         values_fault(values, loads, "loads of no realisation: give /contact/keep/realisations");
     return 0;

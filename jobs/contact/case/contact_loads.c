@@ -17,6 +17,17 @@ double contact_load(double to, size_t k, size_t count) {
     return strtod(text, NULL);
 }
 
+size_t contact_loads_turns(const double *turns, size_t count) {
+    double before = 0, from = 0;
+    for (size_t a = 0; a < count; a++) {
+        if (turns[a] == from || (a > 0 && (turns[a] > from) == (from > before)))
+            return a;
+        before = from;
+        from = turns[a];
+    }
+    return count;
+}
+
 void contact_loads_path(const double *turns, size_t count, size_t steps, double *path) {
     path[0] = 0;
     for (size_t a = 0; a < count; a++) {

@@ -15,6 +15,9 @@ enum { CONTACT_LOADS = 30 };
  * decimal of 15 digits: 0.06 rather than 0.06000000000000001. The last one is `to` itself. */
 double contact_load(double to, size_t k, size_t count);
 
+/* Returns the position of the first number that the flat, from 0, does not turn to reach; `count`
+ * where each is reached in the direction against the one before. */
+size_t contact_loads_turns(const double *turns, size_t count);
 /* Fills the path of the flat, count * steps + 1 points: from 0 to each turning point in so many
  * equal steps. */
 void contact_loads_path(const double *turns, size_t count, size_t steps, double *path);

@@ -224,8 +224,9 @@ static const struct parameter ROWS[] = {
      .target_choice = "E* h'",
      .later = true,
      .example_json = "\"Pa\"",
-     .help = "of the loads above and of /contact/pressure_pdf/at: E* h' (unless given), or Pa, "
-             "which needs young in Pa and a surface with rms_slope or rms_height; curves have "
+     .help = "of the loads above, of those out of them (pressure_pdf/at, keep/loads) and of "
+             "slip/pressure: E* h' (unless given), or Pa, which needs young in Pa and a surface "
+             "with rms_slope or rms_height; curves have "
              "loads in E* h' and in Pa"},
     {.path = "/contact/estimators",
      .type = PARAMETER_CHOICES,
@@ -344,7 +345,7 @@ static const struct parameter ROWS[] = {
      .type = PARAMETER_NUMBERS,
      .choices = KEPT_LOADS,
      .minimum = 0,
-     .maximum = 1e6,
+     .maximum = CONTACT_LOAD_NUMBER_MOST,
      .above_minimum = true,
      .items_low = 1,
      .items_high = CONTACT_LOADS_MOST,

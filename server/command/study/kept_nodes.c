@@ -69,8 +69,7 @@ static int press(struct kept_writer *writer, struct random_key key, const double
     const struct steps_order steps = {.z = z,
                                       .key = key,
                                       .model = model,
-                                      .load_count = writer->kept.load_count,
-                                      .loads = writer->kept.loads,
+                                      .kept = true,
                                       .stop = is_stopped};
     struct step_folder folder = {0};
     const struct steps_sink sink = {put, &folder};

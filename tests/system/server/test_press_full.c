@@ -148,6 +148,7 @@ static void what_has_no_meaning_is_refused(void **state) {
         {"--model full --slide-to 1", "--slide-to belongs to --friction with a model that slides"},
         {"--model halfspace --friction 0.2 --slide-steps 3", "--slide-steps belongs to --friction"},
         {"--model full --friction 0.2 --slide-to 1,1", "--slide-to 1,1: not up to 100 numbers"},
+        {"--model full --friction 0.2 --slide-to 0.2,0.4", "at which the flat turns"},
         {"--model full --coupling frictional", "nothing slips unless --friction is given"},
         {"--model full --hardness 2GPa --modulus 200GPa", "--hardness: the model full does not"},
         {"--model full --boundary open", "--model full needs a block that does: --boundary"},

@@ -8,18 +8,17 @@
 enum { TURNS_MOST = 100, STEPS = 30 };
 static const double SLIDE_MOST = 1e3, SLIPS = 4;
 
-/* Reads numbers of which none is where the flat was before; false where that is not so. */
+/* Reads numbers; false where they are no turning points. */
 static bool read_turns(const char *text, double turns[TURNS_MOST], size_t *count) {
-    double from = 0;
     for (*count = 0; *count < TURNS_MOST; text++) {
         char *end;
         double at = strtod(text, &end);
-        if (end == text || !(fabs(at) <= SLIDE_MOST) || at == from)
+        if (end == text || !(fabs(at) <= SLIDE_MOST))
             return false;
-        turns[(*count)++] = from = at;
+        turns[(*count)++] = at;
         text = end;
         if (*text == '\0')
-            return true;
+            return contact_loads_turns(turns, *count) == *count;
         if (*text != ',')
             return false;
     }
@@ -32,8 +31,8 @@ int press_path_parse(struct press_path *out, const char *turns, unsigned steps, 
     size_t count = 1;
     if (turns != NULL && !read_turns(turns, at, &count))
         return error_set(err, ERROR_INPUT,
-                         "--slide-to %.40s: not up to %d numbers, each up to %g to either side and "
-                         "another than the one before, the first not 0",
+                         "--slide-to %.40s: not up to %d numbers, each up to %g to either side, at "
+                         "which the flat turns: forth and back, the first not 0",
                          turns, TURNS_MOST, SLIDE_MOST);
     out->steps = steps > 0 ? steps : STEPS;
     out->count = count * out->steps + 1;

@@ -10,7 +10,9 @@
 #define STUDY                                                                                      \
     "{\"surface\": {\"dimension\": %d, \"hurst\": 0.8, \"wavelength_ratio\": 2, "                  \
     "\"length_ratio\": 1, \"rms_slope\": 0.1}, \"contact\": {\"model\": %s, \"levels\": [4, 6], "  \
-    "\"pressures\": {\"values\": [0.1, 0.3]}}}"
+    "\"pressures\": {%s}}}"
+
+static const char LOADS_OF[] = "\"values\": [0.1, 0.3]";
 
 struct seen {
     size_t count, stop_after;
@@ -51,12 +53,12 @@ struct pressed_case {
     double *z;
 };
 
-static struct pressed_case open_case(int dimension, const char *models) {
+static struct pressed_case open_case(int dimension, const char *models, const char *pressures) {
     struct pressed_case out = {.z = NULL};
     struct surface_report report;
     struct error err = {0};
-    char text[400];
-    snprintf(text, sizeof text, STUDY, dimension, models);
+    char text[480];
+    snprintf(text, sizeof text, STUDY, dimension, models, pressures);
     cJSON *parameters = cJSON_Parse(text);
     assert_non_null(parameters);
     const struct random_key key = {1, 0, 0};
@@ -76,7 +78,7 @@ static void every_load_is_a_step(void **state) {
     (void)state;
     static const double LOADS[] = {0, 0.2};
     for (int dimension = 1; dimension <= 2; dimension++) {
-        struct pressed_case open = open_case(dimension, "[\"layered\", \"full\"]");
+        struct pressed_case open = open_case(dimension, "[\"layered\", \"full\"]", LOADS_OF);
         const struct grid *grid = &contact_case_finest(&open.one_case)->grid;
         struct error err = {0};
         const struct steps_order orders[] = {
@@ -96,6 +98,48 @@ static void every_load_is_a_step(void **state) {
     }
 }
 
+/* The pressures of the last step, a sum that differs in its last bits where any of them does. */
+struct last_step {
+    size_t count;
+    double load, sum;
+};
+
+static int take_last(void *context, const struct nodal_step *step, size_t number, size_t count,
+                     struct error *err) {
+    struct last_step *last = context;
+    (void)err;
+    assert_true(number == last->count++ && number < count);
+    last->load = step->load;
+    last->sum = 0;
+    for (size_t i = 0; i < grid_points(&step->grid); i++)
+        last->sum += step->p[i] * (double)(i + 1);
+    return 0;
+}
+
+/* A load that is kept alone is the study's, in its unit, and was pressed as the study presses it.
+ */
+static void kept_loads_are_the_studys(void **state) {
+    (void)state;
+    static const char *const PRESSURES[] = {
+        "\"values\": [0.02, 0.1, 0.3]}, \"keep\": {\"realisations\": [0], \"loads\": [0.1]",
+        "\"values\": [2e3, 1e4, 3e4], \"unit\": \"Pa\"}, \"young\": 0.91e6, \"keep\": "
+        "{\"realisations\": [0], \"loads\": [1e4]"};
+    for (size_t a = 0; a < 2; a++) {
+        struct pressed_case open = open_case(1, "\"full\"", PRESSURES[a]);
+        struct last_step kept = {0}, whole = {0};
+        struct error err = {0};
+        const struct steps_order order = {.z = open.z, .kept = true},
+                                 two = {.z = open.z, .load_count = 2, .loads = open.one_case.loads};
+        const struct steps_sink sink = {take_last, &kept}, sink_of_two = {take_last, &whole};
+        assert_int_equal(contact_press_steps(&open.one_case, &order, &sink, &err), 0);
+        assert_int_equal(contact_press_steps(&open.one_case, &two, &sink_of_two, &err), 0);
+        assert_true(kept.count == 1 && whole.count == 2);
+        check_relative(kept.load, 0.1, 1e-9);
+        check_close(kept.sum, whole.sum, 0);
+        close_case(&open);
+    }
+}
+
 static int is_late(void *context) {
     (void)context;
     return 1;
@@ -103,7 +147,7 @@ static int is_late(void *context) {
 
 static void faults_are_told(void **state) {
     (void)state;
-    struct pressed_case open = open_case(1, "[\"halfspace\", \"layered\"]");
+    struct pressed_case open = open_case(1, "[\"halfspace\", \"layered\"]", LOADS_OF);
     struct seen seen = {.grid = &contact_case_finest(&open.one_case)->grid, .stop_after = 1};
     const struct steps_sink sink = {see, &seen};
     struct error err = {0};
@@ -126,6 +170,7 @@ static void faults_are_told(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_load_is_a_step),
+        cmocka_unit_test(kept_loads_are_the_studys),
         cmocka_unit_test(faults_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

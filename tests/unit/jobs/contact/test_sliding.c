@@ -282,9 +282,17 @@ static void what_does_not_fit_is_refused(void **state) {
     refuse(STUDY("0.1", "\"model\": \"layered\", \"friction\": 0.3, \"slip\": {\"steps\": 3}"),
            "/contact/slip/steps: belongs to /contact/friction with the model full");
     refuse(STUDY("0.1", "\"model\": \"full\", \"friction\": 0.3, \"slip\": {\"to\": [1, 1]}"),
-           "/contact/slip/to: number 1, 1, is where the flat was before");
-    refuse(STUDY("0.1", "\"model\": \"full\", \"friction\": 0.3, \"slip\": {\"to\": [0]}"),
-           "/contact/slip/to: number 0, 0, is where the flat was before");
+           "/contact/slip/to: number 1, 1, is no turning point: from 0 the flat comes to 1; "
+           "allowed: numbers that go forth and back");
+    refuse(
+        STUDY("0.1",
+              "\"model\": \"full\", \"friction\": 0.3, \"slip\": {\"to\": [0.2, -0.1, -0.4]}"),
+        "/contact/slip/to: number 2, -0.4, is no turning point: from 0.2 the flat comes to -0.1; "
+        "allowed: numbers that go forth and back");
+    refuse(
+        STUDY("0.1", "\"model\": \"full\", \"friction\": 0.3, \"slip\": {\"to\": [0]}"),
+        "/contact/slip/to: number 0, 0, is no turning point: from 0 the flat comes to 0; allowed: "
+        "numbers that go forth and back");
     refuse(STUDY("0.1", "\"model\": \"full\", \"friction\": 0.3, \"slip\": {\"to\": [1, -1], "
                         "\"steps\": 600}"),
            "/contact/slip/steps: 600 steps to each of 2 turning points; allowed: 999 in all");
