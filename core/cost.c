@@ -360,18 +360,19 @@ static struct cost_jumps jumps_of(double number, double seconds, double spread, 
                                .variance = (1 + spread) * number * each * each};
 }
 
-/* Returns how many cells of so many waves a cell is worth. */
-static double cell_share(double waves) {
-    return fmax(1, waves / JUMP_WAVES);
+/* Returns how many cells of JUMP_WAVES shortest waves a cell is worth, each of so many nodes. */
+static double cell_share(const struct grid *grid, double wave) {
+    return (double)grid->nx / wave / JUMP_WAVES;
 }
 
 struct cost_jumps cost_full_jumps(const struct grid *grid, const struct full_size *size,
-                                  double rms_slope, double pressure, double limit) {
+                                  double wave, double rms_slope, double pressure, double limit) {
     const struct jump_fit *fit = grid_is_profile(grid) ? &PROFILE_JUMP : &SURFACE_JUMP;
     const double slope = rms_slope + JUMP_LOAD * log(pressure / USUAL_LOAD);
     const double least = size->pressures ? fit->pressures_slope : fit->slope;
     const double width = size->pressures ? fit->pressures_width : fit->width;
-    const double number = gsl_cdf_ugaussian_P((slope - least) / width) * cell_share(grid->lx);
+    const double number =
+        gsl_cdf_ugaussian_P((slope - least) / width) * fmax(1, cell_share(grid, wave));
     struct full_size within = *size;
     within.linear = fit->linear > 0 ? fit->linear : size->linear;
     const struct full_limit each = cost_full_limit(grid, &within, 0);
@@ -453,8 +454,8 @@ struct cost_jumps cost_friction_jumps(const struct friction_work *of, double sli
     const struct full_limit each = cost_friction_limit(of, 0);
     const double newton = each.newton + cost_friction_size(of).linear * each.linear +
                           SLIDE_JUMP_FACTORED * each.factored;
-    return jumps_of(jump ? share * slid * of->grid->lx / JUMP_WAVES : 0, SLIDE_JUMP_NEWTON * newton,
-                    SLIDE_SPREAD, limit);
+    return jumps_of(jump ? share * slid * cell_share(of->grid, of->wave) : 0,
+                    SLIDE_JUMP_NEWTON * newton, SLIDE_SPREAD, limit);
 }
 
 double cost_friction_bytes(const struct grid *grid, const struct block *block,

@@ -76,9 +76,9 @@ struct cost_jumps {
 static inline struct cost_jumps cost_jumps_sum(struct cost_jumps a, struct cost_jumps b) {
     return (struct cost_jumps){a.seconds + b.seconds, a.variance + b.variance};
 }
-/* pressure: the highest load, in E* h'. */
+/* wave: nodes of a shortest wave; pressure: the highest load, in E* h'. */
 struct cost_jumps cost_full_jumps(const struct grid *grid, const struct full_size *size,
-                                  double rms_slope, double pressure, double limit);
+                                  double wave, double rms_slope, double pressure, double limit);
 /* What iterations on a mesh of this size count of a limit of so many of these seconds. */
 struct full_limit cost_full_limit(const struct grid *grid, const struct full_size *size,
                                   double seconds);

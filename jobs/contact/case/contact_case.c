@@ -85,6 +85,11 @@ double contact_case_block_bound(const struct contact_case *one_case, size_t mode
     return block_bound(&one_case->blocks[model], surface_case_longest(&one_case->surface));
 }
 
+double contact_case_wave(const struct contact_case *one_case, const struct grid *grid) {
+    static const double USUAL = 4;
+    return one_case->band.x > 0 ? (double)grid->nx / (double)one_case->band.x : USUAL;
+}
+
 void contact_case_clear(struct contact_case *one_case) {
     surface_case_clear(&one_case->surface);
     free(one_case->loads);

@@ -91,6 +91,9 @@ struct contact_case {
     size_t *kept_loads; /* owned: positions among the loads, rising; NULL: all of them */
 };
 void contact_case_clear(struct contact_case *one_case);
+/* Returns the points of a shortest wave of realisations on a grid; 4 where its waves are not known,
+ * as of a map. */
+double contact_case_wave(const struct contact_case *one_case, const struct grid *grid);
 
 static inline const struct contact_level *contact_case_finest(const struct contact_case *one_case) {
     return &one_case->levels[one_case->level_count - 1];

@@ -140,7 +140,7 @@ static struct cost_jumps jumps(const struct contact_case *one_case, size_t model
         cost_full_size(grid, &one_case->blocks[model], &options, one_case->rms_slope);
     if (one_case->loads == NULL)
         return (struct cost_jumps){0};
-    return cost_full_jumps(grid, &size, one_case->rms_slope,
+    return cost_full_jumps(grid, &size, contact_case_wave(one_case, grid), one_case->rms_slope,
                            one_case->loads[one_case->load_count - 1], one_case->time_limit);
 }
 

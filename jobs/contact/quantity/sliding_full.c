@@ -44,8 +44,8 @@ void sliding_full_destroy(struct sliding_full **sliding) {
     *sliding = NULL;
 }
 
-/* Of a case whose loads or waves are not known, as of a map. */
-static const double USUAL_LOAD = 0.1, USUAL_WAVE = 4;
+/* Of a case whose loads are not known. */
+static const double USUAL_LOAD = 0.1;
 
 static double held_load(const struct contact_case *one_case) {
     return one_case->loads != NULL ? one_case->loads[one_case->slip_load] : USUAL_LOAD;
@@ -62,8 +62,7 @@ static struct friction_work work_of(const struct quantity_scene *scene,
         .rms_slope = one_case->rms_slope,
         .poisson = scene->block.poisson,
         .pressure = held_load(one_case),
-        .wave =
-            one_case->band.x > 0 ? (double)scene->grid.nx / (double)one_case->band.x : USUAL_WAVE,
+        .wave = contact_case_wave(one_case, &scene->grid),
         .leg = fmax((double)one_case->slide_steps, STEPS_LEAST),
     };
 }
@@ -326,7 +325,7 @@ static struct sliding_cost cost_of(const struct quantity_scene *scene) {
     const double pressing = one_case->slip_pressing ? PRESS_STEPS : 0;
     const double load = held_load(one_case), limit = one_case->time_limit;
     const struct cost_jumps held =
-        cost_full_jumps(&scene->grid, &size, one_case->rms_slope, load, limit);
+        cost_full_jumps(&scene->grid, &size, work.wave, one_case->rms_slope, load, limit);
     const struct path_expected path = path_of(scene);
     const struct cost_jumps dragged = cost_friction_jumps(&work, path.slid, limit);
     const double steps = cost_friction_steps(&work, path.steps + pressing) + dragged.seconds;

@@ -22,10 +22,12 @@ struct case_cost {
 };
 
 static struct case_cost cost_on(const struct map_press *press, const struct press_block *block,
-                                size_t loads, const struct grid *grid) {
+                                const struct press_goals *goals, const struct grid *grid) {
     struct contact_case one_case = map_press_case(press, grid, block);
     const struct contact_model *model = block->model;
-    one_case.load_count = loads;
+    one_case.load_count = goals->count;
+    one_case.loads = goals->loads;
+    one_case.slip_load = goals->count - 1;
     const struct quantity_scene scene = {.one_case = &one_case,
                                          .grid = *grid,
                                          .block = one_case.blocks[0],
@@ -39,12 +41,12 @@ static struct case_cost cost_on(const struct map_press *press, const struct pres
 }
 
 struct press_cost press_cost_of(const struct map_press *press, const struct press_block *block,
-                                size_t loads, size_t nx, size_t ny) {
+                                const struct press_goals *goals, size_t nx, size_t ny) {
     const struct grid grid = grid_of(press, nx, ny);
     const bool profile = grid_is_profile(&grid);
     const struct grid half = {(grid.nx + 1) / 2, profile ? 1 : (grid.ny + 1) / 2, grid.lx, grid.ly};
-    const struct case_cost fine = cost_on(press, block, loads, &grid);
-    const struct case_cost coarse = cost_on(press, block, loads, &half);
+    const struct case_cost fine = cost_on(press, block, goals, &grid);
+    const struct case_cost coarse = cost_on(press, block, goals, &half);
     /* the heights, and the values of a file */
     const double heights = 12.0 * sizeof(double) * (double)grid_points(&grid);
     return (struct press_cost){.pressed = grid,
@@ -67,7 +69,8 @@ static size_t part_of(size_t side, double part) {
 }
 
 bool press_cost_largest(const struct map_press *press, const struct press_block *block,
-                        size_t loads, const struct press_room *room, size_t *nx, size_t *ny) {
+                        const struct press_goals *goals, const struct press_room *room, size_t *nx,
+                        size_t *ny) {
     enum { HALVINGS = 20 };
     const struct grid *map = &press->map;
     double fits = 0, fails = 1;
@@ -77,7 +80,7 @@ bool press_cost_largest(const struct map_press *press, const struct press_block 
         *ny = part_of(map->ny, middle);
         bool small = *nx < PRESS_SIDE_LEAST || (map->ny > 1 && *ny < PRESS_SIDE_LEAST);
         const struct press_cost cost =
-            small ? (struct press_cost){.nodes = 0} : press_cost_of(press, block, loads, *nx, *ny);
+            small ? (struct press_cost){.nodes = 0} : press_cost_of(press, block, goals, *nx, *ny);
         if (small || press_cost_fits(&cost, room))
             fits = middle;
         else

@@ -16,10 +16,16 @@ struct press_cost {
 
 /* Returns whether a cost is known: the model has a mesh. */
 bool press_cost_is_known(const struct contact_model *model);
-/* Estimates what so many loads take on so many points of the map as it was measured, with their
- * spacing. press: begun. The model is one whose cost is known. */
+/* Loads that a map is to be pressed to. */
+struct press_goals {
+    size_t count;
+    double *loads; /* borrowed: rising, in E* h' */
+};
+/* Estimates what the loads take on so many points of the map as it was measured, with their
+ * spacing, in the mean: steep faces jump, and one may take many times as long. press: begun. The
+ * model is one whose cost is known. */
 struct press_cost press_cost_of(const struct map_press *press, const struct press_block *block,
-                                size_t loads, size_t nx, size_t ny);
+                                const struct press_goals *goals, size_t nx, size_t ny);
 
 /* What pressing may take; 0: any. */
 struct press_room {
@@ -31,6 +37,7 @@ bool press_cost_fits(const struct press_cost *cost, const struct press_room *roo
  * even PRESS_SIDE_LEAST along the shorter side do. */
 enum { PRESS_SIDE_LEAST = 16 };
 bool press_cost_largest(const struct map_press *press, const struct press_block *block,
-                        size_t loads, const struct press_room *room, size_t *nx, size_t *ny);
+                        const struct press_goals *goals, const struct press_room *room, size_t *nx,
+                        size_t *ny);
 
 #endif

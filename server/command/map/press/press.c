@@ -357,7 +357,8 @@ static double map_area(const struct map_press *press) {
 /* The map under all loads, by each model. */
 struct pressed {
     struct map_press press;
-    double *pressures;        /* mean, in E*; owned, as the rows */
+    double *pressures;        /* mean, in E*; owned, as the next */
+    double *loads;            /* the same in E* h' */
     struct press_row *rows;   /* all loads of the first model, then those of the next */
     struct press_row *slides; /* likewise, of the path; NULL: none */
     struct press_series series[CONTACT_MODELS_MOST];
@@ -369,6 +370,7 @@ static void pressed_clear(struct pressed *pressed) {
     map_press_clear(&pressed->press);
     team_destroy(&team);
     free(pressed->pressures);
+    free(pressed->loads);
     free(pressed->rows);
     free(pressed->slides);
 }
@@ -520,7 +522,7 @@ static int report(const struct press_order *order, const struct pressed *pressed
     return status;
 }
 
-/* Fills the mean pressures of all loads, over E*, which are below the hardness. */
+/* Fills the mean pressures of all loads, which are below the hardness. */
 static int find_pressures(const struct press_order *order, struct pressed *pressed,
                           struct error *err) {
     const struct press_loads *loads = &order->loads;
@@ -528,11 +530,12 @@ static int find_pressures(const struct press_order *order, struct pressed *press
     for (size_t l = 0; l < loads->count; l++) {
         double mean = press_loads_mean(loads, l, press->slope, map_area(press));
         pressed->pressures[l] = mean;
+        pressed->loads[l] = mean / press->slope;
         if (loads->hardness > 0 && !(mean < loads->hardness))
             return error_set(err, ERROR_INPUT,
-                             "%s: load %zu, p/(E* h') = %.4g, is a mean pressure of %.4g Pa, and "
+                             "load %zu, p/(E* h') = %.4g, is a mean pressure of %.4g Pa, and "
                              "nothing bears the --hardness, %s, or more",
-                             order->path, l + 1, mean / press->slope, mean * loads->modulus,
+                             l + 1, pressed->loads[l], mean * loads->modulus,
                              order->options->words.hardness);
     }
     return 0;
@@ -542,7 +545,7 @@ static int press_models(const struct press_order *order, struct pressed *pressed
                         const struct height_map *map, struct error *err) {
     const struct map_press *press = &pressed->press;
     size_t loads = order->loads.count;
-    int status = find_pressures(order, pressed, err);
+    int status = 0;
     for (size_t m = 0; m < order->model_count && status == 0; m++)
         status = m == 0 ? press_first(order, pressed, map, err)
                         : press_loads(order, pressed, map, m, NULL, err);
@@ -561,14 +564,16 @@ static int press_or_estimate(const struct press_order *order, struct pressed *pr
     const struct press_room_order room = {.press = &pressed->press,
                                           .blocks = order->blocks,
                                           .model_count = order->model_count,
-                                          .loads = order->loads.count,
+                                          .goals = {order->loads.count, pressed->loads},
                                           .seconds_most = options->seconds_most,
                                           .with_errors = options->without_error == 0};
-    if (options->estimate) {
+    int status = find_pressures(order, pressed, err);
+    if (status == 0 && options->estimate) {
         press_room_print(stdout, &room);
         return output_flush(err);
     }
-    int status = press_room_check(&room, err);
+    if (status == 0)
+        status = press_room_check(&room, err);
     for (size_t m = 0; m < order->model_count; m++)
         pressed->seconds[m] = press_room_seconds(&room, m);
     return status != 0 ? error_context(err, "%s", order->path)
@@ -581,10 +586,11 @@ static int pressed_create(struct pressed *pressed, const struct press_order *ord
     const size_t loads = order->loads.count, points = order->slide.count;
     const size_t count = order->model_count * (loads + points);
     pressed->pressures = array_create(loads, sizeof *pressed->pressures);
+    pressed->loads = array_create(loads, sizeof *pressed->loads);
     pressed->rows = array_create(order->model_count * loads, sizeof *pressed->rows);
     if (points > 0)
         pressed->slides = array_create(order->model_count * points, sizeof *pressed->slides);
-    return pressed->pressures != NULL && pressed->rows != NULL &&
+    return pressed->pressures != NULL && pressed->loads != NULL && pressed->rows != NULL &&
                    (points == 0 || pressed->slides != NULL)
                ? 0
                : error_memory(err, count * sizeof *pressed->rows, "the loads");

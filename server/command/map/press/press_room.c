@@ -1,6 +1,5 @@
 #include "server/command/map/press/press_room.h"
 #include "jobs/kind.h"
-#include "jobs/maps/press/map_press_cost.h"
 #include "server/show/summary/summary_cells.h"
 
 enum { DURATION = 40 };
@@ -8,7 +7,7 @@ static const double MIB = 1 << 20;
 
 static struct press_cost cost_of(const struct press_room_order *order, size_t m) {
     const struct grid *map = &order->press->map;
-    return press_cost_of(order->press, &order->blocks[m], order->loads, map->nx, map->ny);
+    return press_cost_of(order->press, &order->blocks[m], &order->goals, map->nx, map->ny);
 }
 
 static struct press_room room_of(const struct press_room_order *order) {
@@ -25,7 +24,7 @@ static double all_seconds(const struct press_room_order *order, const struct pre
 static void advise(const struct press_room_order *order, size_t m, char *text, size_t size) {
     const struct press_room room = room_of(order);
     size_t nx, ny;
-    if (!press_cost_largest(order->press, &order->blocks[m], order->loads, &room, &nx, &ny))
+    if (!press_cost_largest(order->press, &order->blocks[m], &order->goals, &room, &nx, &ny))
         snprintf(text, size, "no map of this shape with %d points along a side is small enough",
                  PRESS_SIDE_LEAST);
     else if (grid_is_profile(&order->press->map))

@@ -3,13 +3,14 @@
 #ifndef RUGO_SERVER_COMMAND_MAP_PRESS_ROOM_H
 #define RUGO_SERVER_COMMAND_MAP_PRESS_ROOM_H
 
-#include "jobs/maps/press/map_press.h"
+#include "jobs/maps/press/map_press_cost.h"
 #include <stdio.h>
 
 struct press_room_order {
     const struct map_press *press;    /* begun */
     const struct press_block *blocks; /* one a model */
-    size_t model_count, loads;
+    size_t model_count;
+    struct press_goals goals;
     double seconds_most; /* of CPU time of a model; 0: any */
     bool with_errors;
 };

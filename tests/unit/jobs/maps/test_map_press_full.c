@@ -278,7 +278,9 @@ static void costs_are_estimated(void **state) {
     struct height_map map = waves(64, 1);
     struct press_series series = {.block = {.model = full_model(), .poisson = 0.3}, .rows = &row};
     press_waves(&press, &map, PRESS_MIRRORED, 1, &pressure, &series);
-    const struct press_cost cost = press_cost_of(&press, &series.block, 1, 64, 1);
+    double load = pressure / press.slope;
+    const struct press_goals goals = {1, &load};
+    const struct press_cost cost = press_cost_of(&press, &series.block, &goals, 64, 1);
     assert_int_equal((long)cost.nodes, (long)series.mesh.nodes); /* of the mesh itself */
     assert_int_equal(cost.pressed.nx, 128);
     assert_true(cost.seconds > cost.error_seconds && cost.error_seconds > 0);
@@ -288,7 +290,7 @@ static void costs_are_estimated(void **state) {
     dragged.slide = path;
     dragged.slide_count = 3;
     dragged.slide_steps = 2;
-    const struct press_cost drag = press_cost_of(&press, &dragged, 1, 64, 1);
+    const struct press_cost drag = press_cost_of(&press, &dragged, &goals, 64, 1);
     assert_true(drag.seconds > 2 * cost.seconds && drag.seconds < 1000 * cost.seconds);
     size_t nx = 0, ny = 0;
     struct press_room room = {.bytes = cost.bytes, .seconds = cost.seconds};
@@ -296,13 +298,13 @@ static void costs_are_estimated(void **state) {
     room.with_errors = true;
     assert_false(press_cost_fits(&cost, &room));
     room.seconds = cost.seconds / 2;
-    assert_true(press_cost_largest(&press, &series.block, 1, &room, &nx, &ny));
-    const struct press_cost largest = press_cost_of(&press, &series.block, 1, nx, ny);
-    const struct press_cost beyond = press_cost_of(&press, &series.block, 1, nx + 2, ny);
+    assert_true(press_cost_largest(&press, &series.block, &goals, &room, &nx, &ny));
+    const struct press_cost largest = press_cost_of(&press, &series.block, &goals, nx, ny);
+    const struct press_cost beyond = press_cost_of(&press, &series.block, &goals, nx + 2, ny);
     assert_true(nx % 2 == 0 && nx < 64 && ny == 1);
     assert_true(press_cost_fits(&largest, &room) && !press_cost_fits(&beyond, &room));
     room.bytes = 1;
-    assert_false(press_cost_largest(&press, &series.block, 1, &room, &nx, &ny));
+    assert_false(press_cost_largest(&press, &series.block, &goals, &room, &nx, &ny));
     map_press_clear(&press);
     height_map_clear(&map);
 }
