@@ -121,6 +121,7 @@ int merger_result(const struct job_merger *merger, struct case_result *out, stru
                                       &merger->realisations, out, err);
     if (status != 0)
         result_clear(out);
+    result_sampled(out, out->realisations);
     return status;
 }
 

@@ -186,6 +186,7 @@ int pairs_difference(const struct job_merger *minuend, const struct case_result 
     if (!common) {
         int status = difference_make(minuend_result, subtrahend_result, NULL, out, err);
         out->realisations = status != 0 ? 0 : a < b ? a : b;
+        result_sampled(out, out->realisations);
         return status;
     }
     int status = side_create(&pairs.a, minuend, (size_t)(a < b ? a : b), err);
@@ -193,6 +194,7 @@ int pairs_difference(const struct job_merger *minuend, const struct case_result 
         status = side_create(&pairs.b, subtrahend, (size_t)(a < b ? a : b), err);
     if (status == 0)
         status = make(&pairs, minuend_result, subtrahend_result, out, err);
+    result_sampled(out, out->realisations);
     side_clear(&pairs.a);
     side_clear(&pairs.b);
     return status;

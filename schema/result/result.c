@@ -211,6 +211,13 @@ int result_add_scalar(struct case_result *result, const struct scalar *scalar, s
     return 0;
 }
 
+void result_sampled(struct case_result *result, uint64_t realisations) {
+    for (size_t a = 0; a < result->curve_count; a++)
+        result->curves[a].sampled = realisations;
+    for (size_t s = 0; s < result->scalar_count; s++)
+        result->scalars[s].sampled = realisations;
+}
+
 void result_keep(struct case_result *result, const char *quantity, bool scalars_only) {
     size_t kept = 0;
     for (size_t a = 0; a < result->curve_count; a++)

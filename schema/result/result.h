@@ -118,6 +118,7 @@ struct curve {
     bool counted;               /* from a histogram, or over its bins, with the counts outside */
     double underflow, overflow; /* counts below and above the bins */
     struct physical_unit x_unit, x2_unit, y_unit;
+    uint64_t sampled; /* realisations that the values are means of; 0: none, as of one map */
 };
 
 /* Makes a curve without points, attributes and errors. */
@@ -168,6 +169,7 @@ struct scalar {
     struct scalar_error errors[ERROR_SOURCES];
     double law_difference, law_standard_error; /* as of curves; NaN: not known */
     struct physical_unit unit;
+    uint64_t sampled; /* as of curves */
 };
 /* Returns a scalar without sources of error, a theory of the grid and another law. */
 struct scalar scalar_named(const char *name, double value, double standard_error, double theory);
@@ -224,6 +226,8 @@ const char *result_text(struct case_result *result, const char *text); /* NULL f
  * lists of curves and scalars may move. */
 int result_add_curve(struct case_result *result, const struct curve *curve, struct error *err);
 int result_add_scalar(struct case_result *result, const struct scalar *scalar, struct error *err);
+/* Says of all curves and scalars that they are means of so many realisations. */
+void result_sampled(struct case_result *result, uint64_t realisations);
 /* Keeps the curves of a quantity (NULL: of all), or no curves at all. */
 void result_keep(struct case_result *result, const char *quantity, bool scalars_only);
 

@@ -129,15 +129,15 @@ static bool put_error(FILE *file, bool *first, const struct curve *curve,
 }
 
 /* Prints the sources that are not known, an array of their names. */
-static bool put_unknown(FILE *file, bool *first, const bool unknown[ERROR_SOURCES]) {
+static bool put_unknown(FILE *file, bool *first, const bool unknown[UNKNOWN_SOURCES]) {
     bool done = put_key(file, first, "unknown_errors"), none = true;
     fputc('[', file);
-    for (size_t s = 0; s < ERROR_SOURCES && done; s++) {
+    for (size_t s = 0; s < UNKNOWN_SOURCES && done; s++) {
         if (!unknown[s])
             continue;
         fputs(none ? "" : ",", file);
         none = false;
-        done = json_print_text(file, ERROR_SOURCE_ROWS[s].name);
+        done = json_print_text(file, unknown_source_name(s));
     }
     fputc(']', file);
     return done;
@@ -148,7 +148,7 @@ static bool put_unknown(FILE *file, bool *first, const bool unknown[ERROR_SOURCE
 static bool put_totals(FILE *file, bool *first, const struct curve *curve) {
     size_t count = curve_value_count(curve);
     double *low = array_create(count + 1, 2 * sizeof *low);
-    bool unknown[ERROR_SOURCES];
+    bool unknown[UNKNOWN_SOURCES];
     if (low == NULL)
         return false;
     double *high = low + count;

@@ -378,6 +378,7 @@ int result_read(const cJSON *document, struct case_result *out, struct error *er
         status = result_read_notes(&result, field_at(document, "notes"), err);
     if (status == 0)
         status = result_read_error(&result, field_at(document, "error"), err);
+    result_sampled(&result, result.realisations);
     if (status != 0) {
         result_clear(&result);
         return status;

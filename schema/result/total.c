@@ -1,9 +1,19 @@
 #include "schema/result/total.h"
+#include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-struct total total_of(double value, double standard_error,
+const char *unknown_source_name(size_t source) {
+    return source == UNKNOWN_STATISTICAL ? "statistical" : ERROR_SOURCE_ROWS[source].name;
+}
+
+double total_deviations(double sampled) {
+    static const double NORMAL = 1.96, BELOW = 0.975;
+    return sampled > 0 ? gsl_cdf_tdist_Pinv(BELOW, fmax(1, sampled - 1)) : NORMAL;
+}
+
+struct total total_of(double value, double standard_error, double sampled,
                       const struct scalar_error errors[ERROR_SOURCES]) {
     struct total total = {.low = NAN, .high = NAN};
     double most = 0, least = 0;
@@ -17,16 +27,17 @@ struct total total_of(double value, double standard_error,
         least += known ? error->value - (bounded ? error->bound : 0) : 0;
         any = any || known;
     }
+    total.unknown[UNKNOWN_STATISTICAL] = sampled == 1 && isnan(standard_error);
     if (isnan(value) || !any)
         return total;
-    double statistical = isnan(standard_error) ? 0 : TOTAL_DEVIATIONS * standard_error;
+    double statistical = standard_error > 0 ? total_deviations(sampled) * standard_error : 0;
     total.low = value - (statistical + fmax(0, most));
     total.high = value + (statistical + fmax(0, -least));
     return total;
 }
 
 struct total scalar_total(const struct scalar *scalar) {
-    return total_of(scalar->value, scalar->standard_error, scalar->errors);
+    return total_of(scalar->value, scalar->standard_error, (double)scalar->sampled, scalar->errors);
 }
 
 double total_half_width(double value, const struct total *total) {
@@ -35,7 +46,7 @@ double total_half_width(double value, const struct total *total) {
 
 bool total_is_partial(const struct total *total) {
     bool partial = false;
-    for (size_t s = 0; s < ERROR_SOURCES; s++)
+    for (size_t s = 0; s < UNKNOWN_SOURCES; s++)
         partial = partial || total->unknown[s];
     return partial;
 }
@@ -43,10 +54,10 @@ bool total_is_partial(const struct total *total) {
 void total_unknown_names(const struct total *total, char names[TOTAL_NAMES_SIZE]) {
     size_t length = 0;
     names[0] = '\0';
-    for (size_t s = 0; s < ERROR_SOURCES && length < TOTAL_NAMES_SIZE; s++)
+    for (size_t s = 0; s < UNKNOWN_SOURCES && length < TOTAL_NAMES_SIZE; s++)
         if (total->unknown[s])
             length += (size_t)snprintf(names + length, TOTAL_NAMES_SIZE - length, "%s%s",
-                                       length > 0 ? " " : "", ERROR_SOURCE_ROWS[s].name);
+                                       length > 0 ? " " : "", unknown_source_name(s));
 }
 
 static double at_or_nan(const double *numbers, size_t at) {
@@ -63,20 +74,25 @@ struct scalar_error curve_error_at(const struct curve *curve, enum error_source 
                                  .standard_error = at_or_nan(error->standard_error, at)};
 }
 
+double curve_sampled_at(const struct curve *curve, size_t at) {
+    double without = curve_is_partial(curve) ? at_or_nan(curve->valueless, at) : 0;
+    return (double)curve->sampled - (isnan(without) ? 0 : without);
+}
+
 struct total curve_total(const struct curve *curve, size_t at) {
     struct scalar_error errors[ERROR_SOURCES];
     for (enum error_source s = 0; s < ERROR_SOURCES; s++)
         errors[s] = curve_error_at(curve, s, at);
-    return total_of(curve->y[at], curve->standard_error[at], errors);
+    return total_of(curve->y[at], curve->standard_error[at], curve_sampled_at(curve, at), errors);
 }
 
-void curve_unknown(const struct curve *curve, bool unknown[ERROR_SOURCES]) {
-    memset(unknown, 0, ERROR_SOURCES * sizeof *unknown);
+void curve_unknown(const struct curve *curve, bool unknown[UNKNOWN_SOURCES]) {
+    memset(unknown, 0, UNKNOWN_SOURCES * sizeof *unknown);
     for (size_t s = 0; s < ERROR_SOURCES; s++)
         unknown[s] = curve->errors[s].applies && curve->errors[s].value == NULL;
     for (size_t at = 0; at < curve_value_count(curve); at++) {
         const struct total total = curve_total(curve, at);
-        for (size_t s = 0; s < ERROR_SOURCES && !isnan(curve->y[at]); s++)
+        for (size_t s = 0; s < UNKNOWN_SOURCES && !isnan(curve->y[at]); s++)
             unknown[s] = unknown[s] || total.unknown[s];
     }
 }

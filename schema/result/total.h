@@ -4,27 +4,29 @@
  * and its standard error s. With H the sum of (value + bound) and L that of (value - bound) over
  * the known sources that bear on the value y,
  *
- *     low  = y - (1.96 s + max(0, H)),
- *     high = y + (1.96 s + max(0, -L)).
+ *     low  = y - (t s + max(0, H)),
+ *     high = y + (t s + max(0, -L)).
  *
  * The interval holds y, and the truth with a probability of 95 % at least, wherever the errors of
- * the sources lie within their bounds: 1.96 s is half the width of the statistical interval of 95
- * %, and H and L are the largest and the least that the sources come to. They add up plainly, as
+ * the sources lie within their bounds: t s is half the width of Student's interval of 95 % of n
+ * realisations (t is 2.09 of 20, 1.96 of very many, as of errors that are not of realisations), and
+ * H and L are the largest and the least that the sources come to. They add up plainly, as
  * the sources' errors are the same in every realisation. The root of the sum of squares, as of
  * errors that are independent, would hold a truth at the end of the bounds of 2 +- 0.25, beside a
  * standard error of 0.25, in 58 % of studies; this one does in 97 %.
  *
  * A source that bears on the value but is not known adds nothing: the interval is that of the
- * others, and the source is named. A standard error that is not known, or of a single map, adds
- * nothing either. */
+ * others, and the source is named. So is the statistical error of one realisation, which shows no
+ * scatter. A standard error that is not known, or of a single map, adds nothing either. */
 #ifndef RUGO_SCHEMA_RESULT_TOTAL_H
 #define RUGO_SCHEMA_RESULT_TOTAL_H
 
 #include "schema/result/result.h"
 
-/* Half the width of an interval of 95 %, in standard errors. */
-#define TOTAL_DEVIATIONS 1.96
-
+/* What may not be known of a value: a source of error, or, behind them, the statistical error, as
+ * one realisation shows no scatter. */
+enum { UNKNOWN_STATISTICAL = ERROR_SOURCES, UNKNOWN_SOURCES };
+const char *unknown_source_name(size_t source);
 /* Of the names of all sources with spaces between. */
 enum { TOTAL_NAMES_SIZE = 160 };
 
@@ -34,15 +36,21 @@ struct total {
     double low, high;
     /* Sources that bear on the value, and are not in the interval; of a source that has a value
      * without a bound the value is. */
-    bool unknown[ERROR_SOURCES];
+    bool unknown[UNKNOWN_SOURCES];
 };
 
-/* Returns the total of a value with its errors by source. */
-struct total total_of(double value, double standard_error,
+/* Returns half the width of the statistical interval of 95 % of so many realisations, in standard
+ * errors: Student's (1908), of 0 the normal distribution's. */
+double total_deviations(double sampled);
+/* Returns the total of a value with its errors by source; sampled: as of curves, less realisations
+ * without a value. */
+struct total total_of(double value, double standard_error, double sampled,
                       const struct scalar_error errors[ERROR_SOURCES]);
 struct total scalar_total(const struct scalar *scalar);
 /* Returns the error of a source at a point, or of a matrix in an occupied cell. */
 struct scalar_error curve_error_at(const struct curve *curve, enum error_source source, size_t at);
+/* Returns of how many realisations a value is, those without a value left out. */
+double curve_sampled_at(const struct curve *curve, size_t at);
 /* Returns the total of a point, or of a matrix of an occupied cell: at < curve_value_count. */
 struct total curve_total(const struct curve *curve, size_t at);
 /* Returns the larger distance of the ends of a total from its value; NaN without ends. */
@@ -52,6 +60,6 @@ bool total_is_partial(const struct total *total);
 /* Writes the names of the sources that are not in the interval, with spaces between. */
 void total_unknown_names(const struct total *total, char names[TOTAL_NAMES_SIZE]);
 /* Finds the sources that are not known at some point that has a value, or nowhere. */
-void curve_unknown(const struct curve *curve, bool unknown[ERROR_SOURCES]);
+void curve_unknown(const struct curve *curve, bool unknown[UNKNOWN_SOURCES]);
 
 #endif

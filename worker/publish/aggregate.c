@@ -164,6 +164,7 @@ static int target_answer(struct store *store, const struct target_case *of, uint
     out->realisations = 0;
     for (size_t a = 0; a < of->count && status == 0; a++)
         out->realisations += components[a].done;
+    result_sampled(out, out->realisations);
     if (status != 0)
         result_clear(out);
     parts_clear(parts, of->count);
@@ -293,6 +294,8 @@ static int fresh_result(struct store *store, const struct aggregate *aggregate,
                                  &found, err);
     if (status == 0 && !found)
         status = answer_case(store, aggregate, case_number, info, out, &found, NULL, err);
+    if (status == 0 && found) /* published curves do not say of how many they are */
+        result_sampled(out, info->realisations_done);
     if (status != 0 || found)
         return status;
     return merge_case(store, aggregate, case_number, info, out, err);

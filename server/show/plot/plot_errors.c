@@ -189,20 +189,20 @@ void plot_errors_include(struct frame *frame, const struct plot_lines *lines, si
 }
 
 static void note_unknown(struct legend *legend, const struct plot_lines *lines, bool bands) {
-    bool left_out[ERROR_SOURCES] = {false}, any = false;
+    bool left_out[UNKNOWN_SOURCES] = {false}, any = false;
     char text[PLOT_LABEL_SIZE];
     snprintf(text, sizeof text, "dashed %s: without ", bands ? "edges" : "bars");
     for (size_t n = 0; n < lines->count; n++) {
-        bool unknown[ERROR_SOURCES];
+        bool unknown[UNKNOWN_SOURCES];
         curve_unknown(lines->list[n].curve, unknown);
-        for (size_t s = 0; s < ERROR_SOURCES && lines->list[n].coarseness == 0; s++)
+        for (size_t s = 0; s < UNKNOWN_SOURCES && lines->list[n].coarseness == 0; s++)
             left_out[s] = left_out[s] || unknown[s];
     }
-    for (size_t s = 0; s < ERROR_SOURCES; s++) {
+    for (size_t s = 0; s < UNKNOWN_SOURCES; s++) {
         size_t used = strlen(text);
         if (left_out[s])
             snprintf(text + used, sizeof text - used, "%s%s", any ? ", " : "",
-                     ERROR_SOURCE_ROWS[s].name);
+                     unknown_source_name(s));
         any = any || left_out[s];
     }
     if (any)

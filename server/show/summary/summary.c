@@ -324,7 +324,7 @@ static bool is_shown(const struct study_result *study, const struct curve *curve
 }
 
 void summary_of_difference(const struct study_result *study, FILE *file) {
-    bool unknown[ERROR_SOURCES] = {false}, paired = true;
+    bool unknown[UNKNOWN_SOURCES] = {false}, paired = true;
     if (study->case_count == 0)
         return;
     const struct case_result *one = &study->cases[0];
@@ -545,7 +545,7 @@ static void print_scalars_unknown(const struct scalar_table *plan, FILE *file) {
             if (scalar == NULL || isnan(scalar->value))
                 continue;
             const struct total total = scalar_total(scalar);
-            for (size_t e = 0; e < ERROR_SOURCES; e++)
+            for (size_t e = 0; e < UNKNOWN_SOURCES; e++)
                 to->unknown[e] = to->unknown[e] || total.unknown[e];
         }
     }

@@ -70,23 +70,24 @@ void print_total_legend(FILE *file) {
           file);
 }
 
-const char *source_word(const char *const *words, enum error_source source) {
-    return words != NULL && words[source] != NULL ? words[source] : ERROR_SOURCE_ROWS[source].name;
+const char *source_word(const char *const *words, size_t source) {
+    return words != NULL && source < ERROR_SOURCES && words[source] != NULL
+               ? words[source]
+               : unknown_source_name(source);
 }
 
-static void print_sources(const char *title, const bool chosen[ERROR_SOURCES],
+static void print_sources(const char *title, size_t count, const bool *chosen,
                           const char *const *words, FILE *file) {
     size_t told = 0;
-    for (size_t s = 0; s < ERROR_SOURCES; s++)
+    for (size_t s = 0; s < count; s++)
         if (chosen[s])
-            fprintf(file, "%s%s", told++ > 0 ? ", " : title,
-                    source_word(words, (enum error_source)s));
+            fprintf(file, "%s%s", told++ > 0 ? ", " : title, source_word(words, s));
     if (told > 0)
         fputs(".\n", file);
 }
 
-void print_unknown(const bool unknown[ERROR_SOURCES], const char *const *words, FILE *file) {
-    print_sources("Errors not known: ", unknown, words, file);
+void print_unknown(const bool unknown[UNKNOWN_SOURCES], const char *const *words, FILE *file) {
+    print_sources("Errors not known: ", UNKNOWN_SOURCES, unknown, words, file);
 }
 
 static void print_source_of(size_t count, const struct unknown_of *list, size_t source,
@@ -106,14 +107,13 @@ static void print_source_of(size_t count, const struct unknown_of *list, size_t 
 void print_unknown_of(size_t count, const struct unknown_of *list, const char *const *words,
                       FILE *file) {
     bool any = false;
-    for (size_t s = 0; s < ERROR_SOURCES; s++) {
+    for (size_t s = 0; s < UNKNOWN_SOURCES; s++) {
         size_t n = 0;
         while (n < count && !list[n].unknown[s])
             n++;
         if (n == count)
             continue;
-        fprintf(file, "%s%s",
-                any ? "; " : "Errors not known: ", source_word(words, (enum error_source)s));
+        fprintf(file, "%s%s", any ? "; " : "Errors not known: ", source_word(words, s));
         print_source_of(count, list, s, file);
         any = true;
     }
@@ -128,8 +128,8 @@ void print_small(const bool small[ERROR_SOURCES], const char *const *words, FILE
     bool others[ERROR_SOURCES], solver[ERROR_SOURCES] = {[ERROR_SOLVER] = small[ERROR_SOLVER]};
     for (size_t s = 0; s < ERROR_SOURCES; s++)
         others[s] = small[s] && s != ERROR_SOLVER;
-    print_sources("Errors below 0.01 %: ", others, words, file);
-    print_sources("Errors below 0.5 %: ", solver, words, file);
+    print_sources("Errors below 0.01 %: ", ERROR_SOURCES, others, words, file);
+    print_sources("Errors below 0.5 %: ", ERROR_SOURCES, solver, words, file);
 }
 
 void print_law_legend(FILE *file) {

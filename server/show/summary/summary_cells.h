@@ -25,7 +25,7 @@ void total_share_cell(struct text_table *table, double share, bool partial);
 /* The line below a table with columns "total %". */
 void print_total_legend(FILE *file);
 /* Returns what `words` calls a source of error; its own name where that is NULL. */
-const char *source_word(const char *const *words, enum error_source source);
+const char *source_word(const char *const *words, size_t source);
 /* Errors below this share of a value have no column of their own. */
 #define ERROR_SHOWN 1e-4
 /* The same of the solver, which studies let follow their other errors. */
@@ -36,11 +36,11 @@ void realisations_text(double realisations, char *out, size_t size);
 double error_shown(size_t source);
 /* "Errors not known: cell." and "Errors below 0.01 %: block." in lines of their own; nothing where
  * there are none. */
-void print_unknown(const bool unknown[ERROR_SOURCES], const char *const *words, FILE *file);
+void print_unknown(const bool unknown[UNKNOWN_SOURCES], const char *const *words, FILE *file);
 /* What is printed beside each other, by name, and the sources that are not known of each. */
 struct unknown_of {
     const char *name;
-    bool unknown[ERROR_SOURCES];
+    bool unknown[UNKNOWN_SOURCES];
 };
 /* "Errors not known: cell, mesh of full.": names follow where not all of them lack the source. */
 void print_unknown_of(size_t count, const struct unknown_of *list, const char *const *words,

@@ -172,10 +172,10 @@ static void find_small(const struct finest_curves *finest, bool small[ERROR_SOUR
 }
 
 /* Finds the sources that bear on a curve and are not known, at some point at least. */
-static void find_unknown(const struct curve *curve, bool unknown[ERROR_SOURCES]) {
-    bool own[ERROR_SOURCES];
+static void find_unknown(const struct curve *curve, bool unknown[UNKNOWN_SOURCES]) {
+    bool own[UNKNOWN_SOURCES];
     curve_unknown(curve, own);
-    for (size_t s = 0; s < ERROR_SOURCES; s++)
+    for (size_t s = 0; s < UNKNOWN_SOURCES; s++)
         unknown[s] = unknown[s] || own[s];
 }
 
@@ -222,8 +222,7 @@ static void put_heading(const struct quantity_table *words, const struct finest_
         table_cell(table, "total %%");
         for (int source = 0; source < ERROR_SOURCES; source++)
             if (has_column(finest, (enum error_source)source))
-                table_cell(table, "%s %%",
-                           source_word(words->error_words, (enum error_source)source));
+                table_cell(table, "%s %%", source_word(words->error_words, (size_t)source));
         if (has_law(finest))
             table_cell(table, "law %%");
     }
@@ -325,9 +324,9 @@ static double largest_law(const struct curve *curve) {
  * values, of each the root of the sum of squares. */
 static void total_size_cell(struct text_table *table, const struct curve *curve) {
     double squares = 0, reference = 0;
-    bool unknown[ERROR_SOURCES], partial = false;
+    bool unknown[UNKNOWN_SOURCES], partial = false;
     curve_unknown(curve, unknown);
-    for (size_t s = 0; s < ERROR_SOURCES; s++)
+    for (size_t s = 0; s < UNKNOWN_SOURCES; s++)
         partial = partial || unknown[s];
     for (size_t k = 0; k < curve->n; k++) {
         const struct total total = curve_total(curve, k);
@@ -406,7 +405,7 @@ static void put_row_heading(const struct quantity_table *words, const struct sho
     table_cell(table, "total %%");
     for (int source = 0; source < ERROR_SOURCES; source++)
         if (known[source])
-            table_cell(table, "%s %%", source_word(words->error_words, (enum error_source)source));
+            table_cell(table, "%s %%", source_word(words->error_words, (size_t)source));
     if (law)
         table_cell(table, "law %%");
     table_fold(table);
@@ -451,7 +450,7 @@ static void put_row(const struct quantity_table *words, const struct shown_cases
 
 static void print_rows(const struct quantity_table *words, const struct shown_cases *shown,
                        const struct study_report *report, FILE *file) {
-    bool known[ERROR_SOURCES], small[ERROR_SOURCES], unknown[ERROR_SOURCES] = {false};
+    bool known[ERROR_SOURCES], small[ERROR_SOURCES], unknown[UNKNOWN_SOURCES] = {false};
     size_t scalars = 0, sources = 0;
     bool law = any_law(words, shown);
     find_known(report, shown, known, small);

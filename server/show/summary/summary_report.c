@@ -12,7 +12,7 @@ enum { TABLES_MOST = 4, NOTES_SHOWN = 40 };
 
 /* A table has columns for the sources of which anything is known. */
 struct error_columns {
-    bool shown[ERROR_COLUMNS], unknown[ERROR_SOURCES], small[ERROR_SOURCES];
+    bool shown[ERROR_COLUMNS], unknown[UNKNOWN_SOURCES], small[ERROR_SOURCES];
     size_t count;
 };
 

@@ -128,13 +128,14 @@ static int set_physical(struct case_table *table, const struct physical_unit *un
 /* Sums up the errors of a value of a column, which are set, and marks those that are not known. */
 static void sum_errors(struct table_value *value, struct table_column *column) {
     value->error = NAN;
-    value->total = total_of(value->value, value->standard_error, value->errors);
+    value->total = total_of(value->value, value->standard_error, value->sampled, value->errors);
     column->has_total = column->has_total || total_half_width(value->value, &value->total) >
                                                  TABLE_ROUNDING * fabs(value->value);
-    for (size_t s = 0; s < ERROR_SOURCES; s++) {
-        const struct scalar_error *error = &value->errors[s];
+    for (size_t s = 0; s < UNKNOWN_SOURCES; s++)
         column->unknown[s] =
             column->unknown[s] || (value->total.unknown[s] && !isnan(value->value));
+    for (size_t s = 0; s < ERROR_SOURCES; s++) {
+        const struct scalar_error *error = &value->errors[s];
         if (error->applies && error->known)
             value->error = (isnan(value->error) ? 0 : value->error) + fabs(error->value) +
                            (isnan(error->bound) ? 0 : error->bound);
@@ -146,6 +147,7 @@ static void sum_errors(struct table_value *value, struct table_column *column) {
 static struct table_value value_of(const struct scalar *scalar, struct table_column *column) {
     struct table_value value = {.value = scalar->value,
                                 .standard_error = scalar->standard_error,
+                                .sampled = (double)scalar->sampled,
                                 .theory = scalar->theory,
                                 .grid = scalar->grid,
                                 .law_difference = scalar->law_difference,
@@ -276,6 +278,7 @@ static struct table_value value_at(const struct curve *curve, size_t k, const st
                                    struct table_column *column) {
     struct table_value value = {.value = curve->y[k],
                                 .standard_error = curve->standard_error[k],
+                                .sampled = curve_sampled_at(curve, k),
                                 .theory = NAN,
                                 .grid = NAN,
                                 .law_difference = number_at(curve->law_difference, k),

@@ -28,7 +28,8 @@ enum table_column_type { COLUMN_PARAMETER, COLUMN_SCALAR, COLUMN_CURVE };
 struct table_value {
     const struct result_parameter *parameter; /* of COLUMN_PARAMETER alone; NULL: without it */
     double value, standard_error;
-    double error; /* the sum of what other sources are known to leave: |value| + bound */
+    double sampled; /* realisations that the value is of; 0: none */
+    double error;   /* the sum of what other sources are known to leave: |value| + bound */
     double theory;
     double grid; /* theory on the grid, of a scalar alone */
     double law_difference, law_standard_error;
@@ -46,10 +47,10 @@ struct table_column {
     const char *model;             /* NULL: without models */
     double x;
     const char *x_label;
-    const char *theory;          /* of a curve: whose values stand beside it; NULL: none */
-    bool has_total;              /* some value has a total interval, more than rounding */
-    bool unknown[ERROR_SOURCES]; /* sources that bear on some row and are not known there */
-    struct table_value *values;  /* one a row */
+    const char *theory;            /* of a curve: whose values stand beside it; NULL: none */
+    bool has_total;                /* some value has a total interval, more than rounding */
+    bool unknown[UNKNOWN_SOURCES]; /* sources that bear on some row and are not known there */
+    struct table_value *values;    /* one a row */
 };
 /* Owns its texts and values. Initialise with {0}. */
 struct case_table {

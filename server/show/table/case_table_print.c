@@ -278,9 +278,9 @@ static bool print_column(const struct table_column *column, FILE *file) {
         done = done && json_print_text(file, column->unit);
     done = done && put_member(file, "physical_unit", column->physical);
     bool first = true;
-    for (size_t s = 0; s < ERROR_SOURCES && column->type != COLUMN_PARAMETER; s++)
+    for (size_t s = 0; s < UNKNOWN_SOURCES && column->type != COLUMN_PARAMETER; s++)
         if (column->unknown[s]) {
-            fprintf(file, "%s\"%s\"", first ? ",\"unknown\":[" : ",", ERROR_SOURCE_ROWS[s].name);
+            fprintf(file, "%s\"%s\"", first ? ",\"unknown\":[" : ",", unknown_source_name(s));
             first = false;
         }
     fputs(first ? "}" : "]}", file);

@@ -163,7 +163,7 @@ static void count(struct coverage *coverage, double truth, const struct curve *c
     struct scalar_error errors[ERROR_SOURCES] = {0};
     errors[ERROR_PATCH] = curve_error_at(curve, ERROR_PATCH, k);
     assert_true(errors[ERROR_PATCH].applies && errors[ERROR_PATCH].known);
-    const struct total total = total_of(curve->y[k], curve->standard_error[k], errors);
+    const struct total total = total_of(curve->y[k], curve->standard_error[k], 0, errors);
     coverage->n++;
     coverage->held += truth >= total.low && truth <= total.high ? 1 : 0;
     coverage->error += curve->y[k] - truth;

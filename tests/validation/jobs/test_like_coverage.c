@@ -81,11 +81,11 @@ static void count(struct coverage *coverage, double truth, double unit, double v
                   double standard_error, const struct scalar_error *patch) {
     struct scalar_error errors[ERROR_SOURCES] = {0};
     assert_true(patch->applies && patch->known);
-    const struct total without = total_of(value * unit, standard_error * unit, errors);
+    const struct total without = total_of(value * unit, standard_error * unit, 0, errors);
     errors[ERROR_PATCH] = *patch;
     errors[ERROR_PATCH].value *= unit;
     errors[ERROR_PATCH].bound *= unit;
-    const struct total with = total_of(value * unit, standard_error * unit, errors);
+    const struct total with = total_of(value * unit, standard_error * unit, 0, errors);
     coverage->n++;
     coverage->with += truth >= with.low && truth <= with.high;
     coverage->without += truth >= without.low && truth <= without.high;
