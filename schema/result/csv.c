@@ -12,7 +12,7 @@ struct columns {
     size_t count;       /* of theories */
     const char **names; /* owned: room for every theory of every curve */
     bool difference, units;
-    const struct study_result *study;
+    struct swept swept;
 };
 
 static void collect_theories(struct columns *columns, const struct curve *curve) {
@@ -55,12 +55,11 @@ static void print_parameter(FILE *file, const struct result_parameter *value) {
         print_text(file, value->text);
 }
 
-static void print_labels(FILE *file, const struct study_result *study,
-                         const struct case_result *one, const struct curve *curve) {
-    const char *pointer;
+static void print_labels(FILE *file, const struct swept *swept, const struct case_result *one,
+                         const struct curve *curve) {
     fprintf(file, "%llu", (unsigned long long)one->case_number);
-    for (size_t n = 0; (pointer = swept_pointer(study, n)) != NULL; n++)
-        print_parameter(file, result_parameter(one, pointer));
+    for (size_t n = 0; n < swept->count; n++)
+        print_parameter(file, result_parameter(one, swept->columns[n].pointer));
     fputc(',', file);
     print_text(file, curve->quantity);
     const struct curve_attribute *row;
@@ -122,7 +121,7 @@ static void print_line(FILE *file, const struct case_result *one, const struct c
     size_t at = matrix ? curve->cells[n] : n;
     double x = curve->x[matrix ? at / curve->columns : n];
     double x2 = matrix ? curve->x2[at % curve->columns] : (double)NAN;
-    print_labels(file, columns->study, one, curve);
+    print_labels(file, &columns->swept, one, curve);
     print_field(file, x);
     print_field(file, x2);
     print_field(file, curve->y[n]);
@@ -159,12 +158,12 @@ static bool is_fixed(const char *name) {
 }
 
 static void print_heading(FILE *file, const struct columns *columns) {
-    const struct study_result *study = columns->study;
     const struct curve_attribute *row;
-    const char *name;
     fputs("case", file);
-    for (size_t n = 0; (name = swept_name(study, n)) != NULL; n++)
-        fprintf(file, ",%s", is_fixed(name) ? swept_pointer(study, n) + 1 : name);
+    for (size_t n = 0; n < columns->swept.count; n++) {
+        const struct swept_column *column = &columns->swept.columns[n];
+        fprintf(file, ",%s", is_fixed(column->name) ? column->pointer + 1 : column->name);
+    }
     fputs(",quantity", file);
     for (size_t n = 0; (row = curve_column(n)) != NULL; n++)
         fprintf(file, ",%s", row->key);
@@ -202,10 +201,10 @@ static void print_case(FILE *file, const struct case_result *one, const struct c
 bool csv_print(FILE *file, const struct study_result *study) {
     const struct case_result *cases = study->cases;
     struct columns columns = {
-        .names = array_create(theories_most(study->case_count, cases), sizeof *columns.names),
-        .study = study};
+        .names = array_create(theories_most(study->case_count, cases), sizeof *columns.names)};
     if (columns.names == NULL)
         return false;
+    swept_find(study, &columns.swept);
     for (size_t c = 0; c < study->case_count; c++)
         for (size_t a = 0; a < cases[c].curve_count; a++)
             collect_theories(&columns, &cases[c].curves[a]);

@@ -2,7 +2,7 @@
  * point is a line; so is an occupied cell of a matrix. Lines in front that begin with # give the
  * study and its provenance, where these are known.
  *
- * Columns: case, a column for each parameter that the study sweeps (swept_name), quantity, the
+ * Columns: case, a column for each parameter that the study sweeps (swept.h), quantity, the
  * attributes of CURVE_ATTRIBUTES that stand in tables, x, x2, y, standard_error, a column for each
  * source of ERROR_SOURCE_ROWS, valueless, law_difference, law_standard_error. Differences add less
  * (the case taken off), minuend, subtrahend and paired. Then comes theory_NAME for each theory of

@@ -2,74 +2,67 @@
 #include <cjson/cJSON.h>
 #include <string.h>
 
+static void add(struct swept *out, const char *pointer) {
+    if (out->count < SWEPT_MOST)
+        out->columns[out->count++].pointer = pointer;
+}
+
 /* Returns whether a pointer is that of a member of the object that `whole` names. */
 static bool is_member(const char *pointer, const char *whole) {
     size_t length = strlen(whole);
     return strncmp(pointer, whole, length) == 0 && pointer[length] == '/';
 }
 
-/* Returns whether an earlier parameter of the same or of an earlier case has the pointer of this
- * one. */
-static bool is_met(const struct study_result *study, size_t number, size_t parameter) {
-    const char *pointer = study->cases[number].parameters[parameter].pointer;
-    for (size_t c = 0; c < number; c++)
-        if (result_parameter(&study->cases[c], pointer) != NULL)
-            return true;
-    return result_parameter(&study->cases[number], pointer) !=
-           &study->cases[number].parameters[parameter];
-}
-
-/* Returns the n-th member that cases have of a swept value which is an object, such as a height in
- * one of several units; NULL beyond the last. */
-static const char *member_of(const struct study_result *study, const char *whole, size_t n) {
-    for (size_t c = 0; c < study->case_count; c++)
-        for (size_t p = 0; p < study->cases[c].parameter_count; p++) {
-            const char *pointer = study->cases[c].parameters[p].pointer;
-            if (is_member(pointer, whole) && !is_met(study, c, p) && n-- == 0)
-                return pointer;
-        }
-    return NULL;
-}
-
-/* Returns whether cases have the swept value itself, and not its members. */
-static bool is_whole(const struct study_result *study, const char *pointer) {
-    return (study->case_count > 0 && result_parameter(&study->cases[0], pointer) != NULL) ||
-           member_of(study, pointer, 0) == NULL;
-}
-
-const char *swept_pointer(const struct study_result *study, size_t n) {
-    const cJSON *swept;
-    cJSON_ArrayForEach(swept, study->swept) {
-        const char *whole = cJSON_GetStringValue(swept), *member;
-        if (whole == NULL || *whole != '/')
-            return NULL;
-        if (is_whole(study, whole)) {
-            if (n-- == 0)
-                return whole;
+/* Adds the members that a case has and none of the columns behind `from` is. */
+static void add_members(struct swept *out, size_t from, const struct case_result *one,
+                        const char *whole) {
+    for (size_t p = 0; p < one->parameter_count; p++) {
+        const char *pointer = one->parameters[p].pointer;
+        if (!is_member(pointer, whole))
             continue;
-        }
-        for (size_t m = 0; (member = member_of(study, whole, m)) != NULL; m++)
-            if (n-- == 0)
-                return member;
+        size_t n = from;
+        while (n < out->count && strcmp(out->columns[n].pointer, pointer) != 0)
+            n++;
+        if (n == out->count)
+            add(out, pointer);
     }
-    return NULL;
 }
 
-size_t swept_count(const struct study_result *study) {
-    size_t count = 0;
-    while (swept_pointer(study, count) != NULL)
-        count++;
-    return count;
+/* Adds the columns of a swept value: itself where some case has it, or where none has a member. */
+static void add_value(struct swept *out, const struct study_result *study, const char *whole) {
+    const size_t from = out->count;
+    bool any = false;
+    for (size_t c = 0; c < study->case_count && !any; c++)
+        any = result_parameter(&study->cases[c], whole) != NULL;
+    if (any)
+        add(out, whole);
+    for (size_t c = 0; c < study->case_count; c++)
+        add_members(out, from, &study->cases[c], whole);
+    if (out->count == from)
+        add(out, whole);
 }
 
 static const char *last_word(const char *pointer) {
     return strrchr(pointer, '/') + 1; /* every pointer begins with a slash */
 }
 
-const char *swept_name(const struct study_result *study, size_t n) {
-    const char *own = swept_pointer(study, n), *other;
-    for (size_t a = 0; own != NULL && (other = swept_pointer(study, a)) != NULL; a++)
-        if (a != n && strcmp(last_word(own), last_word(other)) == 0)
+static const char *name_of(const struct swept *swept, size_t n) {
+    const char *own = swept->columns[n].pointer;
+    for (size_t a = 0; a < swept->count; a++)
+        if (a != n && strcmp(last_word(own), last_word(swept->columns[a].pointer)) == 0)
             return own + 1;
-    return own != NULL ? last_word(own) : NULL;
+    return last_word(own);
+}
+
+void swept_find(const struct study_result *study, struct swept *out) {
+    const cJSON *swept;
+    out->count = 0;
+    cJSON_ArrayForEach(swept, study->swept) {
+        const char *whole = cJSON_GetStringValue(swept);
+        if (whole == NULL || *whole != '/')
+            break;
+        add_value(out, study, whole);
+    }
+    for (size_t n = 0; n < out->count; n++)
+        out->columns[n].name = name_of(out, n);
 }

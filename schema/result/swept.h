@@ -4,12 +4,24 @@
 
 #include "schema/result/result.h"
 
-size_t swept_count(const struct study_result *study); /* 0 where it is not known */
-/* Returns the pointer of number n; NULL behind the last. Borrowed from the study. Of a value that
- * is an object, such as a height in one of several units, each member is a column. */
-const char *swept_pointer(const struct study_result *study, size_t n);
-/* Returns the title of a column: the last word of the pointer, or the whole pointer without its
- * first slash where another one ends in the same word. */
-const char *swept_name(const struct study_result *study, size_t n);
+/* No kind has as many parameters; what a document has beyond is left out. */
+enum { SWEPT_MOST = 256 };
+
+struct swept_column {
+    const char *pointer;
+    /* The last word of the pointer, or the whole pointer without its first slash where another one
+     * ends in the same word. */
+    const char *name;
+};
+/* Borrowed from the study, in the order of its pointers. */
+struct swept {
+    size_t count; /* 0 also where it is not known */
+    struct swept_column columns[SWEPT_MOST];
+};
+
+/* Finds the columns. A value that is an object in some case, such as a height in one of several
+ * units, has a column for each member that a case has, behind that of the cases in which it is
+ * none. */
+void swept_find(const struct study_result *study, struct swept *out);
 
 #endif

@@ -203,10 +203,10 @@ static void add_parameter(struct legend *legend, const char *kind,
 
 void plot_legend_case(struct legend *legend, const struct study_result *study,
                       const struct case_result *one) {
-    for (size_t n = 0; n < swept_count(study); n++) {
-        const char *pointer = swept_pointer(study, n);
-        const struct result_parameter *value =
-            pointer != NULL ? result_parameter(one, pointer) : NULL;
+    struct swept swept;
+    swept_find(study, &swept);
+    for (size_t n = 0; n < swept.count; n++) {
+        const struct result_parameter *value = result_parameter(one, swept.columns[n].pointer);
         if (value != NULL && !value->list)
             add_parameter(legend, study->kind, value);
     }

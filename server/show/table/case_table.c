@@ -90,12 +90,14 @@ static const char *unit_of(const char *kind, const char *pointer) {
 }
 
 static int add_parameters(struct case_table *table, struct error *err) {
-    const char *pointer;
+    struct swept swept;
     int status = 0;
-    for (size_t n = 0; status == 0 && (pointer = swept_pointer(&table->study, n)) != NULL; n++) {
+    swept_find(&table->study, &swept);
+    for (size_t n = 0; n < swept.count && status == 0; n++) {
         struct table_value *values;
+        const char *pointer = swept.columns[n].pointer;
         struct table_column column = {.type = COLUMN_PARAMETER,
-                                      .name = swept_name(&table->study, n),
+                                      .name = swept.columns[n].name,
                                       .pointer = pointer,
                                       .unit = unit_of(table->study.kind, pointer),
                                       .x = NAN};

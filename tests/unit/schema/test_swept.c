@@ -12,12 +12,14 @@ static struct study_result make(const char *swept, size_t cases) {
 }
 
 static void check_columns(const struct study_result *study, const char *const *names) {
+    struct swept swept;
     size_t n = 0;
-    for (; names[n] != NULL; n++)
-        assert_string_equal(swept_name(study, n), names[n]);
-    assert_int_equal(swept_count(study), n);
-    assert_null(swept_pointer(study, n));
-    assert_null(swept_name(study, n));
+    swept_find(study, &swept);
+    for (; names[n] != NULL; n++) {
+        assert_true(n < swept.count);
+        assert_string_equal(swept.columns[n].name, names[n]);
+    }
+    assert_int_equal(swept.count, n);
 }
 
 static void each_swept_value_is_a_column(void **state) {
@@ -43,14 +45,29 @@ static void members_of_objects_are_columns(void **state) {
         built_parameter(&study.cases[c], "/mu", NULL, (double)c);
     }
     check_columns(&study, (const char *[]){"hurst", "rms", "lengths", "mu", NULL});
-    assert_string_equal(swept_pointer(&study, 2), "/block/height/lengths");
+    struct swept swept;
+    swept_find(&study, &swept);
+    assert_string_equal(swept.columns[2].pointer, "/block/height/lengths");
     study_result_clear(&study);
+}
+
+/* A height that is infinite, or so many lengths: a column of the word, and one of the number. */
+static void words_and_objects_are_columns(void **state) {
+    (void)state;
+    for (size_t first = 0; first < 2; first++) {
+        struct study_result study = make("[\"/block/height\"]", 2);
+        built_parameter(&study.cases[first], "/block/height", "infinite", NAN);
+        built_parameter(&study.cases[1 - first], "/block/height/lengths", NULL, 2);
+        check_columns(&study, (const char *[]){"height", "lengths", NULL});
+        study_result_clear(&study);
+    }
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_swept_value_is_a_column),
         cmocka_unit_test(members_of_objects_are_columns),
+        cmocka_unit_test(words_and_objects_are_columns),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
