@@ -4,6 +4,7 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <time.h>
 
 enum { THREADS_MOST = 1024 };
 
@@ -111,6 +112,18 @@ void team_destroy(struct team **team) {
 
 size_t team_threads(const struct team *team) {
     return team != NULL ? team->threads : 1;
+}
+
+double team_cpu_seconds(const struct team *team) {
+    double seconds = 0;
+    for (size_t n = 1; n < team_threads(team); n++) {
+        clockid_t clock;
+        struct timespec spent;
+        if (pthread_getcpuclockid(team->members[n].thread, &clock) == 0 &&
+            clock_gettime(clock, &spent) == 0)
+            seconds += (double)spent.tv_sec + 1e-9 * (double)spent.tv_nsec;
+    }
+    return seconds;
 }
 
 void team_share(struct team *team, size_t parts, team_work *work, void *context) {

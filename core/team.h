@@ -21,6 +21,8 @@ int team_create(struct team **out, size_t threads, struct error *err);
 void team_destroy(struct team **team);
 /* Returns the number of threads, the owner among them. */
 size_t team_threads(const struct team *team);
+/* Returns the processor time that its threads have taken so far without the owner's, in seconds. */
+double team_cpu_seconds(const struct team *team);
 /* Calls work for each part below `parts` once, and returns when all have ended. A team of one works
  * in order. */
 void team_share(struct team *team, size_t parts, team_work *work, void *context);

@@ -69,8 +69,9 @@ struct job_runner {
     struct surface_basis basis;  /* of the generator */
     struct job_shared *own;      /* where none was given */
     void *workspace;
-    double *z;        /* points of the own grid */
-    double *gaussian; /* likewise, where the case wants it; else NULL */
+    double *z;         /* points of the own grid */
+    double *gaussian;  /* likewise, where the case wants it; else NULL */
+    struct team *team; /* borrowed; NULL: none */
 };
 
 void runner_destroy(struct job_runner **runner) {
@@ -91,6 +92,7 @@ void runner_destroy(struct job_runner **runner) {
 }
 
 int runner_set_team(struct job_runner *runner, struct team *team, struct error *err) {
+    runner->team = team;
     if (runner->kind->workspace_set_team == NULL)
         return 0;
     int status = runner->generator != NULL ? generator_set_team(runner->generator, team, err) : 0;
@@ -299,11 +301,16 @@ static int block_fill(struct job_runner *runner, const struct job_control *contr
     return status;
 }
 
+/* Returns the processor time so far of this thread and of those that share its realisations. */
+static double cpu_seconds(const struct job_runner *runner) {
+    return clock_seconds(CLOCK_THREAD_CPUTIME_ID) + team_cpu_seconds(runner->team);
+}
+
 int runner_run(struct job_runner *runner, uint64_t first, uint64_t count,
                const struct job_control *control, struct block_result *out, struct error *err) {
     const struct job_kind *kind = runner->kind;
     double start = clock_seconds(CLOCK_MONOTONIC);
-    double cpu_start = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
+    double cpu_start = cpu_seconds(runner);
     struct block_result result = {
         .first = first, .count = count, .scalar_count = kind_scalar_count(kind)};
     if (count == 0 || count > UINT64_MAX - first)
@@ -321,7 +328,7 @@ int runner_run(struct job_runner *runner, uint64_t first, uint64_t count,
         return status;
     }
     result.seconds = clock_seconds(CLOCK_MONOTONIC) - start;
-    result.cpu_seconds = clock_seconds(CLOCK_THREAD_CPUTIME_ID) - cpu_start;
+    result.cpu_seconds = cpu_seconds(runner) - cpu_start;
     *out = result;
     return 0;
 }

@@ -17,7 +17,7 @@ struct block_result {
     const unsigned char *data;     /* the kind's accumulators, portable, versioned */
     size_t size;                   /* bytes of data */
     double seconds;                /* by the clock */
-    double cpu_seconds;            /* of the thread that computed, without those that its BLAS may
+    double cpu_seconds;            /* of the threads that computed, without those that its BLAS may
                                       start; NaN: not known */
     const struct block_text *text; /* borrowed: its texts in the store; NULL: not made yet */
 };

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
+#include <time.h>
 
 enum { PARTS_MOST = 1000, THREADS_MOST = 7 };
 static const size_t THREADS[] = {0, 1, 2, 3, THREADS_MOST};
@@ -38,6 +39,35 @@ static void each_part_is_worked_once(void **state) {
         team_destroy(&team);
         assert_null(team);
     }
+}
+
+/* Works until its thread has spent 2 ms, and until all threads have a part. */
+static void spend(void *context, size_t part, size_t thread) {
+    atomic_int *begun = context;
+    struct timespec at;
+    double start = -1, now = 0;
+    (void)part;
+    (void)thread;
+    atomic_fetch_add(begun, 1);
+    do {
+        assert_int_equal(clock_gettime(CLOCK_THREAD_CPUTIME_ID, &at), 0);
+        now = (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
+        start = start < 0 ? now : start;
+    } while (now - start < 2e-3 || atomic_load(begun) < 2);
+}
+
+static void time_is_that_of_the_others(void **state) {
+    (void)state;
+    struct team *team;
+    atomic_int begun = 0;
+    assert_int_equal(team_create(&team, 2, NULL), 0);
+    if (team_threads(team) == 2) {
+        const double before = team_cpu_seconds(team);
+        team_share(team, 2, spend, &begun);
+        assert_true(team_cpu_seconds(team) - before >= 2e-3);
+    }
+    team_destroy(&team);
+    assert_true(team_cpu_seconds(NULL) == 0);
 }
 
 /* Items of a task that is shared by ranges of so many. */
@@ -179,6 +209,7 @@ static void contact_has_the_same_digits(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_part_is_worked_once),
+        cmocka_unit_test(time_is_that_of_the_others),
         cmocka_unit_test(ranges_hold_each_item_once),
         cmocka_unit_test(contact_has_the_same_digits),
     };
