@@ -205,8 +205,11 @@ double correlation_at(const struct correlation *c, double x, double y) {
     for (long b = profile ? 1 : 0; b < (profile ? 2 : 4); b++) {
         bool mirrored;
         const double *row = row_of(c, j + b - 1, &mirrored);
-        for (long a = 0; a < 4; a++)
-            value += weight_y[b] * weight_x[a] * row[mirrored ? opposite[a] : column[a]];
+        for (long a = 0; a < 4; a++) {
+            const double weight = weight_y[b] * weight_x[a];
+            if (weight != 0) /* a whole lag is known where its neighbours have no pair */
+                value += weight * row[mirrored ? opposite[a] : column[a]];
+        }
     }
     return value;
 }

@@ -58,7 +58,7 @@ static const struct option_row OPTIONS[] = {
      "npy, csv, xyz, png or svg"},
     {"psd", 0, OPTION_TEXT, 0, 0, AT(psd), "FILE", NULL,
      "the spectral density C(kx, ky), likewise, with the wave vector 0 in the middle; its integral "
-     "is the mean square height"},
+     "is the mean square height, of an open map under its window"},
     {0}};
 
 enum { FORMAT_TEXT, FORMAT_JSON, FORMAT_SVG, FORMAT_STUDY };

@@ -30,6 +30,24 @@ static double by_pairs(const struct measured_map *map, long x, long y) {
     return average_value(&product) / average_value(&square);
 }
 
+/* Sides of few points, whose longest lags have neighbours without a pair. */
+static void lags_beside_none(void **state) {
+    (void)state;
+    static const struct grid GRIDS[] = {{2, 9, 2, 9}, {4, 4, 4, 4}, {5, 3, 5, 3}};
+    for (size_t g = 0; g < sizeof GRIDS / sizeof *GRIDS; g++) {
+        double z[18];
+        for (size_t point = 0; point < grid_points(&GRIDS[g]); point++)
+            z[point] = sin((double)(3 * point * point));
+        const struct measured_map map = {&GRIDS[g], z, BOUNDARY_OPEN};
+        struct correlation *c = correlate(&map);
+        const long reach_x = (long)GRIDS[g].nx / 2, reach_y = (long)GRIDS[g].ny / 2;
+        for (long y = -reach_y; y <= reach_y; y++)
+            for (long x = -reach_x; x <= reach_x; x++)
+                check_close(correlation_at(c, (double)x, (double)y), by_pairs(&map, x, y), 1e-12);
+        correlation_destroy(&c);
+    }
+}
+
 static void means_of_pairs(void **state) {
     (void)state;
     uint64_t seed = seed_or(8);
@@ -126,6 +144,7 @@ static void lengths_where_spacings_are_far_apart(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(means_of_pairs),
+        cmocka_unit_test(lags_beside_none),
         cmocka_unit_test(lengths_of_waves),
         cmocka_unit_test(lengths_where_spacings_are_far_apart),
     };
