@@ -48,7 +48,11 @@ int override_apply(cJSON *document, const char *text, struct error *err) {
     const char *separator = strchr(path, '/') != NULL ? "/" : ".";
     cJSON *object = document, *value = NULL;
     char *rest = NULL, *name = strtok_r(path, separator, &rest);
-    int status = 0;
+    int status = name != NULL ? 0
+                              : error_set(err, ERROR_INPUT,
+                                          "\"%.100s\" names no member before the =, as in "
+                                          "surface/hurst=0.8",
+                                          text);
     while (status == 0 && name != NULL) {
         char *next = strtok_r(NULL, separator, &rest);
         if (!cJSON_IsObject(object)) {

@@ -289,7 +289,8 @@ static void overrides_change_the_document(void **state) {
     (void)state;
     static const char *const SETS[] = {"/box/width=[0.25,0.5]", "realisations=7",
                                        "box.colour=green", "box/count=3", NULL};
-    static const char *const BAD[] = {"nothing", NULL}, *const THROUGH[] = {"name.x=1", NULL};
+    static const char *const BAD[] = {"nothing", NULL}, *const THROUGH[] = {"name.x=1", NULL},
+                             *const EMPTY[] = {"/=5", NULL};
     struct fault_list faults = {0};
     struct study *study = NULL;
     struct error err = {0};
@@ -304,6 +305,9 @@ static void overrides_change_the_document(void **state) {
     assert_int_equal(study_read(&study, text, strlen(text), BAD, FAKE_KINDS, 0, &faults, &err),
                      ERROR_INPUT);
     assert_string_equal(err.text, "\"nothing\" is not PATH=VALUE, as in surface/hurst=0.8");
+    assert_int_equal(study_read(&study, text, strlen(text), EMPTY, FAKE_KINDS, 0, &faults, &err),
+                     ERROR_INPUT);
+    assert_string_equal(err.text, "\"/=5\" names no member before the =, as in surface/hurst=0.8");
     assert_int_equal(study_read(&study, text, strlen(text), THROUGH, FAKE_KINDS, 0, &faults, &err),
                      ERROR_INPUT);
 }
