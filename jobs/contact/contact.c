@@ -236,7 +236,7 @@ static int press(const struct realisation *realisation, double load, double *gap
     const struct contact_case *contact_case = realisation->study;
     const struct grid *grid = &contact_case->surface.grid;
     const struct block block = block_of(contact_case);
-    struct contact_options options = CONTACT_DEFAULTS;
+    struct contact_options options = contact_case_options(contact_case);
     struct compliance *compliance = NULL;
     struct contact *contact = NULL;
     struct contact_state state;

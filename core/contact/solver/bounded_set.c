@@ -203,6 +203,9 @@ void bounded_set_run(struct conjugate_gradient *solver, double mean, double tole
     double changed = INFINITY;
     size_t asked = end->iterations;
     int stalled = 0;
+    /* The first guess may have yielded nodes, which no elastic step must scale. */
+    for (size_t i = 0; i < solver->n && !end->bounded; i++)
+        end->bounded = solver->p[i] >= solver->hardness;
     while (stalled < SETS_STALLED && end->iterations < max_iterations) {
         /* A set that has not changed is solved to the end. */
         double share = changed > 0 || !end->bounded ? active_set_share(solver, stalled) : 0;
