@@ -58,9 +58,10 @@ const struct area_law *area_workspace_law(const struct area_workspace *workspace
     return &workspace->law;
 }
 
-/* Limits an estimate to what an area can be; only states that are no solutions exceed it. */
+/* Limits an estimate to what an area can be. Where its corrections take nearly all of it, with a
+ * node or two in contact or on faces whose waves the mesh does not have, the nodes are counted. */
 static double within(const struct contact_area *area, double estimate) {
-    return fmin(area->upper, fmax(estimate, area->nodes / 100));
+    return estimate < area->nodes / 100 ? area->nodes : fmin(area->upper, estimate);
 }
 
 void contact_area(struct area_workspace *workspace, const struct contact_state *state,

@@ -17,16 +17,21 @@ static inline double stretch_fraction(double fraction, double open) {
     return fraction - (1 - fraction) * (open - 1);
 }
 
-/* Beyond this factor, strains of a half and more, the first order does not hold. */
-#define STRETCH_MOST 1.5
-/* Returns the same of a face that grows by stretch_open(); NaN beyond STRETCH_MOST. */
+/* Beyond this strain, of the open face or where it touches, the first order does not hold. */
+#define STRETCH_MOST 0.5
+/* Returns the area `fraction` shrunk by `shrinks`; NaN where a strain is beyond STRETCH_MOST. */
+static inline double stretch_held(double fraction, double open, double shrinks) {
+    return open - 1 <= STRETCH_MOST && shrinks <= STRETCH_MOST * fraction ? fraction - shrinks
+                                                                          : (double)NAN;
+}
+/* Returns the same of a face that grows by stretch_open(). */
 static inline double stretch_first_order(double fraction, double open) {
-    return open <= STRETCH_MOST ? stretch_fraction(fraction, open) : (double)NAN;
+    return stretch_held(fraction, open, (1 - fraction) * (open - 1));
 }
 /* Returns the same of a map in free space, over its undeformed area: the part in contact shrinks,
  * and no side holds what is around it. */
 static inline double stretch_free(double fraction, double open) {
-    return open <= STRETCH_MOST ? fraction - (open - 1) : (double)NAN;
+    return stretch_held(fraction, open, open - 1);
 }
 
 #endif

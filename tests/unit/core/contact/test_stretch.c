@@ -36,7 +36,11 @@ static void ends(void **state) {
     (void)state;
     assert_true(stretch_fraction(1, 1.03) == 1);
     assert_true(stretch_fraction(0.3, 1) == 0.3);
-    assert_true(stretch_first_order(0.3, STRETCH_MOST) == stretch_fraction(0.3, STRETCH_MOST));
+    assert_true(stretch_first_order(0.6, 1 + STRETCH_MOST) ==
+                stretch_fraction(0.6, 1 + STRETCH_MOST));
+    assert_true(isnan(stretch_first_order(0.6, 1.01 + STRETCH_MOST)));
+    assert_true(isnan(stretch_first_order(0.3, 1.22))); /* what touches shrinks by 0.51 of it */
+    assert_true(stretch_free(0.3, 1.14) > 0.15 && isnan(stretch_free(0.3, 1.16)));
     assert_true(isnan(stretch_first_order(0.3, stretch_open(0.3, 2147483648.0))));
     check_close(stretch_open(0.5, 0.1), 1, 1e-15);
     check_close(stretch_open(0, 0.1), 1.1, 1e-15);
