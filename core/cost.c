@@ -339,13 +339,17 @@ struct full_limit cost_full_limit(const struct grid *grid, const struct full_siz
                                .factored = unit * each.factored};
 }
 
+/* In E* h': all touches long before it, and what lies beyond is one step or no solution. */
+static const double LOAD_REACHED = 10;
+
 double cost_full_loads(const struct grid *grid, const struct full_size *size, double rms_slope,
                        size_t count, const double *loads) {
     const double steps = grid_is_profile(grid) ? PROFILE_FAR_STEPS : SURFACE_FAR_STEPS;
     const double wide = size->folds ? size->wide / size->newton : 0;
     double all = loads != NULL ? 0 : (double)count * (1 + wide);
     for (size_t l = 0; loads != NULL && l < count; l++) {
-        double length = loads[l] - (l > 0 ? loads[l - 1] : 0);
+        double length =
+            fmin(loads[l], LOAD_REACHED) - (l > 0 ? fmin(loads[l - 1], LOAD_REACHED) : 0);
         all += pow(fmin(1, fmax(0, length) / USUAL_LOAD), NEAR_POWER) +
                steps * fmax(0, length * rms_slope - FAR) + wide * length / USUAL_LOAD;
     }

@@ -112,6 +112,7 @@ static int read_case(struct store *store, int64_t id, sqlite3_stmt *row, uint64_
         result_keep(out, part->quantity, part->scalars_only);
     else if (status == 0 && !part->scalars_only)
         status = read_curves(store, id, case_number, part->quantity, out, err);
+    result_sampled(out, out->realisations);
     return status;
 }
 

@@ -65,6 +65,7 @@ static inline void sample_result(struct case_result *out) {
     assert_int_equal(result_add_curve(out, &full, NULL), 0);
     assert_int_equal(result_add_scalar(out, &m0, NULL), 0);
     assert_int_equal(result_add_scalar(out, &alpha, NULL), 0);
+    result_sampled(out, out->realisations);
 }
 
 #endif

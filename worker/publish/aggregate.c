@@ -294,7 +294,7 @@ static int fresh_result(struct store *store, const struct aggregate *aggregate,
                                  &found, err);
     if (status == 0 && !found)
         status = answer_case(store, aggregate, case_number, info, out, &found, NULL, err);
-    if (status == 0 && found) /* published curves do not say of how many they are */
+    if (status == 0 && found) /* curves alone do not say of how many they are */
         result_sampled(out, info->realisations_done);
     if (status != 0 || found)
         return status;

@@ -39,6 +39,7 @@ static struct study_result contact_made(size_t cases) {
         add_curve(one, "patch_count", "p/(E* h'_rms)", "patches per lambda_l^2");
         add_curve(one, "contact_pressure_pdf", "p/(E* h'_rms)", "probability density");
         units_set(one);
+        result_sampled(one, one->realisations);
     }
     return study;
 }

@@ -2,8 +2,8 @@
  * say what it holds. */
 #include "core/file/memory_file.h"
 #include "schema/result/bytes/bytes.h"
-#include "schema/result/csv.h"
 #include "schema/result/bytes/curve_bytes.h"
+#include "schema/result/csv.h"
 #include "schema/result/report.h"
 #include "schema/result/result.h"
 #include "schema/result/result_json.h"
@@ -23,14 +23,17 @@ static char *print(const struct case_result *result) {
 static const char PRINTED[] =
     "{\"case\":3,\"parameters\":{},\"realisations\":24,\"scalars\":{\"m0\":{\"value\":1,"
     "\"standard_error\":0.5,\"cell_error\":null,\"model_error\":-0.5,\"model_bound\":0.25,"
-    "\"model_error_standard_error\":0.125,\"total_low\":0.020000000000000018,"
-    "\"total_high\":2.73,\"unknown_errors\":[\"cell\"]},\"alpha\":{\"value\":5,\"standard_error\":"
+    "\"model_error_standard_error\":0.125,\"total_low\":-0.03432880520952408,"
+    "\"total_high\":2.7843288052095243,\"unknown_errors\":[\"cell\"]},\"alpha\":{\"value\":5,"
+    "\"standard_error\":"
     "null,"
     "\"theory\":6,\"grid_theory\":5.5,\"total_low\":null,\"total_high\":null,\"unknown_errors\":[],"
     "\"law_difference\":-0.5,\"law_standard_error\":0.125}},"
     "\"curves\":[{\"quantity\":\"q\",\"series\":\"x, \\\"y\\\"\",\"x\":[0.1,2],\"y\":[3,null],"
-    "\"standard_error\":[0.1,null],\"discretisation_error\":null,\"total_low\":[2.804,null],"
-    "\"total_high\":[3.196,null],\"unknown_errors\":[\"discretisation\"],\"theory\":{\"nayak\":[1."
+    "\"standard_error\":[0.1,null],\"discretisation_error\":null,\"total_low\":[2.7931342389580953,"
+    "null],"
+    "\"total_high\":[3.2068657610419047,null],\"unknown_errors\":[\"discretisation\"],\"theory\":{"
+    "\"nayak\":[1."
     "5,2.5]},"
     "\"x_label\":\"z/\302\265m\",\"underflow\":4,\"overflow\":0,\"y_label\":\"density\"},"
     "{\"quantity\":\"joint\",\"series\":\"\",\"x\":[0.1,2],\"x2\":[7,8,9],"
@@ -38,8 +41,9 @@ static const char PRINTED[] =
     "\"discretisation_error\":[[null,-0.5,null],[null,null,1]],"
     "\"discretisation_bound\":[[null,0.75,null],[null,null,0]],"
     "\"discretisation_standard_error\":[[null,0.25,null],[null,null,1]],"
-    "\"total_low\":[[null,1.26,null],[null,null,3.04]],"
-    "\"total_high\":[[null,3.74,null],[null,null,7.96]],\"unknown_errors\":[],"
+    "\"total_low\":[[null,1.2328355973952378,null],[null,null,2.931342389580952]],"
+    "\"total_high\":[[null,3.767164402604762,null],[null,null,8.068657610419049]],\"unknown_"
+    "errors\":[],"
     "\"theory\":{},\"x_label\":\"z\",\"x2_label\":\"t\","
     "\"y_label\":\"density\"},"
     "{\"quantity\":\"area\",\"series\":\"edges\",\"model\":\"full\",\"level\":8,\"points\":64,"
@@ -150,6 +154,7 @@ static void bytes_come_back(void **state) {
     assert_true(theory != NULL && strcmp(theory->name, "nayak") == 0 && theory->y == NULL);
     again.case_number = sample.case_number;
     again.realisations = sample.realisations;
+    result_sampled(&again, again.realisations);
     again.notes = sample.notes;
     again.note_count = sample.note_count;
     again.notes_all = sample.notes_all;
@@ -238,10 +243,13 @@ static void csv_is_one_table(void **state) {
         "missing_bound,patch_error,patch_bound,valueless,law_difference,law_standard_error";
     static const char LAST[] = ",total_low,total_high,unknown_errors";
     static const char POINTS[] =
-        "3,q,\"x, \"\"y\"\"\",,,,,0.1,,3,0.1,,,,,,,,,,,,,,,,,,1.5,,2.804,3.196,discretisation\n"
+        "3,q,\"x, "
+        "\"\"y\"\"\",,,,,0.1,,3,0.1,,,,,,,,,,,,,,,,,,1.5,,2.7931342389580953,3.2068657610419047,"
+        "discretisation\n"
         "3,q,\"x, \"\"y\"\"\",,,,,2,,,,,,,,,,,,,,,,,,,,,2.5,,,,discretisation\n"
-        "3,joint,,,,,,0.1,8,2,0.25,-0.5,0.75,,,,,,,,,,,,,,,,,,1.26,3.74,\n"
-        "3,joint,,,,,,2,9,6,1,1,0,,,,,,,,,,,,,,,,,,3.04,7.96,\n"
+        "3,joint,,,,,,0.1,8,2,0.25,-0.5,0.75,,,,,,,,,,,,,,,,,,1.2328355973952378,3.767164402604762,"
+        "\n"
+        "3,joint,,,,,,2,9,6,1,1,0,,,,,,,,,,,,,,,,,,2.931342389580952,8.068657610419049,\n"
         "3,area,edges,full,hencky,8,0.5,0.1,,1e-300,0,0.25,0.125,,,,,,,,,,,,,0,0.5,0.25,,3,-0.375,"
         "1e-300,block model\n"
         "3,area,edges,full,hencky,8,0.5,2,,0.5,0,0.5,0,,,,,-2,,,,,,,,3,-1,0.5,,4,0.5,2,block "
@@ -254,8 +262,9 @@ static void csv_is_one_table(void **state) {
              POINTS);
     assert_string_equal(all, expected);
     snprintf(expected, sizeof expected,
-             "%s,theory_nayak%s\n3,joint,,,,,,0.1,8,2,0.25,-0.5,0.75,,,,,,,,,,,,,,,,,1.26,3.74,\n"
-             "3,joint,,,,,,2,9,6,1,1,0,,,,,,,,,,,,,,,,,3.04,7.96,\n",
+             "%s,theory_nayak%s\n3,joint,,,,,,0.1,8,2,0.25,-0.5,0.75,,,,,,,,,,,,,,,,,1."
+             "2328355973952378,3.767164402604762,\n"
+             "3,joint,,,,,,2,9,6,1,1,0,,,,,,,,,,,,,,,,,2.931342389580952,8.068657610419049,\n",
              HEADING, LAST);
     assert_string_equal(one, expected);
     free(all);

@@ -189,13 +189,14 @@ static void paths_are_read(void **state) {
     assert_int_equal(path.count, 31);
     check_relative(path.at[30], 1.2, 1e-15);
     press_path_clear(&path);
-    static const char *const WRONG[] = {"", "0", "1,1", "1,", "1;2", "x", "nan", "2000", ",1"};
+    static const char *const WRONG[] = {"",    "0", "1,1", "1,2",  "1,",
+                                        "1;2", "x", "nan", "2000", ",1"};
     for (size_t n = 0; n < sizeof WRONG / sizeof *WRONG; n++) {
         assert_int_equal(press_path_parse(&path, WRONG[n], 2, 0.3, &err), ERROR_INPUT);
         assert_non_null(strstr(err.text, "not up to 100 numbers"));
         assert_null(path.at);
     }
-    assert_int_equal(press_path_parse(&path, "1,2", 500, 0.3, &err), ERROR_INPUT);
+    assert_int_equal(press_path_parse(&path, "1,-2", 500, 0.3, &err), ERROR_INPUT);
     assert_non_null(strstr(err.text, "--slide-steps 500 to each of 2 turning points"));
 }
 
