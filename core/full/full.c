@@ -345,7 +345,7 @@ static int drag(void *solver, double load, double drag, double tolerance, struct
     int status = solve(loading, load, f->held.u, &out->change, err);
     n->tolerance = usual;
     n->max_iterations = most;
-    out->force = mesh_largest_move(f->mesh, n->u, n->anchor) * drag / load;
+    out->force = mesh_largest_move(f->mesh, n->u, n->anchor) * drag / (load * newton_node_area(n));
     return status;
 }
 

@@ -384,7 +384,8 @@ static int drag(void *solver, double done, double drag, double tolerance, struct
     int status = solve(way, &goal, &f->held, &out->change, err);
     n->tolerance = usual;
     n->max_iterations = most;
-    out->force = mesh_largest_move(f->mesh, n->u, n->anchor) * drag / goal.pressure;
+    out->force =
+        mesh_largest_move(f->mesh, n->u, n->anchor) * drag / (goal.pressure * f->mesh->across);
     if (status == 0)
         add_works(f, &f->held, &f->held);
     return status;
