@@ -446,15 +446,21 @@ static int become_careful(struct full *f, struct error *err) {
     return 0;
 }
 
-/* Goes on carefully where the usual steps end. */
+/* Goes on carefully where the usual steps end; where the face has too many nodes for that, err is
+ * that of the steps. */
 static int reach_load(struct full *f, double goal, struct newton_end *end,
                       struct full_report *report, struct error *err) {
     struct loading loading = {f, end, report};
-    struct error ignored = {0};
+    struct error why = {0};
     int status = raise_load(&loading, goal, err);
     bool refused = f->careful || f->flat_only || f->options.kinematics == KINEMATICS_SMALL;
-    if (status != ERROR_NUMERIC || refused || is_used_up(f) || become_careful(f, &ignored) != 0)
+    if (status != ERROR_NUMERIC || refused || is_used_up(f))
         return status;
+    int able = become_careful(f, &why);
+    if (able == ERROR_INPUT)
+        return status;
+    if (able != 0)
+        return error_set(err, able, "%s", why.text);
     return raise_load(&loading, goal, err);
 }
 

@@ -497,12 +497,12 @@ static int become_careful(struct friction *f, struct error *err) {
 /* As follow_steps, and on carefully where the usual steps end. */
 static int follow(struct friction *f, const struct friction_goal *goal, struct friction_state *out,
                   struct error *err) {
-    struct error ignored = {0};
     int status = follow_steps(f, goal, out, err);
     bool refused = f->careful || f->options.kinematics == KINEMATICS_SMALL || is_used_up(f);
-    if (status != ERROR_NUMERIC || refused || become_careful(f, &ignored) != 0)
+    if (status != ERROR_NUMERIC || refused)
         return status;
-    return follow_steps(f, goal, out, err);
+    status = become_careful(f, err);
+    return status == 0 ? follow_steps(f, goal, out, err) : status;
 }
 
 /* --- results --- */

@@ -70,7 +70,7 @@ int friction_newton_create(struct friction_newton *out, const struct mesh *mesh,
                            const struct material *material, enum gap_weighting weighting,
                            double friction, struct gmres *gmres, struct error *err);
 void friction_newton_clear(struct friction_newton *newton);
-/* As newton_allow_overhangs; the face meets itself with the same friction. */
+/* As newton_allow_overhangs; the face meets itself with the same friction. ERROR_MEMORY alone. */
 int friction_newton_allow_overhangs(struct friction_newton *newton, struct error *err);
 
 /* Computes forces, energy and tangent at u, with the pairs of a face that meets itself as they are.
