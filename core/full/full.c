@@ -473,13 +473,6 @@ static double deepest_node(const struct full *f) {
     return deepest;
 }
 
-/* Returns the stretch of the nodes out of contact: the cells of the face tile the periodic cell,
- * whose area stays. */
-static double open_stretch(const struct full *f, size_t nodes, double stretch) {
-    double all = (double)f->mesh->face, touching = (double)nodes;
-    return nodes > 0 && touching < all ? (all - stretch * touching) / (all - touching) : 1;
-}
-
 /* Returns the length over which violations are reported. */
 static double height_scale(const struct full *f) {
     return f->rms > 0 ? f->rms : 1;
@@ -498,7 +491,7 @@ static void fill_report(struct full *f, const struct newton_end *end,
     report->penetration = deepest_node(f) / height_scale(f);
     report->weighted_penetration = state->penetration;
     report->stretch = face_contact_stretch(f->mesh, f->newton.u, f->newton.active);
-    report->open_stretch = open_stretch(f, state->nodes, report->stretch);
+    report->open_stretch = face_open_stretch(f->mesh, state->nodes, report->stretch);
     if (f->options.current_areas) {
         struct face_tilt tilt = face_measure_tilt(f->mesh, f->newton.u, f->newton.active);
         report->face_tilt = tilt.face;

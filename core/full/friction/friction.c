@@ -265,8 +265,7 @@ static struct friction_face measure_face(const struct friction *f, const double 
     const double stretch = face_contact_stretch(f->mesh, u, active);
     out.area = out.area * stretch * (1 + tilt.contact) / (1 + tilt.face);
     out.tilt = tilt.face;
-    if (nodes < f->face)
-        out.open_stretch = ((double)f->face - (double)nodes * stretch) / (double)(f->face - nodes);
+    out.open_stretch = face_open_stretch(f->mesh, nodes, stretch);
     return out;
 }
 

@@ -87,11 +87,10 @@ struct friction_goal {
 };
 /* The course of a solution; as newton_end. */
 struct friction_end {
-    size_t iterations, changes, cycles;
+    size_t iterations, cycles;
     struct unsymmetric_work work;
     double residual; /* largest out-of-balance force, over the largest contact force */
     double inside;   /* largest |weighted gap| in contact, and |slip| of sticking nodes */
-    double penetration;
 };
 /* Solves for u, shear, flat and the nodes, starting from those given. After ERROR_NUMERIC, and
  * ERROR_STOPPED when stop returned non-zero, these are undefined. */
