@@ -300,11 +300,11 @@ struct rugo_block {
     double layer_growth; /* finite elements: thickness of a layer over that above it, [1, 2] */
 };
 /* Returns a block of Poisson's ratio 0.3 and growth 1.1, whose height is infinite for a half-space,
- * else 1.5 grid.lx. */
+ * else 1.5 lx of a profile, and of a surface 1.5 times the longer one of lx and ly. */
 RUGO_API struct rugo_block rugo_block_defaults(enum rugo_model model, const struct rugo_grid *grid);
 
-/* One load. Fractions are of the cell; arrays have nx*ny values and are the solver's, valid until
- * its next call. */
+/* One load. Fractions are of the cell, and those of the full model are as the face stretches under
+ * the load; arrays have nx*ny values and are the solver's, valid until its next call. */
 struct rugo_contact_state {
     double pressure;               /* mean */
     const double *p;               /* local pressures; 0 where open */

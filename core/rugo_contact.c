@@ -1,6 +1,7 @@
 /* Implements the contact of rugo.h: one solver with the workspace of its areas. */
 #include "core/contact/area.h"
 #include "core/contact/patches.h"
+#include "core/contact/stretch.h"
 #include "core/full/full.h"
 #include "core/rugo_shared.h"
 #include <math.h>
@@ -18,9 +19,10 @@ struct rugo_contact {
 };
 
 struct rugo_block rugo_block_defaults(enum rugo_model model, const struct rugo_grid *grid) {
+    double longest = grid->ny == 1 ? grid->lx : fmax(grid->lx, grid->ly);
     return (struct rugo_block){.model = model,
                                .poisson = 0.3,
-                               .height = model == RUGO_HALFSPACE ? INFINITY : 1.5 * grid->lx,
+                               .height = model == RUGO_HALFSPACE ? INFINITY : 1.5 * longest,
                                .layer_growth = 1.1};
 }
 
@@ -110,6 +112,15 @@ int rugo_contact_begin(struct rugo_contact *contact, const double *z, struct rug
     return error_give(status, &why, err);
 }
 
+/* Takes areas of the undeformed face to those under load. */
+static void stretch_areas(struct contact_area *area, double stretch) {
+    double now = stretch_touching(area->nodes, stretch);
+    area->edges = stretch_fraction(area->edges, stretch_rest(area->nodes, now));
+    area->nodes *= now;
+    area->lower *= now;
+    area->upper *= now;
+}
+
 int rugo_contact_press(struct rugo_contact *contact, double pressure,
                        struct rugo_contact_state *out, struct rugo_error *err) {
     struct error why = {0};
@@ -132,6 +143,8 @@ int rugo_contact_press(struct rugo_contact *contact, double pressure,
     struct patches patches;
     contact->approach = state.approach;
     contact_area(contact->areas, &state, &area);
+    if (contact->full != NULL && state.nodes > 0)
+        stretch_areas(&area, report.stretch);
     patches_find(contact->patches, state.p, &patches, NULL);
     *out = (struct rugo_contact_state){.pressure = state.pressure,
                                        .p = state.p,

@@ -17,6 +17,18 @@ static inline double stretch_fraction(double fraction, double open) {
     return fraction - (1 - fraction) * (open - 1);
 }
 
+/* The same where the stretch of the nodes in contact, a share `nodes` of the face, is measured
+ * (F14.6), so that the first order is not needed. Returns that stretch: where a face overhangs,
+ * cells that are turned over count against those in contact, which then seem more than the whole.
+ */
+static inline double stretch_touching(double nodes, double stretch) {
+    return stretch * nodes > 1 + 1e-9 ? 1 / nodes : stretch;
+}
+/* Returns the factor of the open face, for stretch_fraction, from stretch_touching(). */
+static inline double stretch_rest(double nodes, double touching) {
+    return nodes < 1 ? (1 - touching * nodes) / (1 - nodes) : 1;
+}
+
 /* Beyond this strain, of the open face or where it touches, the first order does not hold. */
 #define STRETCH_MOST 0.5
 /* Returns the area `fraction` shrunk by `shrinks`; NaN where a strain is beyond STRETCH_MOST. */

@@ -19,6 +19,11 @@ double face_contact_stretch(const struct mesh *mesh, const double *u, const bool
     return corners > 0 ? sum_value(&now) / (double)corners : NAN;
 }
 
+double face_open_stretch(const struct mesh *mesh, size_t nodes, double stretch) {
+    double all = (double)mesh->face, touching = (double)nodes;
+    return nodes > 0 && touching < all ? (all - stretch * touching) / (all - touching) : 1;
+}
+
 bool face_folds(const struct mesh *mesh, const double *u) {
     const struct level *face = &mesh->level[0];
     for (size_t j = 0; j < face->ny; j++)

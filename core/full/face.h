@@ -12,6 +12,11 @@
  * face); NaN where there are none. */
 double face_contact_stretch(const struct mesh *mesh, const double *u, const bool *active);
 
+/* Returns the same of the nodes out of contact, where that of so many nodes in contact is
+ * `stretch`; 1 where there are none of either. The cells tile the periodic cell, whose area stays.
+ */
+double face_open_stretch(const struct mesh *mesh, size_t nodes, double stretch);
+
 /* Returns whether a cell of the face is turned away from the flat. The contact condition compares
  * heights alone, so that the face could pass through itself there. */
 bool face_folds(const struct mesh *mesh, const double *u);

@@ -345,7 +345,7 @@ static int drag(void *solver, double load, double drag, double tolerance, struct
     int status = solve(loading, load, f->held.u, &out->change, err);
     n->tolerance = usual;
     n->max_iterations = most;
-    out->force = mesh_largest_move(f->mesh, n->u, n->anchor) * drag / load;
+    out->force = mesh_largest_move(f->mesh, n->u, n->anchor) * drag / (load * newton_node_area(n));
     return status;
 }
 
@@ -446,15 +446,21 @@ static int become_careful(struct full *f, struct error *err) {
     return 0;
 }
 
-/* Goes on carefully where the usual steps end. */
+/* Goes on carefully where the usual steps end; where the face has too many nodes for that, err is
+ * that of the steps. */
 static int reach_load(struct full *f, double goal, struct newton_end *end,
                       struct full_report *report, struct error *err) {
     struct loading loading = {f, end, report};
-    struct error ignored = {0};
+    struct error why = {0};
     int status = raise_load(&loading, goal, err);
     bool refused = f->careful || f->flat_only || f->options.kinematics == KINEMATICS_SMALL;
-    if (status != ERROR_NUMERIC || refused || is_used_up(f) || become_careful(f, &ignored) != 0)
+    if (status != ERROR_NUMERIC || refused || is_used_up(f))
         return status;
+    int able = become_careful(f, &why);
+    if (able == ERROR_INPUT)
+        return status;
+    if (able != 0)
+        return error_set(err, able, "%s", why.text);
     return raise_load(&loading, goal, err);
 }
 
@@ -465,13 +471,6 @@ static double deepest_node(const struct full *f) {
     for (size_t node = 0; node < f->mesh->face; node++)
         deepest = fmax(deepest, -f->newton.gap[node]);
     return deepest;
-}
-
-/* Returns the stretch of the nodes out of contact: the cells of the face tile the periodic cell,
- * whose area stays. */
-static double open_stretch(const struct full *f, size_t nodes, double stretch) {
-    double all = (double)f->mesh->face, touching = (double)nodes;
-    return nodes > 0 && touching < all ? (all - stretch * touching) / (all - touching) : 1;
 }
 
 /* Returns the length over which violations are reported. */
@@ -492,7 +491,7 @@ static void fill_report(struct full *f, const struct newton_end *end,
     report->penetration = deepest_node(f) / height_scale(f);
     report->weighted_penetration = state->penetration;
     report->stretch = face_contact_stretch(f->mesh, f->newton.u, f->newton.active);
-    report->open_stretch = open_stretch(f, state->nodes, report->stretch);
+    report->open_stretch = face_open_stretch(f->mesh, state->nodes, report->stretch);
     if (f->options.current_areas) {
         struct face_tilt tilt = face_measure_tilt(f->mesh, f->newton.u, f->newton.active);
         report->face_tilt = tilt.face;

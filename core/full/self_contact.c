@@ -1,4 +1,5 @@
 #include "core/full/self_contact.h"
+#include "core/full/face.h"
 #include "core/full/self_contact_surface.h"
 #include <math.h>
 #include <stdint.h>
@@ -9,19 +10,7 @@
  * pairs seldom alternate between touching and not; with 100 E* three times as many iterations of
  * Newton's were taken. */
 static const double STIFFNESS = 10;
-/* Distance, in columns, within which a node and an arc are a pair. */
-static const double REACH = 1;
-/* Width of a bin of the search in columns: neighbours within REACH are in the same one or beside
- * it, as arcs are filed by their node and shorter along x than BIN less REACH. */
-static const double BIN = 4;
-/* Bends of the face at a node lie in one turn: sharper than this to the right, into the block, they
- * count as to the left. */
-static const double SHARPEST = 1.1 * M_PI;
-/* The middle of an arc. */
-static const double MIDDLE = 0.5;
 static const size_t NONE = SIZE_MAX;
-/* Steps of Newton's method towards the nearest point of an arc. */
-enum { PROJECTIONS = 20 };
 
 int self_contact_create(struct self_contact *out, const struct mesh *mesh, struct error *err) {
     size_t face = mesh->face;
@@ -149,7 +138,7 @@ static void measure_pair(const struct mesh *mesh, const double *u, struct self_p
  * end. Beyond the end of a fold that is on the node's own flank, which it does not meet: the gap is
  * infinite. */
 static void project(const struct mesh *mesh, const double *u, struct self_pair *pair) {
-    for (int step = 0; step < PROJECTIONS; step++) {
+    for (int step = 0; step < SELF_PROJECTIONS; step++) {
         struct arc arc = arc_of(mesh, u, pair->arc, pair->at);
         struct point from = from_arc(mesh, u, pair->node, &arc);
         double slope = dot(arc.along, from), curve = dot(arc.along, arc.along);
@@ -165,7 +154,7 @@ static void project(const struct mesh *mesh, const double *u, struct self_pair *
             break;
     }
     measure_pair(mesh, u, pair);
-    struct point own = arc_of(mesh, u, pair->node, MIDDLE).along;
+    struct point own = arc_of(mesh, u, pair->node, SELF_MIDDLE).along;
     if (pair->normal[0] * own.y - pair->normal[1] * own.x >= 0)
         pair->gap = INFINITY;
 }
@@ -181,14 +170,14 @@ static void measure_turning(struct self_contact *self, const double *u) {
         struct point here = {b.x - a.x, b.y - a.y};
         double bend =
             atan2(before.x * here.y - before.y * here.x, before.x * here.x + before.y * here.y);
-        bend -= bend > 2 * M_PI - SHARPEST ? 2 * M_PI : 0;
+        bend -= bend > 2 * M_PI - SELF_SHARPEST ? 2 * M_PI : 0;
         self->turning[k] = k > 0 ? self->turning[k - 1] + bend : 0;
         before = here;
     }
 }
 
 static size_t bins_of(const struct mesh *mesh) {
-    size_t bins = (size_t)((double)mesh->face / BIN);
+    size_t bins = (size_t)((double)mesh->face / SELF_BIN);
     return bins > 0 ? bins : 1;
 }
 
@@ -227,10 +216,9 @@ static bool is_across(const struct self_contact *self, enum self_kind kind, size
 }
 
 /* Fills the pair of a node with the nearest arc across air. Returns whether there is one within
- * REACH. */
+ * SELF_REACH. */
 static bool nearest(const struct self_contact *self, const double *u, enum self_kind kind,
                     size_t node, struct self_pair *out) {
-    static const double NEAR = 3;
     const struct mesh *mesh = self->mesh;
     size_t bins = bins_of(mesh), at = bin_of(mesh, point_of(mesh, u, node).x);
     size_t around = bins < 3 ? bins : 3;
@@ -240,19 +228,19 @@ static bool nearest(const struct self_contact *self, const double *u, enum self_
         for (size_t k = self->bin[(at + bins - 1 + side) % bins]; k != NONE; k = self->next[k]) {
             if (!is_across(self, kind, node, k))
                 continue;
-            struct arc arc = arc_of(mesh, u, k, MIDDLE);
+            struct arc arc = arc_of(mesh, u, k, SELF_MIDDLE);
             struct point from = from_arc(mesh, u, node, &arc);
             double distance = hypot(from.x, from.y);
             if (!(distance < least))
                 continue;
             least = distance;
             out->arc = k;
-            out->at = MIDDLE;
+            out->at = SELF_MIDDLE;
         }
-    if (!(least < NEAR))
+    if (!(least < SELF_NEAR))
         return false;
     project(mesh, u, out);
-    return fabs(out->gap) < REACH && is_across(self, kind, node, out->arc);
+    return fabs(out->gap) < SELF_REACH && is_across(self, kind, node, out->arc);
 }
 
 static size_t node_behind(const struct mesh *mesh, size_t node) {
@@ -272,7 +260,7 @@ static size_t next_lip(const struct mesh *mesh, const double *u, const bool *act
     return next;
 }
 
-/* Fills the pair of a lip. Returns whether there is one within REACH. */
+/* Fills the pair of a lip. Returns whether there is one within SELF_REACH. */
 static bool meets_lip(const struct mesh *mesh, const double *u, const bool *active, size_t node,
                       struct self_pair *out) {
     bool over = false;
@@ -281,14 +269,7 @@ static bool meets_lip(const struct mesh *mesh, const double *u, const bool *acti
     *out = (struct self_pair){
         .node = node, .arc = next_lip(mesh, u, active, node, &over), .kind = SELF_LIPS};
     measure_lips(mesh, u, out);
-    return over && out->arc != node && fabs(out->gap) < REACH;
-}
-
-static bool overhangs(const struct mesh *mesh, const double *u) {
-    for (size_t i = 0; i < mesh->face; i++)
-        if (mesh_stretch(mesh, u, 0, i) <= 0)
-            return true;
-    return false;
+    return over && out->arc != node && fabs(out->gap) < SELF_REACH;
 }
 
 /* Finds the pair of a node with an arc, or of lips. */
@@ -314,12 +295,11 @@ static void fill_start(const struct mesh *mesh, struct self_pair *pair) {
 /* A pair goes on with the multipliers of that which its node had, and with where that was; on
  * another fold there is nothing to go on from. */
 static void inherit(const struct mesh *mesh, struct self_pair *pair, const struct self_pair *old) {
-    static const double SAME = 3;
     fill_start(mesh, pair);
     if (old == NULL)
         return;
     pair->multiplier = old->multiplier;
-    if (fabs(arcs_from(mesh, pair, (double)old->arc + old->at)) > SAME)
+    if (fabs(arcs_from(mesh, pair, (double)old->arc + old->at)) > SELF_SAME)
         return;
     pair->start[0] = old->start[0];
     pair->shear_multiplier[0] = old->shear_multiplier[0];
@@ -351,7 +331,7 @@ void self_contact_search(struct self_contact *self, const double *u, const bool 
         return;
     }
     self->count = 0;
-    if (!overhangs(self->mesh, u))
+    if (!face_folds(self->mesh, u))
         return;
     memcpy(self->old, self->pair, before * sizeof *self->pair);
     prepare(self, u);
@@ -365,7 +345,7 @@ double self_contact_depth(struct self_contact *self, const double *u, const bool
     double deepest = 0;
     if (self->mesh->dimension == 3)
         return self_contact_surface_depth(self, u);
-    if (!overhangs(self->mesh, u))
+    if (!face_folds(self->mesh, u))
         return 0;
     prepare(self, u);
     for (size_t node = 0; node < self->mesh->face; node++) {

@@ -1,21 +1,14 @@
 #include "core/full/self_contact_surface.h"
+#include "core/full/face.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* As in self_contact.c: distance of a pair in columns, distance to the middle of its patch, width
- * of a bin of the search. */
-static const double REACH = 1, NEAR = 3, BIN = 4;
-/* As in self_contact.c: sharper bends into the block count as bends the other direction. */
-static const double SHARPEST = 1.1 * M_PI;
 /* Cosine between the normals of a node and a point that meet, at most. */
 static const double OPPOSED = -0.5;
-/* Patches along an axis within which a pair is on the same fold as before. */
-static const double SAME = 3;
-static const double MIDDLE = 0.5;
 static const size_t NONE = SIZE_MAX;
-enum { PROJECTIONS = 20, STEPS_LEAST = 2, PATCH_SIDE = 3 };
+enum { STEPS_LEAST = 2, PATCH_SIDE = 3 };
 
 struct vector {
     double x[3];
@@ -188,12 +181,12 @@ void self_contact_surface_project(const struct mesh *mesh, const double *u,
     struct patch_point p;
     struct vector from;
     long steps[2];
-    for (int step = 0; step <= PROJECTIONS; step++) {
+    for (int step = 0; step <= SELF_PROJECTIONS; step++) {
         double move[2];
         p = point_of(mesh, u, pair->arc, pair->at, pair->across);
         from = from_point(mesh, u, pair->node, &p.at);
         fill_move(&p, &from, move);
-        if (step == PROJECTIONS || fmax(fabs(move[0]), fabs(move[1])) < 1e-14)
+        if (step == SELF_PROJECTIONS || fmax(fabs(move[0]), fabs(move[1])) < 1e-14)
             break;
         pair->at += fmax(-0.5, fmin(0.5, move[0]));
         pair->across += fmax(-0.5, fmin(0.5, move[1]));
@@ -204,7 +197,7 @@ void self_contact_surface_project(const struct mesh *mesh, const double *u,
     fill_steps(mesh, pair->node, pair->arc, steps);
     if (labs(steps[0]) < STEPS_LEAST && labs(steps[1]) < STEPS_LEAST) {
         *pair = before;
-        pair->gap = REACH;
+        pair->gap = SELF_REACH;
     }
 }
 
@@ -243,7 +236,7 @@ double self_contact_surface_area(const struct mesh *mesh, const double *u, size_
 }
 
 static size_t bins_of(const struct mesh *mesh, int axis) {
-    size_t bins = (size_t)(size_of(mesh, axis) / BIN);
+    size_t bins = (size_t)(size_of(mesh, axis) / SELF_BIN);
     size_t most = axis == 0 ? mesh->level[0].nx : mesh->level[0].ny;
     return bins > most ? most : bins > 0 ? bins : 1;
 }
@@ -260,7 +253,7 @@ static void prepare(struct self_contact *self, const double *u) {
         self->bin[b] = NONE;
     for (size_t k = mesh->face; k-- > 0;) {
         struct vector at = position_of(mesh, u, k),
-                      middle = point_of(mesh, u, k, MIDDLE, MIDDLE).at;
+                      middle = point_of(mesh, u, k, SELF_MIDDLE, SELF_MIDDLE).at;
         size_t bin = bin_of(mesh, 1, at.x[1]) * bins_of(mesh, 0) + bin_of(mesh, 0, at.x[0]);
         self->next[k] = self->bin[bin];
         self->bin[bin] = k;
@@ -306,7 +299,7 @@ static double turning_of(const struct mesh *mesh, const double *u, const struct 
         struct vector across = path_across(mesh, u, path, k), turn = cross(one.x, other.x);
         double straight = dot(one.x, other.x) - dot(one.x, across.x) * dot(other.x, across.x);
         double bend = atan2(dot(turn.x, across.x), straight);
-        turned += bend < SHARPEST - 2 * M_PI ? bend + 2 * M_PI : bend;
+        turned += bend < SELF_SHARPEST - 2 * M_PI ? bend + 2 * M_PI : bend;
     }
     return turned;
 }
@@ -340,13 +333,13 @@ static void look_into(const struct self_contact *self, const double *u, size_t b
 }
 
 /* Fills the pair of a node with the nearest patch across air. Returns whether there is one within
- * REACH. */
+ * SELF_REACH. */
 static bool find(const struct self_contact *self, const double *u, size_t node,
                  struct self_pair *out) {
     const struct mesh *mesh = self->mesh;
     struct vector at = position_of(mesh, u, node);
     size_t bins[2], here[2], around[2], nearest = NONE;
-    double least = NEAR * NEAR;
+    double least = SELF_NEAR * SELF_NEAR;
     for (int axis = 0; axis < 2; axis++) {
         bins[axis] = bins_of(mesh, axis);
         here[axis] = bin_of(mesh, axis, at.x[axis]);
@@ -359,20 +352,13 @@ static bool find(const struct self_contact *self, const double *u, size_t node,
     }
     if (nearest == NONE)
         return false;
-    *out = (struct self_pair){.node = node, .arc = nearest, .at = MIDDLE, .across = MIDDLE};
+    *out =
+        (struct self_pair){.node = node, .arc = nearest, .at = SELF_MIDDLE, .across = SELF_MIDDLE};
     self_contact_surface_project(mesh, u, out);
-    if (!(fabs(out->gap) < REACH) || !faces(mesh, u, node, out->arc))
+    if (!(fabs(out->gap) < SELF_REACH) || !faces(mesh, u, node, out->arc))
         return false;
     struct vector there = point_of(mesh, u, out->arc, out->at, out->across).normal;
-    return dot(there.x, point_of(mesh, u, node, MIDDLE, MIDDLE).normal.x) < OPPOSED;
-}
-
-static bool overhangs(const struct mesh *mesh, const double *u) {
-    for (size_t j = 0; j < mesh->level[0].ny; j++)
-        for (size_t i = 0; i < mesh->level[0].nx; i++)
-            if (mesh_stretch(mesh, u, j, i) <= 0)
-                return true;
-    return false;
+    return dot(there.x, point_of(mesh, u, node, SELF_MIDDLE, SELF_MIDDLE).normal.x) < OPPOSED;
 }
 
 void self_contact_surface_coordinates(const struct mesh *mesh, const struct self_pair *pair,
@@ -408,7 +394,7 @@ static void inherit(const struct self_contact *self, struct self_pair *pair,
         return;
     self_contact_surface_coordinates(mesh, old, before);
     fill_since(mesh, pair, before, since);
-    if (fmax(fabs(since[0]), fabs(since[1])) > SAME)
+    if (fmax(fabs(since[0]), fabs(since[1])) > SELF_SAME)
         return;
     memcpy(pair->start, old->start, sizeof pair->start);
     memcpy(pair->shear_multiplier, old->shear_multiplier, sizeof pair->shear_multiplier);
@@ -418,7 +404,7 @@ static void inherit(const struct self_contact *self, struct self_pair *pair,
 void self_contact_surface_search(struct self_contact *self, const double *u) {
     size_t before = self->count, old = 0;
     self->count = 0;
-    if (!overhangs(self->mesh, u))
+    if (!face_folds(self->mesh, u))
         return;
     memcpy(self->old, self->pair, before * sizeof *self->pair);
     prepare(self, u);
@@ -436,7 +422,7 @@ void self_contact_surface_search(struct self_contact *self, const double *u) {
 double self_contact_surface_depth(struct self_contact *self, const double *u) {
     struct self_pair pair;
     double deepest = 0;
-    if (!overhangs(self->mesh, u))
+    if (!face_folds(self->mesh, u))
         return 0;
     prepare(self, u);
     for (size_t node = 0; node < self->mesh->face; node++)

@@ -8,6 +8,22 @@
 /* SIDEWAYS: directions along a face, of which profiles have the first alone. */
 enum { ARC_NODES = 3, PAIRS_A_NODE = 3, SIDEWAYS = 2 };
 
+/* Of the search, in columns: distance within which a node and an arc or a patch are a pair;
+ * distance to its middle; and width of a bin. Neighbours within reach are in the same bin or beside
+ * it, as arcs are filed by their node and shorter along an axis than a bin less the reach. */
+#define SELF_REACH 1.0
+#define SELF_NEAR 3.0
+#define SELF_BIN 4.0
+/* Bends of the face at a node lie in one turn: sharper than this into the block, they count as out
+ * of it. */
+#define SELF_SHARPEST (1.1 * M_PI)
+/* Arcs or patches along an axis within which a pair is on the same fold as before. */
+#define SELF_SAME 3.0
+/* The middle of an arc or a patch. */
+#define SELF_MIDDLE 0.5
+/* Steps of Newton's method towards the nearest point. */
+enum { SELF_PROJECTIONS = 20 };
+
 /* What a pair is: a node of the left or the right flank and an arc of the other one, or two lips
  * on the flat. */
 enum self_kind { SELF_LEFT, SELF_RIGHT, SELF_LIPS, SELF_KINDS };

@@ -7,6 +7,7 @@
 struct nodal_step {
     double load;           /* in the unit in which it was given; 0: out of contact */
     const char *title;     /* units and mean pressure in one line without "--" */
+    const char *lengths;   /* the grid's unit, as the title has it */
     struct grid grid;      /* of the nodes of the face */
     const double *z;       /* by node: height towards the flat before the load, the grid's unit */
     const double *gap;     /* by node: the grid's unit */

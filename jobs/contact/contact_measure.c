@@ -6,8 +6,6 @@
 #include <math.h>
 #include <stdio.h>
 
-static const double ROUNDING = 1e-9;
-
 /* Areas as they are under load need a surface with a scale, and a strain of the face that is that
  * of one material (F22.6). */
 static bool has_stretched(const struct contact_case *one_case) {
@@ -144,20 +142,17 @@ _Static_assert(sizeof((enum contact_measure[]){LIST(NAME)}) +
 int contact_measure(const struct measure_context *context, const struct contact_pressed *pressed,
                     double values[MEASURE_OWN], struct error *err) {
     const struct contact_state *state = &pressed->state;
-    double now = pressed->stretch, face = 1 + pressed->face_tilt;
+    double face = 1 + pressed->face_tilt;
     struct contact_area area;
     struct patches patches;
     contact_area(context->area, state, &area);
-    /* Where a face overhangs, cells that are turned over count against those in contact, which
-     * then seem more than the whole. */
-    if (now * area.nodes > 1 + ROUNDING)
-        now = 1 / area.nodes;
+    double now = stretch_touching(area.nodes, pressed->stretch);
     double share = now * ((1 + pressed->contact_tilt) / face);
     patch_finder_lend(context->finder, state->scratch);
     patches_find(context->finder, state->p, &patches, NULL);
     /* Edges lie within the cells of outer nodes in contact, near which hardly any pressure acts.
      * Within them the face lies on the flat, without slopes. */
-    double open_now = area.nodes < 1 ? (1 - now * area.nodes) / (1 - area.nodes) : 1;
+    double open_now = stretch_rest(area.nodes, now);
 #define VALUE(name, shown, kept, value, ...) values[MEASURE_##name] = value;
     LIST(VALUE)
     return contact_quantities_measure(context->quantities, context, pressed, &area,

@@ -46,6 +46,7 @@ int contact_step_fill(struct contact_step *out, const struct contact_step_order 
         .material = block.material, .u = block.u, .face = *state, .unit = order->unit};
     out->step = (struct nodal_step){.load = order->load,
                                     .title = out->title,
+                                    .lengths = order->lengths,
                                     .grid = order->grid,
                                     .z = out->values + STEP_HEIGHT * n,
                                     .gap = out->values + STEP_GAP * n,

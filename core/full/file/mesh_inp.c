@@ -209,7 +209,7 @@ static void measure_face(struct inp_writer *w) {
         w->lowest = fmin(w->lowest, w->mesh->height[node] * w->mesh->unit);
 }
 
-int mesh_inp(FILE *file, const char *title, const struct inp_model *model, struct error *err) {
+int mesh_inp(FILE *file, const char *lengths, const struct inp_model *model, struct error *err) {
     const struct mesh *mesh = model->mesh;
     struct inp_writer w = {.file = file,
                            .model = model,
@@ -222,7 +222,7 @@ int mesh_inp(FILE *file, const char *title, const struct inp_model *model, struc
     errno = 0;
     measure_face(&w);
     mesh_points_each(mesh, note_own, &w);
-    fprintf(file, "*HEADING\n%s\n", title);
+    fprintf(file, "*HEADING\nlengths in %s; stresses in E*\n", lengths);
     write_mesh(&w);
     write_material(&w);
     for (size_t s = 0; s < model->step_count; s++)

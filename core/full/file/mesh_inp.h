@@ -28,7 +28,8 @@ struct inp_model {
     size_t step_count;
     const struct inp_step *steps; /* borrowed */
 };
-/* title: one line. ERROR_MEMORY; ERROR_SYSTEM when it cannot be written. */
-int mesh_inp(FILE *file, const char *title, const struct inp_model *model, struct error *err);
+/* lengths: the grid's unit, of one line, for the heading. ERROR_MEMORY; ERROR_SYSTEM when it cannot
+ * be written. */
+int mesh_inp(FILE *file, const char *lengths, const struct inp_model *model, struct error *err);
 
 #endif

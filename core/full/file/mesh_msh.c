@@ -140,8 +140,8 @@ int mesh_msh(FILE *file, const struct mesh *mesh, struct error *err) {
         if (mesh_widens(mesh, k))
             return error_set(err, ERROR_INPUT,
                              "columns of elements widen with depth, which files of Gmsh cannot "
-                             "hold: \"transition_depth\": 1e9 keeps them as wide as those of the "
-                             "surface");
+                             "hold: \"transition_depth\": 1e9, of rugo press --transition-depth "
+                             "1e9, keeps them as wide as those of the surface");
     errno = 0;
     write_names(&w);
     fprintf(file, "$Nodes\n%zu\n", mesh_points_count(mesh));

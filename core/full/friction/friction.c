@@ -265,8 +265,7 @@ static struct friction_face measure_face(const struct friction *f, const double 
     const double stretch = face_contact_stretch(f->mesh, u, active);
     out.area = out.area * stretch * (1 + tilt.contact) / (1 + tilt.face);
     out.tilt = tilt.face;
-    if (nodes < f->face)
-        out.open_stretch = ((double)f->face - (double)nodes * stretch) / (double)(f->face - nodes);
+    out.open_stretch = face_open_stretch(f->mesh, nodes, stretch);
     return out;
 }
 
@@ -384,7 +383,8 @@ static int drag(void *solver, double done, double drag, double tolerance, struct
     int status = solve(way, &goal, &f->held, &out->change, err);
     n->tolerance = usual;
     n->max_iterations = most;
-    out->force = mesh_largest_move(f->mesh, n->u, n->anchor) * drag / goal.pressure;
+    out->force =
+        mesh_largest_move(f->mesh, n->u, n->anchor) * drag / (goal.pressure * f->mesh->across);
     if (status == 0)
         add_works(f, &f->held, &f->held);
     return status;
@@ -496,12 +496,12 @@ static int become_careful(struct friction *f, struct error *err) {
 /* As follow_steps, and on carefully where the usual steps end. */
 static int follow(struct friction *f, const struct friction_goal *goal, struct friction_state *out,
                   struct error *err) {
-    struct error ignored = {0};
     int status = follow_steps(f, goal, out, err);
     bool refused = f->careful || f->options.kinematics == KINEMATICS_SMALL || is_used_up(f);
-    if (status != ERROR_NUMERIC || refused || become_careful(f, &ignored) != 0)
+    if (status != ERROR_NUMERIC || refused)
         return status;
-    return follow_steps(f, goal, out, err);
+    status = become_careful(f, err);
+    return status == 0 ? follow_steps(f, goal, out, err) : status;
 }
 
 /* --- results --- */

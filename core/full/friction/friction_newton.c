@@ -493,14 +493,11 @@ struct round {
 };
 
 static void measure(const struct friction_newton *n, struct friction_end *end) {
-    end->inside = end->penetration = 0;
+    end->inside = 0;
     for (size_t node = 0; node < n->mesh->face; node++) {
-        double gap = n->opening[node];
-        if (n->node[node] == NODE_FREE) {
-            end->penetration = fmax(end->penetration, -gap);
+        if (n->node[node] == NODE_FREE)
             continue;
-        }
-        end->inside = fmax(end->inside, fabs(gap));
+        end->inside = fmax(end->inside, fabs(n->opening[node]));
         if (n->node[node] == NODE_STICKS)
             end->inside = fmax(end->inside, slip_size(n, node));
     }
@@ -532,7 +529,6 @@ static struct round assess(struct friction_newton *n, const struct friction_goal
     if (!first && rounds_trust(round.residual, round.largest, careful))
         round.changes = update(n, round.balanced, careful);
     if (round.changes > 0) {
-        end->changes += round.changes;
         round.residual = residual(n, goal);
         end->cycles += set_history_meets(history, n->mesh->face, n->node);
     }

@@ -70,7 +70,7 @@ int friction_newton_create(struct friction_newton *out, const struct mesh *mesh,
                            const struct material *material, enum gap_weighting weighting,
                            double friction, struct gmres *gmres, struct error *err);
 void friction_newton_clear(struct friction_newton *newton);
-/* As newton_allow_overhangs; the face meets itself with the same friction. */
+/* As newton_allow_overhangs; the face meets itself with the same friction. ERROR_MEMORY alone. */
 int friction_newton_allow_overhangs(struct friction_newton *newton, struct error *err);
 
 /* Computes forces, energy and tangent at u, with the pairs of a face that meets itself as they are.
@@ -87,11 +87,10 @@ struct friction_goal {
 };
 /* The course of a solution; as newton_end. */
 struct friction_end {
-    size_t iterations, changes, cycles;
+    size_t iterations, cycles;
     struct unsymmetric_work work;
     double residual; /* largest out-of-balance force, over the largest contact force */
     double inside;   /* largest |weighted gap| in contact, and |slip| of sticking nodes */
-    double penetration;
 };
 /* Solves for u, shear, flat and the nodes, starting from those given. After ERROR_NUMERIC, and
  * ERROR_STOPPED when stop returned non-zero, these are undefined. */

@@ -1,6 +1,7 @@
 #include "core/full/linear/face_solver.h"
 #include "core/contact/block.h"
 #include "core/full/linear/aliasing.h"
+#include "core/full/linear/vectors.h"
 #include <fftw3.h>
 #include <math.h>
 #include <stdlib.h>
@@ -76,13 +77,6 @@ static double mean_active(size_t n, const bool *active, const double *x) {
 static void restrict_to(size_t n, const bool *active, double shift, double *x) {
     for (size_t i = 0; i < n; i++)
         x[i] = active[i] ? x[i] - shift : 0;
-}
-
-static double dot(size_t n, const double *a, const double *b) {
-    double sum = 0;
-    for (size_t i = 0; i < n; i++)
-        sum += a[i] * b[i];
-    return sum;
 }
 
 /* Subtracts from r its mean over the set, and sets r to 0 outside. Returns that mean, the shift. */

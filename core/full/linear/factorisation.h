@@ -1,5 +1,6 @@
 /* Sparse Cholesky factorisation of a tangent (CHOLMOD, supernodal). The pattern does not depend on
- * the nodes in contact, so that it is analysed only once.
+ * the nodes in contact, so that it is analysed only once, but for a face that meets itself: its
+ * pairs change the pattern, which is then analysed in every run.
  *
  * All nodes of the far side share one vertical displacement, and its first node does not move
  * sideways. Rows and columns of vertical displacements in contact are replaced by those of the

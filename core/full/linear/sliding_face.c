@@ -2,6 +2,7 @@
 #include "core/contact/block.h"
 #include "core/full/linear/aliasing.h"
 #include "core/full/linear/hessenberg.h"
+#include "core/full/linear/vectors.h"
 #include "core/surface/transform.h"
 #include <math.h>
 #include <stdlib.h>
@@ -305,13 +306,6 @@ static void precondition(struct sliding_face *s, const double *residual, double 
 }
 
 /* --- minimal residuals --- */
-
-static double dot(size_t n, const double *a, const double *b) {
-    double sum = 0;
-    for (size_t i = 0; i < n; i++)
-        sum += a[i] * b[i];
-    return sum;
-}
 
 static void add(size_t n, double factor, const double *x, double *y) {
     for (size_t i = 0; i < n; i++)

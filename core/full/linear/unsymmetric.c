@@ -1,5 +1,6 @@
 #include "core/full/linear/unsymmetric.h"
 #include "core/full/linear/hessenberg.h"
+#include "core/full/linear/vectors.h"
 #include <limits.h>
 #include <math.h>
 #include <stdint.h>
@@ -293,13 +294,6 @@ static int factorise(struct unsymmetric *lu, struct error *err) {
 }
 
 /* --- solutions --- */
-
-static double dot(size_t n, const double *a, const double *b) {
-    double sum = 0;
-    for (size_t i = 0; i < n; i++)
-        sum += a[i] * b[i];
-    return sum;
-}
 
 /* y = A x */
 static void operate(const struct unsymmetric *lu, const double *x, double *y) {

@@ -3,7 +3,8 @@
  * steps, which differ by what a few nodes do and by a little strain: generalised minimal residuals
  * (Saad & Schultz 1986) take some ten solves, each about a thirtieth of a factorisation. Where they
  * take more, the matrix is factorised anew. Its pattern does not depend on what nodes do, so that
- * it is analysed only once.
+ * it is analysed only once, but for a face that meets itself: its pairs change the pattern, which
+ * is then analysed anew with each matrix.
  *
  * Unknowns and rows are those of face_conditions.h. Private to core/full. */
 #ifndef RUGO_CORE_FULL_LINEAR_UNSYMMETRIC_H

@@ -210,7 +210,7 @@ struct contact_case map_press_case(const struct map_press *press, const struct g
                                .models = {model},
                                .blocks = {{.model = model->block,
                                            .poisson = block->poisson,
-                                           .height = lengths * grid->lx,
+                                           .height = lengths * map_press_length(grid),
                                            .layer_growth = 1.1,
                                            .weighting = block->weighting,
                                            .coating = block->coating}},

@@ -17,10 +17,16 @@
 
 enum press_boundary { PRESS_OPEN, PRESS_MIRRORED, PRESS_PERIODIC };
 
+/* Returns the length of a map as it is pressed, by which heights of blocks are given, as those of
+ * studies by the longer side of the cell. */
+static inline double map_press_length(const struct grid *grid) {
+    return grid_is_profile(grid) ? grid->lx : fmax(grid->lx, grid->ly);
+}
+
 struct press_block {
     const struct contact_model *model;
     double poisson;
-    double lengths; /* height of the block in lengths of the map as it is pressed; 0: the model's */
+    double lengths;         /* height of the block over map_press_length; 0: the model's */
     double tolerance;       /* of a solution, as in studies; 0: the model's */
     double hardness;        /* over E*; 0: it is elastic */
     double friction, angle; /* coefficient, 0: none; of the tangential load from x, radians */

@@ -290,7 +290,7 @@ static void block_errors_at(const struct errors *errors, size_t m, double bound,
 
 static double bound_of(const struct errors *errors, size_t m) {
     const struct grid *grid = &errors->press->grid;
-    double longest = grid_is_profile(grid) ? grid->lx : fmax(grid->lx, grid->ly);
+    double longest = map_press_length(grid);
     const struct press_block *of = &errors->series[m].block;
     const struct block block = {
         .poisson = of->poisson, .height = errors->series[m].height, .coating = of->coating};
@@ -303,7 +303,7 @@ static int own_points(const struct errors *errors, struct sides *sides,
                       struct error *err) {
     for (size_t m = 0; m < errors->count; m++)
         if (errors->series[m].block.model == block->model &&
-            errors->series[m].height == block->lengths * errors->press->grid.lx) {
+            errors->series[m].height == block->lengths * map_press_length(&errors->press->grid)) {
             *out = &errors->series[m];
             return 0;
         }

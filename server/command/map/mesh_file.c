@@ -14,7 +14,7 @@ static int write_block(const struct mesh_file *mesh, FILE *file, const struct no
     if (file_ends_in(mesh->path, ".msh"))
         return mesh_msh(file, step->mesh, err);
     if (file_ends_in(mesh->path, ".inp"))
-        return mesh_inp(file, step->title, &model, err);
+        return mesh_inp(file, step->lengths, &model, err);
     return step_vtu(file, step, err);
 }
 

@@ -146,12 +146,13 @@ def characterise(z: ArrayLike, dx: float = 1.0, *, dy: typing.Optional[float] = 
 
 
 class Pressed:
-    """A map under rising or falling loads. An array of one value a load each: pressure (mean, over E*), area (contact
-    fraction by edges between nodes, the best estimate), area_nodes (share of nodes, too large), area_lower and
-    area_upper (bounds), mean_gap, stiffness (-d pressure/d mean_gap; infinite in full contact), patches, iterations,
-    violation (largest penetration over the RMS height), approach (of the flat, since it first touched). full_pressure
-    is the least pressure of full contact, NaN where there is none. p and gap, unless None, are the local pressures
-    over E* and the gaps: (loads,) + the shape of the map."""
+    """A map under rising or falling loads. An array of one value a load each: pressure (mean, over E*), area
+    (contact fraction by edges between nodes, the best estimate), area_nodes (share of nodes, too large),
+    area_lower and area_upper (bounds; all of the full model as the face stretches under load), mean_gap,
+    stiffness (-d pressure/d mean_gap; infinite in full contact), patches, iterations, violation (largest
+    penetration over the RMS height), approach (of the flat, since it first touched). full_pressure is the least
+    pressure of full contact, NaN where there is none. p and gap, unless None, are the local pressures over E*
+    and the gaps: (loads,) + the shape of the map."""
 
     pressure: numpy.ndarray
     area: numpy.ndarray
@@ -203,7 +204,7 @@ def press(z: ArrayLike, dx: float = 1.0, pressures: ArrayLike = (), *, dy: typin
     the other; a load p/(E* h') of studies times the RMS slope h' (characterise: spectral). boundary: "periodic", or
     "open" for a half-space in free space that touches within the map alone. model, of periodic maps: "halfspace", "layered" or
     "full" (finite strain; far slower). poisson (0.3; without influence on a half-space), height of the block in
-    the unit of dx (1.5 nx dx; of a half-space infinite), layer_growth (1.1): of the block. maps: whether to keep p
+    the unit of dx (1.5 times the longer side of the map; of a half-space infinite), layer_growth (1.1): of the block. maps: whether to keep p
     and gap, two maps a load. Raises LibraryError, with the accuracy reached where there is no convergence.
 
     Heights of other packages are passed as they are, with the spacing along the last axis as dx. Of a topography of

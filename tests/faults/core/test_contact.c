@@ -10,9 +10,12 @@
 #include "core/full/full.h"
 #include "core/statistics/fit.h"
 #include "tests/support/failing/each_allocation.h"
+#include "tests/support/failing/failing_allocator.h"
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { SIDE = 8, POINTS = SIDE * SIDE };
 static const struct grid GRID = {SIDE, SIDE, 1, 1}, LINE = {16, 1, 1, 1};
@@ -181,6 +184,62 @@ static void friction(void **state) {
         .name = "friction of a surface", drag_solid, .context = &surface, .may_succeed = true});
 }
 
+/* Iterations that are too few for the usual steps, so that overhangs begin. */
+struct careful_case {
+    const char *name;
+    size_t max_iterations;
+    bool rubs;
+};
+
+/* Presses with allocation n of what overhangs take and all behind it failing; with friction drags
+ * so after a press that has them. Returns whether one failed. */
+static bool fail_careful(const struct careful_case *with, uint64_t n) {
+    static const struct grid SMALL = {4, 4, 1, 1};
+    static const struct friction_options FRICTION = {.coefficient = 0.3, .press_steps = 1};
+    struct full_options options = FULL_DEFAULTS;
+    struct friction *friction = NULL;
+    struct full *full = NULL;
+    struct contact_state pressed;
+    struct friction_state dragged;
+    struct error err = {0};
+    double z[POINTS];
+    options.max_iterations = with->max_iterations;
+    options.least_step = 1;
+    options.tolerance = 1e-4;
+    heights(&SMALL, 0.02, z);
+    int status = with->rubs ? friction_create(&friction, &SMALL, &MESHED, &options, &FRICTION, &err)
+                            : full_create(&full, &SMALL, &MESHED, &options, &err);
+    if (status == 0)
+        status = with->rubs ? friction_begin(friction, z, &err) : full_begin(full, z, &err);
+    if (status == 0 && with->rubs)
+        status = friction_press(friction, 0.02, &dragged, &err);
+    if (status != 0)
+        fail_msg("%s", err.text);
+    failing_arm(n, UINT64_MAX);
+    status = with->rubs ? friction_load(friction, 0.0055, &dragged, &err)
+                        : full_press(full, 0.02, &pressed, NULL, &err);
+    const bool failed = failing_disarm().failed > 0;
+    if (failed && (status != ERROR_MEMORY || strstr(err.text, "cannot allocate") != err.text))
+        fail_msg("%s, allocation %" PRIu64 " failed: %d, %s", with->name, n, status, err.text);
+    friction_destroy(&friction);
+    full_destroy(&full);
+    return failed;
+}
+
+/* It is not "no equilibrium", for which studies drop the load and go on. */
+static void overhangs_without_memory(void **state) {
+    (void)state;
+    static const struct careful_case CASES[] = {{"a press", 2, false}, {"a drag", 3, true}};
+    enum { STEP = 4 };
+    for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
+        uint64_t n = 0;
+        while (fail_careful(&CASES[c], n))
+            n += STEP;
+        print_message("%s: about %" PRIu64 " allocations\n", CASES[c].name, n);
+        assert_true(n > 0);
+    }
+}
+
 static int fit_all(void *context, struct error *err) {
     static const double LOAD[] = {0.01, 0.02, 0.03, 0.1}, FRACTION[] = {0.02, 0.04, 0.06, 0.2};
     struct fit fit;
@@ -200,9 +259,8 @@ static void fits(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(linear_models),
-        cmocka_unit_test(full_model),
-        cmocka_unit_test(friction),
+        cmocka_unit_test(linear_models), cmocka_unit_test(full_model),
+        cmocka_unit_test(friction),      cmocka_unit_test(overhangs_without_memory),
         cmocka_unit_test(fits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

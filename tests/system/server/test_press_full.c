@@ -101,7 +101,8 @@ static void loads_without_values_are_noted(void **state) {
     assert_true(contains("shell.err", "z.npy: contact on the true geometry under a mean pressure"));
 }
 
-/* The file of the block is that of the last load; CalculiX's has a step for each. */
+/* The file of the block is that of the last load; CalculiX's has a step for each, and its stresses
+ * in E* whatever the unit of others. */
 static void the_block_is_written(void **state) {
     (void)state;
     check_shell("sh ./press --model full --loads 0.05,0.1 --error none --mesh b.inp >/dev/null && "
@@ -110,6 +111,9 @@ static void the_block_is_written(void **state) {
                 "MeshFormat b.msh && sh ./press --model full --loads 0.1 --error none --mesh b.vtu "
                 ">/dev/null && grep -q 'Name=\"stress\"' b.vtu && grep -q 'Name=\"displacement\"' "
                 "b.vtu");
+    check_shell("sh ./press --model full --loads 0.1 --error none --modulus 2GPa --mesh pa.inp "
+                ">/dev/null && sed -n 2p pa.inp");
+    assert_true(contains("shell.out", "lengths in the map's unit; stresses in E*\n"));
 }
 
 /* A map that does not repeat is mirrored, for all models of a command. */

@@ -1,6 +1,7 @@
 /* Protects: the public functions of rugo.h: that each kind of spectrum, height, rule and model is
  * the one that its name says, what is reported of wrong arguments, and that outputs stay untouched
  * then. */
+#include "core/full/full.h"
 #include "core/rugo.h"
 #include "core/surface/surface.h"
 #include "core/theory/contact.h"
@@ -213,6 +214,57 @@ static void models_are_those_named(void **state) {
     assert_true(area[RUGO_FULL] != area[RUGO_LAYERED]);
 }
 
+/* Areas of the full model are as those of studies, under load (F14.6): a count of nodes is
+ * stretched as they are, and what they cover more is taken from the open face, which tiles the
+ * cell. */
+static void areas_of_full_are_those_under_load(void **state) {
+    (void)state;
+    const struct rugo_grid line = {64, 1, 1, 1};
+    const struct grid cell = {64, 1, 1, 1};
+    struct rugo_block block = rugo_block_defaults(RUGO_FULL, &line);
+    struct block same = {.model = MODEL_LAYERED,
+                         .height = block.height,
+                         .layer_growth = block.layer_growth,
+                         .weighting = GAP_STANDARD};
+    struct rugo_contact *contact = NULL;
+    struct rugo_contact_state now;
+    struct rugo_error err = {0};
+    struct full *full = NULL;
+    struct contact_state pressed;
+    struct full_report report;
+    struct error why = {0};
+    double z[64];
+    block.poisson = 0;
+    for (int i = 0; i < 64; i++)
+        z[i] = 0.05 * cos(2 * M_PI * i / 64);
+    assert_int_equal(rugo_contact_create(&contact, &line, &block, &err), 0);
+    assert_int_equal(rugo_contact_begin(contact, z, &err), 0);
+    assert_int_equal(rugo_contact_press(contact, 0.05, &now, &err), 0);
+    assert_int_equal(full_create(&full, &cell, &same, &FULL_DEFAULTS, &why), 0);
+    assert_int_equal(full_begin(full, z, &why), 0);
+    assert_int_equal(full_press(full, 0.05, &pressed, &report, &why), 0);
+    double nodes = (double)pressed.nodes / 64;
+    assert_true(report.stretch < 0.99);
+    check_relative(now.area_nodes, report.stretch * nodes, 1e-12);
+    /* Edges lie between the nodes in contact and those beside them. */
+    assert_true(now.area < now.area_nodes &&
+                now.area > report.stretch * (nodes - 2.0 / 64) - 1.0 / 64);
+    assert_int_equal(rugo_contact_press(contact, 0, &now, &err), 0);
+    assert_true(now.area == 0 && now.area_nodes == 0 && now.area_lower == 0);
+    full_destroy(&full);
+    rugo_contact_destroy(&contact);
+}
+
+/* As of studies, so that a map and its transpose have one block. */
+static void blocks_are_as_high_as_the_longer_side_has_it(void **state) {
+    (void)state;
+    const struct rugo_grid lying = {64, 16, 4, 1}, standing = {16, 64, 1, 4}, line = {64, 1, 2, 5};
+    assert_true(rugo_block_defaults(RUGO_LAYERED, &lying).height == 6);
+    assert_true(rugo_block_defaults(RUGO_FULL, &standing).height == 6);
+    assert_true(rugo_block_defaults(RUGO_FULL, &line).height == 3);
+    assert_true(isinf(rugo_block_defaults(RUGO_HALFSPACE, &standing).height));
+}
+
 static void theories_are_those_named(void **state) {
     (void)state;
     assert_true(rugo_persson_area(0.1) == persson_area(0.1));
@@ -392,6 +444,8 @@ int main(void) {
         cmocka_unit_test(spectra_are_those_named),
         cmocka_unit_test(a_map_tells_what_it_is_made_of),
         cmocka_unit_test(models_are_those_named),
+        cmocka_unit_test(areas_of_full_are_those_under_load),
+        cmocka_unit_test(blocks_are_as_high_as_the_longer_side_has_it),
         cmocka_unit_test(theories_are_those_named),
         cmocka_unit_test(wrong_arguments_are_told),
         cmocka_unit_test(a_ratio_is_not_sought_for_wrong_arguments),

@@ -106,7 +106,7 @@ static void write_model(const struct grid *grid, const struct block *block,
                                     .material = material_of(block->poisson, options->kinematics),
                                     .step_count = 1,
                                     .steps = &pressed};
-    assert_int_equal(mesh_inp(file, "dragged", &model, &err), 0);
+    assert_int_equal(mesh_inp(file, "lx", &model, &err), 0);
     assert_int_equal(fclose(file), 0);
     file = fopen("steps.inp", "w");
     assert_non_null(file);

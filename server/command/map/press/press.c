@@ -42,7 +42,7 @@ struct press_options {
     const char *model;
     const char *coating; /* NULL: none */
     const char *counter; /* file of a second map; NULL: the flat is smooth */
-    double lengths;      /* height of the block in lengths of the map, 0: not given */
+    double lengths;      /* height of the block in longer sides of the map, 0: not given */
     double tolerance;    /* likewise */
     int boundary, format, without_error, along_y;
     int coupling; /* enum coupling */
@@ -109,7 +109,8 @@ static const struct option_row OPTIONS[] = {
      "a second map, prepared as the first, that it is pressed on, turned over about y (halfspace, "
      "layered); --effective-modulus for two elastic bodies"},
     {"height", 0, OPTION_NUMBER, 1e-3, 1e3, AT(lengths), "LENGTHS", NULL,
-     "height of the block in lengths of the map (infinite; of meshes 1.5)"},
+     "height of the block in lengths of the map, of a rectangle the longer side (infinite; of "
+     "meshes 1.5)"},
     {"kinematics", 0, OPTION_CHOICE, 0, 0, AT(kinematics), KINEMATICS, "hencky",
      "of the model full: finite strain by Hencky's law, St. Venant and Kirchhoff's or "
      "neo-Hooke's, or small strain on the rough geometry"},

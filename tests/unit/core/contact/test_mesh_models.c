@@ -144,6 +144,7 @@ static void points_between_others_are_not_for_gmsh(void **state) {
     assert_true(memory_file_open(&memory));
     assert_int_equal(mesh_msh(memory.file, mesh, &err), ERROR_INPUT);
     assert_non_null(strstr(err.text, "\"transition_depth\": 1e9"));
+    assert_non_null(strstr(err.text, "--transition-depth 1e9"));
     char *text = memory_file_close(&memory, NULL);
     assert_string_equal(text, "");
     free(text);
@@ -227,10 +228,11 @@ static void one_inp(struct grid grid, double transition, enum kinematics kinemat
     struct memory_file memory;
     struct error err = {0};
     assert_true(memory_file_open(&memory));
-    if (mesh_inp(memory.file, "a test", &model, &err) != 0)
+    if (mesh_inp(memory.file, "um", &model, &err) != 0)
         fail_msg("%s", err.text);
     char *text = memory_file_close(&memory, NULL);
     check_inp(text, mesh, &grid);
+    assert_non_null(strstr(text, "*HEADING\nlengths in um; stresses in E*\n*NODE\n"));
     assert_true((strstr(text, "*STEP, NLGEOM") != NULL) == (kinematics != KINEMATICS_SMALL));
     free(text);
     mesh_destroy(&mesh);
@@ -253,7 +255,7 @@ static void a_full_disk_is_told(void **state) {
     if (file == NULL)
         skip();
     assert_int_equal(mesh_msh(file, mesh, &err), ERROR_SYSTEM);
-    assert_int_equal(mesh_inp(file, "a test", &model, &err), ERROR_SYSTEM);
+    assert_int_equal(mesh_inp(file, "um", &model, &err), ERROR_SYSTEM);
     assert_non_null(strstr(err.text, "cannot write the mesh"));
     mesh_destroy(&mesh);
     fclose(file);

@@ -1,6 +1,7 @@
 /* Protects: the contact of one map by the models of studies: against Hertz, mirrored and open; its
  * error by the points; what is refused; its curves; that what a model asks for is as in studies. */
 #include "core/full/full.h"
+#include "core/rugo.h"
 #include "jobs/contact/case/contact_loads.h"
 #include "jobs/maps/press/map_press_curves.h"
 #include "jobs/maps/press/map_press_error.h"
@@ -207,6 +208,75 @@ static void full_model_is_pressed(void **state) {
     assert_true(isnan(rows[0].value[PRESS_APPROACH]));
 }
 
+/* The same block, and the same areas under load, which a ratio of Poisson of 0 stretches most. */
+static void librugo_has_the_areas_of_press(void **state) {
+    (void)state;
+    static const double LOADS[] = {0.02, 0.2};
+    const struct rugo_grid grid = {40, 1, 10, 1};
+    const struct press_block model = {.model = model_named("full")};
+    struct height_map map = {.grid = {40, 1, 10, 1}, .z = array_create(40, sizeof *map.z)};
+    struct rugo_block block = rugo_block_defaults(RUGO_FULL, &grid);
+    struct rugo_contact *contact = NULL;
+    struct rugo_contact_state state_of;
+    struct map_press press = {0};
+    struct press_row row;
+    struct error err = {0};
+    assert_non_null(map.z);
+    for (size_t i = 0; i < 40; i++)
+        map.z[i] = 0.5 * cos(2 * M_PI * ((double)i + 0.5) / 40);
+    block.poisson = 0;
+    assert_int_equal(rugo_contact_create(&contact, &grid, &block, NULL), 0);
+    assert_int_equal(rugo_contact_begin(contact, map.z, NULL), 0);
+    if (map_press_begin(&press, &map, PRESS_PERIODIC, &err) != 0 ||
+        map_press_lift(&press, map.z, &model, &err) != 0)
+        fail_msg("%s", err.text);
+    for (size_t l = 0; l < 2; l++) {
+        if (map_press_load(&press, LOADS[l] * press.slope, &row, &err) != 0)
+            fail_msg("%s", err.text);
+        assert_int_equal(rugo_contact_press(contact, LOADS[l] * press.slope, &state_of, NULL), 0);
+        check_relative(state_of.area, row.value[MEASURE_EDGES], 1e-5);
+        check_relative(state_of.area_nodes, row.value[MEASURE_NODES], 1e-5);
+        check_relative(state_of.area_lower, row.value[MEASURE_NODES_LOWER], 1e-5);
+        check_relative(state_of.area_upper, row.value[MEASURE_NODES_UPPER], 1e-5);
+        check_relative(state_of.mean_gap, row.value[MEASURE_GAP] * press.height, 1e-5);
+    }
+    rugo_contact_destroy(&contact);
+    map_press_clear(&press);
+    height_map_clear(&map);
+}
+
+/* The usual height of a block is that of studies, by the longer side, whichever that is. */
+static void a_transposed_map_has_the_same_contact(void **state) {
+    (void)state;
+    enum { LONG = 32, SHORT = 8 };
+    const struct press_block block = {.model = model_named("layered"), .poisson = 0.3};
+    double gap[2];
+    for (size_t turned = 0; turned < 2; turned++) {
+        const struct grid lying = {LONG, SHORT, 4, 1}, standing = {SHORT, LONG, 1, 4};
+        struct height_map map = {.grid = turned > 0 ? standing : lying,
+                                 .z = array_create(LONG * SHORT, sizeof *map.z)};
+        struct map_press press = {0};
+        struct press_row row;
+        struct error err = {0};
+        assert_non_null(map.z);
+        for (size_t n = 0; n < LONG * SHORT; n++) {
+            size_t along = turned > 0 ? n / SHORT : n % LONG;
+            size_t across = turned > 0 ? n % SHORT : n / LONG;
+            map.z[n] = 0.1 * cos(2 * M_PI * (double)along / LONG) +
+                       0.02 * cos(2 * M_PI * (double)across / SHORT);
+        }
+        if (map_press_begin(&press, &map, PRESS_PERIODIC, &err) != 0 ||
+            map_press_lift(&press, map.z, &block, &err) != 0 ||
+            map_press_load(&press, 0.1 * press.slope, &row, &err) != 0)
+            fail_msg("%s", err.text);
+        assert_true(press.one_case.blocks[0].height == 6);
+        gap[turned] = row.value[MEASURE_GAP];
+        map_press_clear(&press);
+        height_map_clear(&map);
+    }
+    check_relative(gap[1], gap[0], 1e-6);
+}
+
 static void meshes_of_open_maps_are_refused(void **state) {
     (void)state;
     struct map_press press = {0};
@@ -296,6 +366,8 @@ int main(void) {
         cmocka_unit_test(mirrored_map_is_pressed),
         cmocka_unit_test(points_make_an_error),
         cmocka_unit_test(full_model_is_pressed),
+        cmocka_unit_test(librugo_has_the_areas_of_press),
+        cmocka_unit_test(a_transposed_map_has_the_same_contact),
         cmocka_unit_test(meshes_of_open_maps_are_refused),
         cmocka_unit_test(loads_are_curves),
         cmocka_unit_test(tolerances_are_those_of_the_solvers),
