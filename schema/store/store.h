@@ -63,7 +63,7 @@ int store_probe(struct store *store, struct error *err);
 /* Queues a study with its jobs. If another study is the same but for its name and has fewer
  * realisations, its blocks are copied, and only what they lack is queued. key (may be NULL): a
  * second submission of the same owner with the same key and source returns the id of the first and
- * *existing = true; with another source ERROR_STATE. */
+ * *existing = true, also after the first was extended; with another source ERROR_STATE. */
 int store_submit(struct store *store, const struct study *study, const char *key,
                  char id[STUDY_ID_SIZE], bool *existing, struct error *err);
 

@@ -1,11 +1,12 @@
-/* Protects: stores that people have, of versions 1, 3, 17 and 18 and of two layouts before them.
- * Those of versions 1 and 3, left in the midst of work, open with this program, which goes on where
- * they were. They end with the rows of a fresh run: of cases that this program publishes, names,
- * abscissae, counts and curves without a model are the same bit for bit; curves of contact and all
- * scalars are to four digits, but for those whose definition or tolerance changed (check_study).
- * Statistics that were published before are not compared. Of version 17 the published ordinates are
- * read as they are in its rows, to twelve digits; of version 18 keys get their owners. All but the
- * first layout, which is refused with a word, have no flaw of structure once they were opened.
+/* Protects: stores that people have, of versions 1, 3, 17, 18 and 20 and of two layouts before
+ * them. Those of versions 1 and 3, left in the midst of work, open with this program, which goes on
+ * where they were. They end with the rows of a fresh run: of cases that this program publishes,
+ * names, abscissae, counts and curves without a model are the same bit for bit; curves of contact
+ * and all scalars are to four digits, but for those whose definition or tolerance changed
+ * (check_study). Statistics that were published before are not compared. Of version 17 the
+ * published ordinates are read as they are in its rows, to twelve digits; of version 18 keys get
+ * their owners, and of version 20 they know studies that were extended. All but the first layout,
+ * which is refused with a word, have no flaw of structure once they were opened.
  * tests/fixtures/stores/README.md says how the fixtures were made. */
 #include "tests/support/sql.h"
 #include "tests/unit/worker/small_study.h"
@@ -268,8 +269,8 @@ static int refuse_structure(void *context, const struct flaw *flaw, struct error
 /* Migrations make of each older store what they make of an empty one. */
 static void a_store_brought_up_is_like_a_new_one(void **state) {
     (void)state;
-    static const char *const FIXTURES[] = {"version-1.sql", "version-3.sql", "version-17.sql",
-                                           "version-18.sql", "early-layout.sql"};
+    static const char *const FIXTURES[] = {"version-1.sql",  "version-3.sql",  "version-17.sql",
+                                           "version-18.sql", "version-20.sql", "early-layout.sql"};
     for (size_t f = 0; f < sizeof FIXTURES / sizeof *FIXTURES; f++) {
         const struct verification verification = {.found = refuse_structure};
         struct verify_report report = {0};
@@ -299,6 +300,30 @@ static void keys_get_their_owners(void **state) {
     char *rows = rows_of("keys.db", KEYS, NULL);
     assert_string_equal(rows, "|monday\nanna|tuesday\n");
     free(rows);
+}
+
+/* How many realisations were first asked for is not known of an older program's study: its key
+ * takes the document with any number of them, as that of a study that was extended since. */
+static void a_key_knows_an_older_extended_study(void **state) {
+    (void)state;
+    static const char GIVEN[] =
+        "{\"name\":\"kept\",\"kind\":\"statistics\",\"seed\":1,\"realisations\":4,\"surface\":{"
+        "\"hurst\":0.8,\"wavelength_ratio\":4,\"length_ratio\":4,\"points_per_wavelength\":4}}";
+    struct store *store = NULL;
+    struct study *study = NULL;
+    struct fault_list faults = {0};
+    struct error err;
+    char id[STUDY_ID_SIZE];
+    bool existing = false;
+    load("version-20.sql", "extended.db");
+    assert_int_equal(store_open(&store, "extended.db", NULL, &err), 0);
+    assert_int_equal(kind_read_study(&study, GIVEN, strlen(GIVEN), NULL, &faults, &err), 0);
+    assert_int_equal(store_submit(store, study, "monday", id, &existing, &err), 0);
+    assert_true(existing);
+    assert_string_equal(id, "bda1b99f50318778");
+    assert_int_equal(store_submit(store, study, "tuesday", id, &existing, &err), ERROR_STATE);
+    study_destroy(&study);
+    store_close(&store);
 }
 
 static int refuse_flaw(void *context, const struct flaw *flaw, struct error *err) {
@@ -386,6 +411,7 @@ int main(void) {
         cmocka_unit_test(a_reader_reads_it),
         cmocka_unit_test(a_store_brought_up_is_like_a_new_one),
         cmocka_unit_test(keys_get_their_owners),
+        cmocka_unit_test(a_key_knows_an_older_extended_study),
         cmocka_unit_test(what_was_not_packed_is_read),
         cmocka_unit_test(the_first_layout_is_refused),
     };
