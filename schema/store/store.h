@@ -118,9 +118,12 @@ int store_document(struct store *store, const char *id, cJSON **out, struct erro
  * caller frees each by study_status_clear, then the list. */
 int store_list(struct store *store, const char *after, size_t limit, struct study_status **out,
                size_t *count, struct error *err);
-int store_cancel(struct store *store, const char *id, struct error *err); /* ERROR_STATE if ended */
+/* Cancels a study that waits or runs, also where its cases wait for publication alone. ERROR_STATE
+ * if it has ended. */
+int store_cancel(struct store *store, const char *id, struct error *err);
 /* Requeues failed and cancelled jobs with fresh attempts, *count of them. So are the jobs of cases
- * that could not be published, whose results are discarded. */
+ * that could not be published, whose results are discarded. A cancelled study goes on, also where
+ * none of its jobs was cancelled. */
 int store_retry(struct store *store, const char *id, uint64_t *count, struct error *err);
 
 /* Queues the realisations that a study lacks to this number for each case, and requeues what failed

@@ -321,8 +321,7 @@ int store_cancel(struct store *store, const char *id, struct error *err) {
     if (status == 0)
         status = store_integer(
             store, &ended, err,
-            "SELECT state = 'cancelled' OR jobs_waiting + jobs_running = 0 FROM study WHERE id = ?",
-            "i", row);
+            "SELECT state IN ('done', 'failed', 'cancelled') FROM study WHERE id = ?", "i", row);
     if (status == 0 && ended != 0)
         status = error_set(err, ERROR_STATE, "study %s has already ended", id);
     if (status == 0)
@@ -367,12 +366,16 @@ static int discard_results(struct store *store, int64_t row, struct error *err) 
     return status;
 }
 
-/* Clears the marks of all cases of a study that cannot be published: they are due again. */
+/* Clears the marks of all cases of a study that cannot be published: they are due again. So are
+ * those of a cancelled study that ask for an error, which may need another round. */
 static int marks_clear(struct store *store, int64_t study, struct error *err) {
-    int status = store_run(store, err,
-                           "UPDATE study_case SET settled = 0, publish_error = NULL WHERE "
-                           "study_id = ? AND publish_error IS NOT NULL",
-                           "i", study);
+    int status =
+        store_run(store, err,
+                  "UPDATE study_case SET settled = 0, publish_error = NULL WHERE study_id = ?1 AND "
+                  "(publish_error IS NOT NULL OR ((SELECT state FROM study WHERE id = ?1) = "
+                  "'cancelled' AND number IN (SELECT parent FROM study_case WHERE study_id = ?1 "
+                  "AND parent IS NOT NULL)))",
+                  "i", study);
     if (status == 0)
         status =
             store_run(store, err, "UPDATE study SET cases_failed = 0 WHERE id = ?", "i", study);
@@ -412,16 +415,18 @@ static int retry_jobs(struct store *store, int64_t row, struct error *err) {
 }
 
 int study_retry(struct store *store, int64_t study, int64_t *jobs, struct error *err) {
-    int64_t marks = 0;
+    int64_t others = 0; /* reasons to go on, but for jobs */
     int status = discard_results(store, study, err);
     if (status == 0)
         status = store_integer(store, jobs, err,
                                "SELECT jobs_failed + jobs_cancelled FROM study WHERE id = ?", "i",
                                study);
     if (status == 0)
-        status = store_integer(store, &marks, err, "SELECT cases_failed FROM study WHERE id = ?",
+        status = store_integer(store, &others, err,
+                               "SELECT cases_failed + (state = 'cancelled') FROM study WHERE id = "
+                               "?",
                                "i", study);
-    return status == 0 && *jobs + marks > 0 ? retry_jobs(store, study, err) : status;
+    return status == 0 && *jobs + others > 0 ? retry_jobs(store, study, err) : status;
 }
 
 int store_retry(struct store *store, const char *id, uint64_t *count, struct error *err) {

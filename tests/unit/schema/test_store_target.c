@@ -173,6 +173,28 @@ static void nothing_grows_after_a_cancellation(void **state) {
     claimed_job_clear(&job);
 }
 
+/* The jobs of a round are over, and the next one is not planned yet: the study runs. */
+static void a_study_between_rounds_is_cancelled_and_goes_on(void **state) {
+    (void)state;
+    const struct case_result empty = {0};
+    uint64_t jobs = 7;
+    while (run_one())
+        ;
+    assert_int_equal(store_cancel(store, id, NULL), 0);
+    assert_int_equal(store_cancel(store, id, NULL), ERROR_STATE);
+    assert_false(grow(revision_now(), 100, 100));
+    assert_int_equal(store_publish(store, id, 0, revision_now(), &empty, NULL), 0);
+    assert_false(is_due());
+    assert_int_equal(store_retry(store, id, &jobs, NULL), 0);
+    assert_int_equal(jobs, 0);
+    struct study_status status = status_now();
+    assert_string_equal(status.state, "running");
+    assert_string_equal(status.finished, "");
+    study_status_clear(&status);
+    assert_true(is_due());
+    assert_true(grow(revision_now(), 9, 4));
+}
+
 static void failed_jobs_end_a_round(void **state) {
     (void)state;
     struct claimed_job job;
@@ -236,6 +258,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(is_due_when_all_jobs_are_over, submit, end),
         cmocka_unit_test_setup_teardown(a_round_is_queued_once, submit, end),
         cmocka_unit_test_setup_teardown(nothing_grows_after_a_cancellation, submit, end),
+        cmocka_unit_test_setup_teardown(a_study_between_rounds_is_cancelled_and_goes_on, submit,
+                                        end),
         cmocka_unit_test_setup_teardown(failed_jobs_end_a_round, submit, end),
         cmocka_unit_test_setup_teardown(what_cannot_be_published_is_computed_again, submit, end),
     };
