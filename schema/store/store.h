@@ -254,8 +254,13 @@ struct case_info {
     uint64_t seed, realisations, realisations_done, revision;
 };
 void case_info_clear(struct case_info *info);
+/* Reads a case that was asked for; ERROR_ABSENT for any other number, such as a component's. *out
+ * is the caller's to clear. */
 int store_case(struct store *store, const char *study, uint64_t case_number, struct case_info *out,
                struct error *err);
+/* Reads a case or a component likewise. */
+int store_any_case(struct store *store, const char *study, uint64_t case_number,
+                   struct case_info *out, struct error *err);
 /* Calls visit for every stored block of a case, in the order of realisations, within one read
  * transaction. A non-zero return of visit stops and is returned. */
 typedef int result_visit(void *context, const struct block_result *result, struct error *err);

@@ -123,6 +123,25 @@ static void is_due_when_all_jobs_are_over(void **state) {
     study_status_clear(&status);
 }
 
+/* Components have numbers behind those of the cases, which are those that were asked for. */
+static void a_component_is_no_case(void **state) {
+    (void)state;
+    struct case_info info;
+    struct error err = {0};
+    for (uint64_t number = 0; number < 4; number++) {
+        bool is_case = number < 1, is_either = number < 3;
+        int status = store_case(store, id, number, &info, &err);
+        assert_int_equal(status, is_case ? 0 : ERROR_ABSENT);
+        if (status == 0)
+            case_info_clear(&info);
+        status = store_any_case(store, id, number, &info, NULL);
+        assert_int_equal(status, is_either ? 0 : ERROR_ABSENT);
+        if (status == 0)
+            case_info_clear(&info);
+    }
+    assert_non_null(strstr(err.text, "has no case 3; it has 1, from 0 on"));
+}
+
 static void a_round_is_queued_once(void **state) {
     (void)state;
     while (run_one())
@@ -218,7 +237,7 @@ static int refuse(void *context, struct store *of, const struct due_case *due, s
 
 static void check_done(uint64_t number, uint64_t done) {
     struct case_info info;
-    assert_int_equal(store_case(store, id, number, &info, NULL), 0);
+    assert_int_equal(store_any_case(store, id, number, &info, NULL), 0);
     assert_int_equal(info.realisations_done, done);
     case_info_clear(&info);
 }
@@ -256,6 +275,7 @@ static void what_cannot_be_published_is_computed_again(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(is_due_when_all_jobs_are_over, submit, end),
+        cmocka_unit_test_setup_teardown(a_component_is_no_case, submit, end),
         cmocka_unit_test_setup_teardown(a_round_is_queued_once, submit, end),
         cmocka_unit_test_setup_teardown(nothing_grows_after_a_cancellation, submit, end),
         cmocka_unit_test_setup_teardown(a_study_between_rounds_is_cancelled_and_goes_on, submit,
