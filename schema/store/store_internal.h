@@ -138,6 +138,10 @@ int study_line(struct store *store, int64_t study, const struct at_work *at_work
                struct study_status *of, struct error *err);
 struct queue_line;
 void queue_line_destroy(struct queue_line **line);
+/* Sets *own to whether results of this program may be merged with those of the study: it has none,
+ * or both are of one edition (study.h). A study without an edition has to be of this very build. */
+int study_is_own(struct store *store, int64_t study, uint64_t edition, bool *own,
+                 struct error *err);
 /* Requeues what failed or was cancelled: *jobs of them. Within a change. */
 int study_retry(struct store *store, int64_t study, int64_t *jobs, struct error *err);
 /* Ends the study when none of its jobs waits or runs; raises its revision. */

@@ -133,16 +133,19 @@ static int insert_study(struct store *store, const struct study *study, const ch
                         const char *id, struct error *err) {
     int64_t row = 0, taken = 0;
     struct queued queued = {0};
-    bool shares = study->edition != 0 && study->realisations != 0;
+    const bool known = study->edition != 0, shares = known && study->realisations != 0;
     uint64_t digest = HASH_START;
     int status = insert_row(store, study, key, id, &row, err);
     if (status == 0)
         status = insert_cases(store, study, row, &digest, err);
     if (status == 0)
         status = cases_seal(store, row, err);
+    if (status == 0 && known)
+        status = store_run(store, err, "UPDATE study SET edition = ? WHERE id = ?", "ii",
+                           (int64_t)study->edition, row);
     if (status == 0 && shares)
-        status = store_run(store, err, "UPDATE study SET digest = ?, edition = ? WHERE id = ?",
-                           "iii", (int64_t)digest, (int64_t)study->edition, row);
+        status = store_run(store, err, "UPDATE study SET digest = ? WHERE id = ?", "ii",
+                           (int64_t)digest, row);
     if (status == 0 && shares)
         status = study_take_blocks(store, row, &taken, err);
     if (status == 0)

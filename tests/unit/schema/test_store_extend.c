@@ -140,8 +140,9 @@ static void what_is_missing_is_queued(void **state) {
     /* results without a form may be of any program */
     sqlite3 *db = NULL;
     assert_int_equal(sqlite3_open("missing.db", &db), SQLITE_OK);
-    assert_int_equal(sqlite3_exec(db, "UPDATE study SET edition = NULL", NULL, NULL, NULL),
-                     SQLITE_OK);
+    assert_int_equal(
+        sqlite3_exec(db, "UPDATE study SET edition = NULL, program = 'older'", NULL, NULL, NULL),
+        SQLITE_OK);
     sqlite3_close(db);
     assert_int_equal(store_extend(store, id, 60, 7, &jobs, &err), ERROR_STATE);
     store_close(&store);

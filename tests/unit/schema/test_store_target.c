@@ -182,7 +182,7 @@ static void nothing_grows_after_a_cancellation(void **state) {
     assert_true(is_due()); /* what it came to */
     assert_false(grow(revision_now(), 100, 100));
     uint64_t count;
-    assert_int_equal(store_retry(store, id, &count, NULL), 0);
+    assert_int_equal(store_retry(store, id, 0, &count, NULL), 0);
     assert_int_equal(count, 2);
     assert_false(is_due());
     while (run_one())
@@ -204,7 +204,7 @@ static void a_study_between_rounds_is_cancelled_and_goes_on(void **state) {
     assert_false(grow(revision_now(), 100, 100));
     assert_int_equal(store_publish(store, id, 0, revision_now(), &empty, NULL), 0);
     assert_false(is_due());
-    assert_int_equal(store_retry(store, id, &jobs, NULL), 0);
+    assert_int_equal(store_retry(store, id, 0, &jobs, NULL), 0);
     assert_int_equal(jobs, 0);
     struct study_status status = status_now();
     assert_string_equal(status.state, "running");
@@ -256,7 +256,7 @@ static void what_cannot_be_published_is_computed_again(void **state) {
     assert_int_equal(counts.failed, 1);
     for (uint64_t number = 0; number < 3; number++)
         check_done(number, DONE[number]);
-    assert_int_equal(store_retry(store, id, &jobs, NULL), 0);
+    assert_int_equal(store_retry(store, id, 0, &jobs, NULL), 0);
     assert_int_equal(jobs, 3);
     for (uint64_t number = 0; number < 3; number++)
         check_done(number, 0);
