@@ -185,8 +185,6 @@ struct cut column_cut(sqlite3_stmt *row, int seconds, int most);
 #define CUT_SECONDS                                                                                \
     "CASE WHEN c.cpu_seconds > 0 AND c.realisations_done > 0 THEN c.cpu_seconds / "                \
     "c.realisations_done ELSE c.estimate END"
-/* Returns the number of jobs that so many realisations are cut into. */
-int64_t cut_jobs(const struct cut *cut, int64_t realisations);
 /* The jobs that were queued, and their realisations. */
 struct queued {
     int64_t jobs, realisations;
