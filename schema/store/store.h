@@ -122,7 +122,7 @@ int store_list(struct store *store, const char *after, size_t limit, struct stud
  * if it has ended. */
 int store_cancel(struct store *store, const char *id, struct error *err);
 /* Requeues failed and cancelled jobs with fresh attempts, *count of them. So are the jobs of cases
- * that could not be published, whose results are discarded. In a study of another edition (study.h)
+ * that could not be published, whose results are discarded. In a study of another version (study.h)
  * so are those of cases with failed or cancelled jobs, or due, if another program computed a part
  * of them. A cancelled study goes on, also where none of its jobs was cancelled. */
 int store_retry(struct store *store, const char *id, uint64_t edition, uint64_t *count,

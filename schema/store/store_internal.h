@@ -139,7 +139,8 @@ int study_line(struct store *store, int64_t study, const struct at_work *at_work
 struct queue_line;
 void queue_line_destroy(struct queue_line **line);
 /* Sets *own to whether results of this program may be merged with those of the study: it has none,
- * or both are of one edition (study.h). A study without an edition has to be of this very build. */
+ * or both are of one form (study.h). A study of which it was not recorded has to be of this very
+ * build. */
 int study_is_own(struct store *store, int64_t study, uint64_t edition, bool *own,
                  struct error *err);
 /* Requeues what failed or was cancelled: *jobs of them. Within a change. */

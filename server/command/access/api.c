@@ -218,8 +218,8 @@ int api_cancel(struct store *store, const char *id, cJSON **out, struct error *e
     return status != 0 ? status : api_status(store, id, out, err);
 }
 
-/* Reads the edition of this program's results of the study's kind; results of a kind that it does
- * not know would be of another one: 0. */
+/* Reads the form of this program's results of the study's kind; results of a kind that it does not
+ * know would be of another form: 0. */
 static int edition_of(struct store *store, const char *id, uint64_t *edition, struct error *err) {
     struct study_status now = {0};
     int status = store_status_counted(store, id, &now, err);

@@ -69,8 +69,8 @@ static void check_same(const char *path, const char *what) {
     }
 }
 
-/* A case that another edition computed in four blocks is given up whole, and all of them are
- * counted; where the edition is this one's, it is the damaged block alone. So it is with a target,
+/* A case of four blocks in another form of results is given up whole, and all of them are counted;
+ * where the form is this program's, it is the damaged block alone. So it is with a target,
  * whose components are repaired by another build. */
 static void results_given_up_are_counted(void **state) {
     (void)state;
