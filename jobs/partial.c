@@ -9,8 +9,9 @@ int partial_encode(const struct job_kind *kind, uint64_t fingerprint, const void
     kind->put(&bytes, tally);
     bytes_put_checksum(&bytes);
     if (bytes.failed) {
+        int status = error_memory(err, bytes.capacity, "a partial result");
         bytes_clear(&bytes);
-        return error_memory(err, bytes.capacity, "a partial result");
+        return status;
     }
     *data = bytes.data;
     *size = bytes.size;

@@ -313,8 +313,13 @@ int runner_run(struct job_runner *runner, uint64_t first, uint64_t count,
     double cpu_start = cpu_seconds(runner);
     struct block_result result = {
         .first = first, .count = count, .scalar_count = kind_scalar_count(kind)};
-    if (count == 0 || count > UINT64_MAX - first)
+    if (count == 0)
         return error_set(err, ERROR_INPUT, "a block needs at least one realisation");
+    if (count > UINT64_MAX - first)
+        return error_set(
+            err, ERROR_INPUT,
+            "a block of %llu realisations from number %llu on: numbers are below 2^64 - 1",
+            (unsigned long long)count, (unsigned long long)first);
     void *tally = array_create(1, kind->tally_size);
     if (tally == NULL)
         return error_memory(err, kind->tally_size, "a tally");

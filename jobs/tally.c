@@ -4,6 +4,26 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The nearest cells with data around each cell of a row of a tally in turn, which rare cells need.
+ * Most cells of a sparse tally have none. A walk through the row visits each of them once, where a
+ * search around every cell would visit most of them repeatedly. */
+
+/* The data that a cell must have: things in it; things outside it; several realisations, which
+ * scatter. */
+enum tally_content { CONTENT_THINGS, CONTENT_OTHERS, CONTENT_SCATTER };
+
+/* The nearest cells on either side, as many as are ever needed: each has one realisation at
+ * least. */
+struct tally_near {
+    const struct tally *tally; /* borrowed */
+    uint64_t realisations;
+    enum tally_content content;
+    size_t cell, low, high;              /* position of the walk; its row, up to high - 1 */
+    size_t left_count, left[TALLY_RARE]; /* nearest first */
+    size_t right_count, right[TALLY_RARE];
+    size_t ahead; /* the first cell to the right that was not visited */
+};
+
 static bool has_content(const struct tally_near *near, size_t cell) {
     switch (near->content) {
     case CONTENT_THINGS:
@@ -23,8 +43,8 @@ static void look_ahead(struct tally_near *near) {
     }
 }
 
-void tally_near_begin(struct tally_near *near, const struct tally *tally, uint64_t realisations,
-                      enum tally_content content, size_t cell) {
+static void tally_near_begin(struct tally_near *near, const struct tally *tally,
+                             uint64_t realisations, enum tally_content content, size_t cell) {
     *near = (struct tally_near){.tally = tally,
                                 .realisations = realisations,
                                 .content = content,
@@ -38,7 +58,8 @@ void tally_near_begin(struct tally_near *near, const struct tally *tally, uint64
     look_ahead(near);
 }
 
-void tally_near_next(struct tally_near *near) {
+/* Goes on to the next cell, which may be the first of the next row. */
+static void tally_near_next(struct tally_near *near) {
     size_t cell = near->cell + 1;
     if (cell == near->high) {
         if (cell < near->tally->size)

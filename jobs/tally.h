@@ -99,28 +99,4 @@ void tally_sums_ratios_pooled(const struct tally_sums *sums, const struct tally 
 /* Estimates the mean of k a realisation where every n_r was 1. */
 struct estimate tally_sums_mean(const struct tally_sums *sums, size_t cell, uint64_t realisations);
 
-/* The nearest cells with data around each cell of a row of a tally in turn, which rare cells need.
- * Most cells of a sparse tally have none. A walk through the row visits each of them once, where a
- * search around every cell would visit most of them repeatedly. */
-
-/* The data that a cell must have: things in it; things outside it; several realisations, which
- * scatter. */
-enum tally_content { CONTENT_THINGS, CONTENT_OTHERS, CONTENT_SCATTER };
-
-/* The nearest cells on either side, as many as are ever needed: each has one realisation at
- * least. */
-struct tally_near {
-    const struct tally *tally; /* borrowed */
-    uint64_t realisations;
-    enum tally_content content;
-    size_t cell, low, high;              /* position of the walk; its row, up to high - 1 */
-    size_t left_count, left[TALLY_RARE]; /* nearest first */
-    size_t right_count, right[TALLY_RARE];
-    size_t ahead; /* the first cell to the right that was not visited */
-};
-void tally_near_begin(struct tally_near *near, const struct tally *tally, uint64_t realisations,
-                      enum tally_content content, size_t cell);
-/* Goes on to the next cell, which may be the first of the next row. */
-void tally_near_next(struct tally_near *near);
-
 #endif

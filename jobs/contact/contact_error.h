@@ -3,7 +3,6 @@
 #define RUGO_JOBS_CONTACT_CONTACT_ERROR_H
 
 #include <math.h>
-#include <stdbool.h>
 #include <stddef.h>
 
 struct contact_error {
@@ -17,14 +16,6 @@ struct contact_error {
  * or shorter. Doubling the length leaves at most the share `left` of the error (1/2: as 1/L). */
 static inline double contact_error_left(double length, double left) {
     return fabs(1 / (1 - pow(left, log2(length))));
-}
-
-/* Returns whether two loads are within a factor of two. As a change vanishes at a load where its
- * sign changes, loads so near each other share the largest of their changes. */
-static inline bool contact_error_near(const double *loads, size_t load, size_t other) {
-    static const double ROUNDING = 1e-9; /* of ratios that should be round numbers */
-    double ratio = loads[load] / loads[other];
-    return fmax(ratio, 1 / ratio) <= 2 * (1 + ROUNDING);
 }
 
 #endif

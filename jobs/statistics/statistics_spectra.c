@@ -41,7 +41,9 @@ struct spectra_sizes spectra_sizes(const struct statistics_case *one_case) {
     return out;
 }
 
-void spectra_reference(const struct modes *modes, double *wave_number, double *density) {
+/* Fills the densities by which measured ones are divided before they are summed, so that sums are
+ * exact: radial_bins prescribed densities, their mean where that is 0. */
+static void spectra_reference(const struct modes *modes, double *wave_number, double *density) {
     size_t n = radial_bins(&modes->grid), used = 0;
     double sum = 0;
     psd_of_modes(modes, wave_number, density);

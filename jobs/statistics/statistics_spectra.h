@@ -20,9 +20,6 @@ struct spectra {
     double *measured, *changed;   /* scratch */
     double *reference;            /* densities: prescribed density, its mean where that is 0 */
 };
-/* Fills the densities by which measured ones are divided before they are summed, so that sums are
- * exact: radial_bins prescribed densities, their mean where that is 0. */
-void spectra_reference(const struct modes *modes, double *wave_number, double *density);
 int spectra_create(struct spectra *out, const struct statistics_case *one_case,
                    const struct modes *modes, struct error *err);
 void spectra_clear(struct spectra *spectra);

@@ -2,8 +2,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-int summit_tally_create(struct summit_tally *out, const struct statistics_case *one_case,
-                        struct error *err) {
+static void summit_tally_clear(struct summit_tally *tally) {
+    tally_clear(&tally->height);
+    tally_clear(&tally->below);
+    tally_clear(&tally->equivalent);
+    tally_clear(&tally->joint);
+    tally_sums_clear(&tally->curvature);
+    *tally = (struct summit_tally){0};
+}
+
+static int summit_tally_create(struct summit_tally *out, const struct statistics_case *one_case,
+                               struct error *err) {
     size_t heights = cells_of(&one_case->height), curvatures = cells_of(&one_case->equivalent);
     *out = (struct summit_tally){0};
     int status = tally_create(&out->height, heights, heights, err);
@@ -20,22 +29,15 @@ int summit_tally_create(struct summit_tally *out, const struct statistics_case *
     return status;
 }
 
-void summit_tally_clear(struct summit_tally *tally) {
-    tally_clear(&tally->height);
-    tally_clear(&tally->below);
-    tally_clear(&tally->equivalent);
-    tally_clear(&tally->joint);
-    tally_sums_clear(&tally->curvature);
-    *tally = (struct summit_tally){0};
-}
-
-double summit_tally_bytes(const struct statistics_case *one_case) {
+static double summit_tally_bytes(const struct statistics_case *one_case) {
     size_t heights = cells_of(&one_case->height), curvatures = cells_of(&one_case->equivalent);
     return tally_bytes(2 * heights + curvatures + heights * curvatures) + tally_sums_bytes(heights);
 }
 
-void histogram_tally_add(struct tally *cells, struct tally *below, const uint64_t *count,
-                         uint64_t things) {
+/* Adds one realisation's counts of the cells of a histogram, n_r of its `things`, and those below
+ * each edge (NULL: not wanted). */
+static void histogram_tally_add(struct tally *cells, struct tally *below, const uint64_t *count,
+                                uint64_t things) {
     uint64_t sum = 0;
     for (size_t a = 0; a < cells->size; a++) {
         if (count[a] > 0)
@@ -46,9 +48,11 @@ void histogram_tally_add(struct tally *cells, struct tally *below, const uint64_
     }
 }
 
-void summit_tally_add(struct summit_tally *tally, const struct statistics_case *one_case,
-                      const struct summit_scales *scales, const struct summit_list *summits,
-                      struct summit_counts *counts) {
+/* Adds the summits of a realisation. Leaves its counts by height and by t1, and its curvatures, in
+ * `counts` for the caller, who zeroes them (summit_counts_zero). */
+static void summit_tally_add(struct summit_tally *tally, const struct statistics_case *one_case,
+                             const struct summit_scales *scales, const struct summit_list *summits,
+                             struct summit_counts *counts) {
     size_t columns = tally->equivalent.size, touched = 0;
     double third = one_case->surface.dimension == 2 ? sqrt(3) : 1;
     tally_total_add(&tally->total, summits->count);
@@ -75,7 +79,7 @@ void summit_tally_add(struct summit_tally *tally, const struct statistics_case *
     histogram_tally_add(&tally->equivalent, NULL, counts->equivalent, summits->count);
 }
 
-void summit_tally_put(struct bytes *bytes, const struct summit_tally *tally) {
+static void summit_tally_put(struct bytes *bytes, const struct summit_tally *tally) {
     tally_total_put(bytes, &tally->total);
     tally_put(bytes, &tally->height);
     tally_put(bytes, &tally->below);
@@ -84,7 +88,7 @@ void summit_tally_put(struct bytes *bytes, const struct summit_tally *tally) {
     tally_sums_put(bytes, &tally->curvature);
 }
 
-void summit_tally_get(struct byte_reader *reader, struct summit_tally *tally) {
+static void summit_tally_get(struct byte_reader *reader, struct summit_tally *tally) {
     tally_total_get(reader, &tally->total);
     tally_get(reader, &tally->height);
     tally_get(reader, &tally->below);
@@ -93,7 +97,8 @@ void summit_tally_get(struct byte_reader *reader, struct summit_tally *tally) {
     tally_sums_get(reader, &tally->curvature);
 }
 
-bool histogram_tally_adds_up(const struct tally *tally, const struct tally_total *total) {
+/* Returns whether every thing of a histogram is in one of its cells. */
+static bool histogram_tally_adds_up(const struct tally *tally, const struct tally_total *total) {
     fixed_point sum = 0;
     for (size_t cell = 0; cell < tally->size; cell++) {
         sum += tally->count[cell];
@@ -103,13 +108,13 @@ bool histogram_tally_adds_up(const struct tally *tally, const struct tally_total
     return sum == total->sum;
 }
 
-bool summit_tally_adds_up(const struct summit_tally *tally) {
+static bool summit_tally_adds_up(const struct summit_tally *tally) {
     return histogram_tally_adds_up(&tally->height, &tally->total) &&
            histogram_tally_adds_up(&tally->equivalent, &tally->total) &&
            histogram_tally_adds_up(&tally->joint, &tally->total);
 }
 
-void summit_tally_merge(struct summit_tally *into, const struct summit_tally *from) {
+static void summit_tally_merge(struct summit_tally *into, const struct summit_tally *from) {
     tally_total_merge(&into->total, &from->total);
     tally_merge(&into->height, &from->height);
     tally_merge(&into->below, &from->below);

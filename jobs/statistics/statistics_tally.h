@@ -21,29 +21,6 @@ struct summit_tally {
     struct tally joint;          /* cell zb * (equivalent.size) + tb */
     struct tally_sums curvature; /* by height cell: kappa_m/sqrt(m4) of its summits */
 };
-int summit_tally_create(struct summit_tally *out, const struct statistics_case *one_case,
-                        struct error *err);
-void summit_tally_clear(struct summit_tally *tally);
-double summit_tally_bytes(const struct statistics_case *one_case);
-
-/* Adds the summits of a realisation. Leaves its counts by height and by t1, and its curvatures, in
- * `counts` for the caller, who zeroes them (summit_counts_zero). */
-void summit_tally_add(struct summit_tally *tally, const struct statistics_case *one_case,
-                      const struct summit_scales *scales, const struct summit_list *summits,
-                      struct summit_counts *counts);
-
-/* As job_kind has them. */
-void summit_tally_put(struct bytes *bytes, const struct summit_tally *tally);
-void summit_tally_get(struct byte_reader *reader, struct summit_tally *tally);
-bool summit_tally_adds_up(const struct summit_tally *tally);
-void summit_tally_merge(struct summit_tally *into, const struct summit_tally *from);
-
-/* Adds one realisation's counts of the cells of a histogram, n_r of its `things`, and those below
- * each edge (NULL: not wanted). */
-void histogram_tally_add(struct tally *cells, struct tally *below, const uint64_t *count,
-                         uint64_t things);
-/* Returns whether every thing of a histogram is in one of its cells. */
-bool histogram_tally_adds_up(const struct tally *tally, const struct tally_total *total);
 
 /* Returns the cell of the joint tally for a cell of the matrix of bins. The tally has cells for
  * under- and overflow around the bins. There is at least one bin. */

@@ -1,5 +1,6 @@
 -- What the migrations make of an empty file, for a new store. tests/unit/schema/test_store_versions.c compares both, and
--- prints what this file must be.
+-- prints what this file must be. Columns that were added stand before the comment of the last one: "rises with every
+-- block" is of study_case.revision, "realisations that y is not over" of point.valueless.
 CREATE TABLE study (
     id INTEGER PRIMARY KEY AUTOINCREMENT,
     public TEXT NOT NULL UNIQUE,           -- what people call it
@@ -23,7 +24,7 @@ CREATE TABLE study (
     created TEXT NOT NULL,
     finished TEXT
 , cases_failed INTEGER NOT NULL DEFAULT 0, random TEXT NOT NULL DEFAULT 'independent'
-    CHECK (random IN ('common', 'independent')), cpu_seconds REAL NOT NULL DEFAULT 0, jobs_without_cpu INTEGER NOT NULL DEFAULT 0, program TEXT, digest INTEGER, edition INTEGER, owner TEXT NOT NULL DEFAULT '', priority INTEGER NOT NULL DEFAULT 0, work REAL NOT NULL DEFAULT 0, realisations_waiting INTEGER NOT NULL DEFAULT 0);
+    CHECK (random IN ('common', 'independent')), cpu_seconds REAL NOT NULL DEFAULT 0, jobs_without_cpu INTEGER NOT NULL DEFAULT 0, program TEXT, digest INTEGER, edition INTEGER, owner TEXT NOT NULL DEFAULT '', priority INTEGER NOT NULL DEFAULT 0, work REAL NOT NULL DEFAULT 0, realisations_waiting INTEGER NOT NULL DEFAULT 0, asked INTEGER);
 CREATE TABLE study_source (
     study_id INTEGER PRIMARY KEY REFERENCES study(id) ON DELETE CASCADE,
     source TEXT NOT NULL                   -- the document as it was given

@@ -63,7 +63,7 @@ int store_probe(struct store *store, struct error *err);
 /* Queues a study with its jobs. If another study is the same but for its name and has fewer
  * realisations, its blocks are copied, and only what they lack is queued. key (may be NULL): a
  * second submission of the same owner with the same key and source returns the id of the first and
- * *existing = true; with another source ERROR_STATE. */
+ * *existing = true, also after the first was extended; with another source ERROR_STATE. */
 int store_submit(struct store *store, const struct study *study, const char *key,
                  char id[STUDY_ID_SIZE], bool *existing, struct error *err);
 
@@ -118,10 +118,15 @@ int store_document(struct store *store, const char *id, cJSON **out, struct erro
  * caller frees each by study_status_clear, then the list. */
 int store_list(struct store *store, const char *after, size_t limit, struct study_status **out,
                size_t *count, struct error *err);
-int store_cancel(struct store *store, const char *id, struct error *err); /* ERROR_STATE if ended */
+/* Cancels a study that waits or runs, also where its cases wait for publication alone. ERROR_STATE
+ * if it has ended. */
+int store_cancel(struct store *store, const char *id, struct error *err);
 /* Requeues failed and cancelled jobs with fresh attempts, *count of them. So are the jobs of cases
- * that could not be published, whose results are discarded. */
-int store_retry(struct store *store, const char *id, uint64_t *count, struct error *err);
+ * that could not be published, whose results are discarded. In a study of another version (study.h)
+ * so are those of cases with failed or cancelled jobs, or due, if another program computed a part
+ * of them. A cancelled study goes on, also where none of its jobs was cancelled. */
+int store_retry(struct store *store, const char *id, uint64_t edition, uint64_t *count,
+                struct error *err);
 
 /* Queues the realisations that a study lacks to this number for each case, and requeues what failed
  * or was cancelled: *jobs in all. Nothing is done, and *jobs is 0, with the number that it has
@@ -251,8 +256,13 @@ struct case_info {
     uint64_t seed, realisations, realisations_done, revision;
 };
 void case_info_clear(struct case_info *info);
+/* Reads a case that was asked for; ERROR_ABSENT for any other number, such as a component's. *out
+ * is the caller's to clear. */
 int store_case(struct store *store, const char *study, uint64_t case_number, struct case_info *out,
                struct error *err);
+/* Reads a case or a component likewise. */
+int store_any_case(struct store *store, const char *study, uint64_t case_number,
+                   struct case_info *out, struct error *err);
 /* Calls visit for every stored block of a case, in the order of realisations, within one read
  * transaction. A non-zero return of visit stops and is returned. */
 typedef int result_visit(void *context, const struct block_result *result, struct error *err);

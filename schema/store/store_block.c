@@ -4,6 +4,12 @@
 #include "schema/store/store_seal.h"
 #include "schema/study/study_reader.h"
 
+/* Returns the number of jobs that so many realisations are cut into. */
+static int64_t cut_jobs(const struct cut *cut, int64_t realisations) {
+    int64_t block = (int64_t)study_block((uint64_t)realisations, cut->seconds, cut->most);
+    return (realisations + block - 1) / block;
+}
+
 /* The first span of a study that may be claimed. */
 struct span {
     int64_t id, count, blocks, attempts, losses;
@@ -201,11 +207,6 @@ struct cut column_cut(sqlite3_stmt *row, int seconds, int most) {
     if (sqlite3_column_int64(row, most) > 0)
         cut.most = (uint64_t)sqlite3_column_int64(row, most);
     return cut;
-}
-
-int64_t cut_jobs(const struct cut *cut, int64_t realisations) {
-    int64_t block = (int64_t)study_block((uint64_t)realisations, cut->seconds, cut->most);
-    return (realisations + block - 1) / block;
 }
 
 int span_insert(struct store *store, const struct job_row *all, const struct cut *cut,

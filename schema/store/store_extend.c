@@ -86,12 +86,9 @@ static int extend(struct store *store, int64_t study, int64_t had, int64_t wante
  * record it. Results of both cannot be merged, and what was published would be lost. */
 static int check_edition(struct store *store, int64_t study, const char *id, uint64_t edition,
                          struct error *err) {
-    int64_t other = 0;
-    int status = store_integer(
-        store, &other, err,
-        "SELECT coalesce(edition <> ?, realisations_done > 0) FROM study WHERE id = ?", "ii",
-        (int64_t)edition, study);
-    if (status == 0 && other != 0)
+    bool own = false;
+    int status = study_is_own(store, study, edition, &own, err);
+    if (status == 0 && !own)
         return error_set(
             err, ERROR_STATE,
             "study %s is of another version of the program whose results may differ from "

@@ -138,6 +138,11 @@ int study_line(struct store *store, int64_t study, const struct at_work *at_work
                struct study_status *of, struct error *err);
 struct queue_line;
 void queue_line_destroy(struct queue_line **line);
+/* Sets *own to whether results of this program may be merged with those of the study: it has none,
+ * or both are of one form (study.h). A study of which it was not recorded has to be of this very
+ * build. */
+int study_is_own(struct store *store, int64_t study, uint64_t edition, bool *own,
+                 struct error *err);
 /* Requeues what failed or was cancelled: *jobs of them. Within a change. */
 int study_retry(struct store *store, int64_t study, int64_t *jobs, struct error *err);
 /* Ends the study when none of its jobs waits or runs; raises its revision. */
@@ -181,8 +186,6 @@ struct cut column_cut(sqlite3_stmt *row, int seconds, int most);
 #define CUT_SECONDS                                                                                \
     "CASE WHEN c.cpu_seconds > 0 AND c.realisations_done > 0 THEN c.cpu_seconds / "                \
     "c.realisations_done ELSE c.estimate END"
-/* Returns the number of jobs that so many realisations are cut into. */
-int64_t cut_jobs(const struct cut *cut, int64_t realisations);
 /* The jobs that were queued, and their realisations. */
 struct queued {
     int64_t jobs, realisations;

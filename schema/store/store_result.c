@@ -33,8 +33,9 @@ static int refuse_case(struct store *store, int64_t row, const char *study, uint
                                    study, (unsigned long long)case_number, (long long)count);
 }
 
-int store_case(struct store *store, const char *study, uint64_t case_number, struct case_info *out,
-               struct error *err) {
+/* components: those count as cases, too. */
+static int read_case(struct store *store, const char *study, uint64_t case_number, bool components,
+                     struct case_info *out, struct error *err) {
     int64_t row = 0;
     sqlite3_stmt *found = NULL;
     int status = study_row(store, study, &row, err);
@@ -44,8 +45,8 @@ int store_case(struct store *store, const char *study, uint64_t case_number, str
             "SELECT study_case.parameters, s.seed, coalesce(study_case.realisations, "
             "s.realisations), study_case.realisations_done, study_case.revision, seal IS NULL OR "
             "seal = " CASE_SEAL " FROM study_case JOIN study s ON s.id = study_id WHERE s.id = ? "
-            "AND number = ?",
-            "ii", row, (int64_t)case_number);
+            "AND number = ? AND (parent IS NULL OR ?)",
+            "iii", row, (int64_t)case_number, (int64_t)components);
     if (status == 0)
         status = store_step(store, found, err);
     if (status == 0)
@@ -64,6 +65,16 @@ int store_case(struct store *store, const char *study, uint64_t case_number, str
     if (status == 0)
         *out = info;
     return status;
+}
+
+int store_case(struct store *store, const char *study, uint64_t case_number, struct case_info *out,
+               struct error *err) {
+    return read_case(store, study, case_number, false, out, err);
+}
+
+int store_any_case(struct store *store, const char *study, uint64_t case_number,
+                   struct case_info *out, struct error *err) {
+    return read_case(store, study, case_number, true, out, err);
 }
 
 /* --- partial results --- */

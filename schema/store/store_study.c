@@ -13,6 +13,20 @@ int study_row(struct store *store, const char *id, int64_t *row, struct error *e
     return status;
 }
 
+int study_is_own(struct store *store, int64_t study, uint64_t edition, bool *own,
+                 struct error *err) {
+    char program[PROGRAM_SIZE];
+    int64_t found = 0;
+    program_write(program);
+    int status = store_integer(
+        store, &found, err,
+        "SELECT coalesce(edition = ?, program = ? OR realisations_done = 0, 0) FROM study WHERE id "
+        "= ?",
+        "iti", (int64_t)edition, program, study);
+    *own = found != 0;
+    return status;
+}
+
 /* Whether a case of the study is neither published nor marked as impossible to publish. */
 #define STUDY_DUE                                                                                  \
     "EXISTS (SELECT 1 FROM study_case c INDEXED BY case_due WHERE c.study_id = study.id AND "      \
@@ -321,8 +335,7 @@ int store_cancel(struct store *store, const char *id, struct error *err) {
     if (status == 0)
         status = store_integer(
             store, &ended, err,
-            "SELECT state = 'cancelled' OR jobs_waiting + jobs_running = 0 FROM study WHERE id = ?",
-            "i", row);
+            "SELECT state IN ('done', 'failed', 'cancelled') FROM study WHERE id = ?", "i", row);
     if (status == 0 && ended != 0)
         status = error_set(err, ERROR_STATE, "study %s has already ended", id);
     if (status == 0)
@@ -367,12 +380,16 @@ static int discard_results(struct store *store, int64_t row, struct error *err) 
     return status;
 }
 
-/* Clears the marks of all cases of a study that cannot be published: they are due again. */
+/* Clears the marks of all cases of a study that cannot be published: they are due again. So are
+ * those of a cancelled study that ask for an error, which may need another round. */
 static int marks_clear(struct store *store, int64_t study, struct error *err) {
-    int status = store_run(store, err,
-                           "UPDATE study_case SET settled = 0, publish_error = NULL WHERE "
-                           "study_id = ? AND publish_error IS NOT NULL",
-                           "i", study);
+    int status =
+        store_run(store, err,
+                  "UPDATE study_case SET settled = 0, publish_error = NULL WHERE study_id = ?1 AND "
+                  "(publish_error IS NOT NULL OR ((SELECT state FROM study WHERE id = ?1) = "
+                  "'cancelled' AND number IN (SELECT parent FROM study_case WHERE study_id = ?1 "
+                  "AND parent IS NOT NULL)))",
+                  "i", study);
     if (status == 0)
         status =
             store_run(store, err, "UPDATE study SET cases_failed = 0 WHERE id = ?", "i", study);
@@ -412,24 +429,51 @@ static int retry_jobs(struct store *store, int64_t row, struct error *err) {
 }
 
 int study_retry(struct store *store, int64_t study, int64_t *jobs, struct error *err) {
-    int64_t marks = 0;
+    int64_t others = 0; /* reasons to go on, but for jobs */
     int status = discard_results(store, study, err);
     if (status == 0)
         status = store_integer(store, jobs, err,
                                "SELECT jobs_failed + jobs_cancelled FROM study WHERE id = ?", "i",
                                study);
     if (status == 0)
-        status = store_integer(store, &marks, err, "SELECT cases_failed FROM study WHERE id = ?",
+        status = store_integer(store, &others, err,
+                               "SELECT cases_failed + (state = 'cancelled') FROM study WHERE id = "
+                               "?",
                                "i", study);
-    return status == 0 && *jobs + marks > 0 ? retry_jobs(store, study, err) : status;
+    return status == 0 && *jobs + others > 0 ? retry_jobs(store, study, err) : status;
 }
 
-int store_retry(struct store *store, const char *id, uint64_t *count, struct error *err) {
+/* Cases of study ?1 of which a job is such; of components, the case that they belong to. */
+#define CASES_WITH                                                                                 \
+    "(SELECT coalesce(c.parent, c.number) FROM job j JOIN study_case c ON c.study_id = "           \
+    "j.study_id AND c.number = j.case_number WHERE j.study_id = ?1 AND "
+
+/* Marks the cases of which another program has computed a part and this one is to compute the rest,
+ * or to publish it, as impossible to publish. */
+static int mark_foreign(struct store *store, int64_t study, struct error *err) {
+    char program[PROGRAM_SIZE];
+    program_write(program);
+    return store_run(
+        store, err,
+        "UPDATE study_case SET publish_error = 'of another version of the program' WHERE study_id "
+        "= ?1 AND parent IS NULL AND number IN " CASES_WITH
+        "j.state = 'done' AND j.program IS NOT ?2) AND ((jobs_left = 0 AND revision > settled) OR "
+        "number IN " CASES_WITH "j.state IN ('failed', 'cancelled')))",
+        "it", study, program);
+}
+
+int store_retry(struct store *store, const char *id, uint64_t edition, uint64_t *count,
+                struct error *err) {
     int64_t row = 0, jobs = 0;
+    bool own = false;
     int status = change_begin(store, err);
     if (status != 0)
         return status;
     status = study_row(store, id, &row, err);
+    if (status == 0)
+        status = study_is_own(store, row, edition, &own, err);
+    if (status == 0 && !own)
+        status = mark_foreign(store, row, err);
     if (status == 0)
         status = study_retry(store, row, &jobs, err);
     status = change_end(store, status, err);

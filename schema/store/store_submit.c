@@ -107,17 +107,18 @@ static int insert_row(struct store *store, const struct study *study, const char
                       const char *id, int64_t *row, struct error *err) {
     char seed[24], program[PROGRAM_SIZE];
     const char *owner = owner_of(study);
+    const int64_t realisations = (int64_t)study->realisations;
     program_write(program);
     snprintf(seed, sizeof seed, "%llu", (unsigned long long)study->seed);
     int status = store_run(store, err,
                            "INSERT INTO study (public, name, kind, seed, random, realisations, "
-                           "submit_key, state, cases, jobs, jobs_waiting, created, program, owner, "
-                           "priority) VALUES "
-                           "(?, ?, ?, ?, ?, ?, " OWNED_KEY ", 'queued', ?, 0, 0, ?, ?, ?, ?)",
-                           "tttttittittti", id, study->name, study->kind->name, seed,
-                           choice_name(STUDY_RANDOM, (int)study->random),
-                           (int64_t)study->realisations, owner, key, (int64_t)study->case_count,
-                           store_time(store), program, owner, study->priority);
+                           "asked, submit_key, state, cases, jobs, jobs_waiting, created, program, "
+                           "owner, priority) VALUES "
+                           "(?, ?, ?, ?, ?, ?, ?, " OWNED_KEY ", 'queued', ?, 0, 0, ?, ?, ?, ?)",
+                           "tttttiittittti", id, study->name, study->kind->name, seed,
+                           choice_name(STUDY_RANDOM, (int)study->random), realisations,
+                           realisations, owner, key, (int64_t)study->case_count, store_time(store),
+                           program, owner, study->priority);
     *row = sqlite3_last_insert_rowid(store->db);
     if (status == 0)
         status =
@@ -132,16 +133,19 @@ static int insert_study(struct store *store, const struct study *study, const ch
                         const char *id, struct error *err) {
     int64_t row = 0, taken = 0;
     struct queued queued = {0};
-    bool shares = study->edition != 0 && study->realisations != 0;
+    const bool known = study->edition != 0, shares = known && study->realisations != 0;
     uint64_t digest = HASH_START;
     int status = insert_row(store, study, key, id, &row, err);
     if (status == 0)
         status = insert_cases(store, study, row, &digest, err);
     if (status == 0)
         status = cases_seal(store, row, err);
+    if (status == 0 && known)
+        status = store_run(store, err, "UPDATE study SET edition = ? WHERE id = ?", "ii",
+                           (int64_t)study->edition, row);
     if (status == 0 && shares)
-        status = store_run(store, err, "UPDATE study SET digest = ?, edition = ? WHERE id = ?",
-                           "iii", (int64_t)digest, (int64_t)study->edition, row);
+        status = store_run(store, err, "UPDATE study SET digest = ? WHERE id = ?", "ii",
+                           (int64_t)digest, row);
     if (status == 0 && shares)
         status = study_take_blocks(store, row, &taken, err);
     if (status == 0)
@@ -151,7 +155,8 @@ static int insert_study(struct store *store, const struct study *study, const ch
     return status != 0 ? status : study_count_work(store, row, err);
 }
 
-/* Returns 1 and the id when the key was used for this very study, 0 when it was not used. */
+/* Returns 1 and the id when the key was used for this very study, 0 when it was not used. An
+ * extension changes the realisations in the source, but not those that were asked for. */
 static int find_key(struct store *store, const struct study *study, const char *key,
                     char id[STUDY_ID_SIZE], struct error *err) {
     if (key == NULL)
@@ -160,9 +165,9 @@ static int find_key(struct store *store, const struct study *study, const char *
     int status =
         store_query(store, &statement, err,
                     "SELECT public, source IN (?1, json_set(?1, '$.realisations', realisations)) "
-                    "FROM study JOIN study_source ON study_id = study.id WHERE submit_key "
-                    "= ?2 || char(31) || ?3",
-                    "ttt", study->source, owner_of(study), key);
+                    "AND coalesce(asked = ?4, 1) FROM study JOIN study_source ON study_id = "
+                    "study.id WHERE submit_key = ?2 || char(31) || ?3",
+                    "ttti", study->source, owner_of(study), key, (int64_t)study->realisations);
     if (status == 0)
         status = store_step(store, statement, err);
     if (status <= 0)

@@ -1,5 +1,6 @@
 #include "tests/support/life_model.h"
 #include <stdio.h>
+#include <string.h>
 
 const char *const LIFE_STATE_NAMES[LIFE_STATES] = {"waiting", "running", "done", "failed",
                                                    "cancelled"};
@@ -176,7 +177,8 @@ static bool is_open(const struct life *life, int study) {
 }
 
 bool life_cancel(struct life *life, int study) {
-    if (!is_open(life, study))
+    const char *now = life_study_state(life, study);
+    if (strcmp(now, "queued") != 0 && strcmp(now, "running") != 0)
         return false;
     life->studies[study].cancelled = true;
     for (int j = 0; j < life->job_count; j++) {
@@ -201,7 +203,7 @@ int life_retry(struct life *life, int study) {
         job->not_before = 0;
         n += job->blocks;
     }
-    if (n > 0) {
+    if (n > 0 || one->cancelled) {
         one->cancelled = false;
         one->begun = life_count(life, study, LIFE_DONE) + life_count(life, study, LIFE_RUNNING) > 0;
     }

@@ -1,5 +1,5 @@
 /* The functions of a source of jobs. There are two sources: source_store.c and source_server.c.
- * Private to worker/source*.c. */
+ * Private to source*.c of this folder. */
 #ifndef RUGO_WORKER_LINK_SOURCE_BACKEND_H
 #define RUGO_WORKER_LINK_SOURCE_BACKEND_H
 

@@ -126,7 +126,7 @@ struct part {
 static int part_read(struct store *store, const struct target_case *of, size_t at,
                      struct part *part, struct target_component *out, struct error *err) {
     const struct component *component = &of->components[at];
-    int status = store_case(store, of->study, component->number, &part->info, err);
+    int status = store_any_case(store, of->study, component->number, &part->info, err);
     if (status == 0)
         status = case_merge(store, of->kind, of->study, component->number, &part->info,
                             &part->merger, err);

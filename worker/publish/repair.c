@@ -102,14 +102,16 @@ static int repair_case(struct store *store, const struct flaw *flaw, bool *repai
 
 /* --- blocks --- */
 
-static int drop_block(struct store *store, const struct flaw *flaw, struct error *err) {
+static int drop_block(struct store *store, const struct flaw *flaw, uint64_t *dropped,
+                      struct error *err) {
     struct study_status about = {0};
     int status = store_status_counted(store, flaw->study, &about, err);
     const struct job_kind *kind = status == 0 ? kind_find(about.kind) : NULL;
     study_status_clear(&about);
-    return status != 0 ? status
-                       : store_drop_blocks(store, flaw->study, (uint64_t)flaw->case_number,
-                                           flaw->job, kind != NULL ? kind_edition(kind) : 0, err);
+    return status != 0
+               ? status
+               : store_drop_blocks(store, flaw->study, (uint64_t)flaw->case_number, flaw->job,
+                                   kind != NULL ? kind_edition(kind) : 0, dropped, err);
 }
 
 static int repair_flaw(struct store *store, const struct flaw *flaw, struct repair_report *report,
@@ -122,8 +124,7 @@ static int repair_flaw(struct store *store, const struct flaw *flaw, struct repa
         report->cases += repaired;
         return status;
     case FLAW_BLOCK:
-        report->blocks++;
-        return drop_block(store, flaw, err);
+        return drop_block(store, flaw, &report->blocks, err);
     case FLAW_PUBLISHED:
         report->published++;
         return store_drop_published(store, flaw->study, (uint64_t)flaw->case_number, err);

@@ -51,7 +51,7 @@ static int block_check(void *context, const struct block_result *block, struct e
 static int case_check(struct store *store, struct merging *merging, struct error *err) {
     struct case_info info = {0};
     struct error reason = {0};
-    int status = store_case(store, merging->study, merging->case_number, &info, &reason);
+    int status = store_any_case(store, merging->study, merging->case_number, &info, &reason);
     if (status == 0 && info.realisations_done > 0)
         status = merger_create(&merging->merger, merging->kind, info.parameters, &reason);
     if (status == 0 && info.realisations_done > 0)

@@ -128,8 +128,9 @@ int curves_encode(const struct curve *curves, size_t count, unsigned char **data
         put_curve(&bytes, &curves[a]);
     bytes_put_checksum(&bytes);
     if (bytes.failed) {
+        int status = error_memory(err, bytes.capacity, "curves");
         bytes_clear(&bytes);
-        return error_memory(err, bytes.capacity, "curves");
+        return status;
     }
     *data = bytes.data;
     *size = bytes.size;

@@ -103,33 +103,30 @@ int store_repair_case(struct store *store, const char *study, uint64_t case_numb
 
 /* --- blocks --- */
 
-/* Sets *own to whether blocks of this program may be merged with those of the study. */
-static int check_edition(struct store *store, int64_t study, uint64_t edition, int64_t *own,
-                         struct error *err) {
-    char program[PROGRAM_SIZE];
-    program_write(program);
-    return store_integer(store, own, err,
-                         "SELECT coalesce(edition = ?, program = ?, 0) FROM study WHERE id = ?",
-                         "iti", (int64_t)edition, program, study);
-}
+/* The jobs that are dropped: ?1, and all of case ?3 of study ?2; -1 is no case. */
+#define DROPPED "FROM job WHERE id = ?1 OR (study_id = ?2 AND case_number = ?3)"
 
 int store_drop_blocks(struct store *store, const char *study, uint64_t case_number, int64_t job,
-                      uint64_t edition, struct error *err) {
-    int64_t row = 0, own = 0;
+                      uint64_t edition, uint64_t *dropped, struct error *err) {
+    int64_t row = 0, count = 0;
+    bool own = false;
     int status = change_begin(store, err);
     if (status != 0)
         return status;
     status = study_row(store, study, &row, err);
     if (status == 0)
-        status = check_edition(store, row, edition, &own, err);
+        status = study_is_own(store, row, edition, &own, err);
+    const int64_t of_case = job != 0 && own ? -1 : (int64_t)case_number;
     if (status == 0)
-        status = job != 0 && own != 0
-                     ? store_run(store, err, "DELETE FROM job WHERE id = ?", "i", job)
-                     : store_run(store, err,
-                                 "DELETE FROM job WHERE study_id = ? AND (case_number = ? OR id = "
-                                 "?)",
-                                 "iii", row, (int64_t)case_number, job);
-    return change_end(store, status, err);
+        status = store_integer(store, &count, err,
+                               "SELECT coalesce(sum(state = 'done' OR id = ?1), 0) " DROPPED, "iii",
+                               job, row, of_case);
+    if (status == 0)
+        status = store_run(store, err, "DELETE " DROPPED, "iii", job, row, of_case);
+    status = change_end(store, status, err);
+    if (status == 0)
+        *dropped += (uint64_t)count;
+    return status;
 }
 
 int store_drop_published(struct store *store, const char *study, uint64_t case_number,

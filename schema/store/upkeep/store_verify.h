@@ -58,9 +58,9 @@ int store_repair_case(struct store *store, const char *study, uint64_t case_numb
                       const struct case_origin *origin, bool *repaired, struct error *err);
 /* Deletes a block, or, with job 0, all of a case; store_repair_counts queues them again. If the
  * study is of another version of the program (study.h), all of the case is deleted, as its rest
- * cannot be merged with what this program computes. */
+ * cannot be merged with what this program computes. Adds the results given up to *dropped. */
 int store_drop_blocks(struct store *store, const char *study, uint64_t case_number, int64_t job,
-                      uint64_t edition, struct error *err);
+                      uint64_t edition, uint64_t *dropped, struct error *err);
 /* Has what is published of a case published again. */
 int store_drop_published(struct store *store, const char *study, uint64_t case_number,
                          struct error *err);

@@ -218,11 +218,24 @@ int api_cancel(struct store *store, const char *id, cJSON **out, struct error *e
     return status != 0 ? status : api_status(store, id, out, err);
 }
 
+/* Reads the form of this program's results of the study's kind; results of a kind that it does not
+ * know would be of another form: 0. */
+static int edition_of(struct store *store, const char *id, uint64_t *edition, struct error *err) {
+    struct study_status now = {0};
+    int status = store_status_counted(store, id, &now, err);
+    const struct job_kind *kind = status == 0 ? kind_find(now.kind) : NULL;
+    study_status_clear(&now);
+    *edition = kind != NULL ? kind_edition(kind) : 0;
+    return status;
+}
+
 /* Cases whose mark is gone are due: no worker may come to publish them. */
 static int retry(struct store *store, const char *id, bool publishes, cJSON **out,
                  struct error *err) {
-    uint64_t count;
-    int status = store_retry(store, id, &count, err);
+    uint64_t count, edition;
+    int status = edition_of(store, id, &edition, err);
+    if (status == 0)
+        status = store_retry(store, id, edition, &count, err);
     if (status == 0 && publishes)
         status = publish_due(store, NULL, NULL, NULL, err);
     if (status == 0)
@@ -243,22 +256,12 @@ int api_retry_publish(struct store *store, const char *id, cJSON **out, struct e
     return retry(store, id, true, out, err);
 }
 
-/* Results of a kind that this program does not know would be of another form. */
-static int extend(struct store *store, const char *id, uint64_t realisations, uint64_t *jobs,
-                  struct error *err) {
-    struct study_status now = {0};
-    int status = store_status_counted(store, id, &now, err);
-    const struct job_kind *kind = status == 0 ? kind_find(now.kind) : NULL;
-    study_status_clear(&now);
-    return status != 0 ? status
-                       : store_extend(store, id, realisations,
-                                      kind != NULL ? kind_edition(kind) : 0, jobs, err);
-}
-
 int api_extend(struct store *store, const char *id, uint64_t realisations, cJSON **out,
                struct error *err) {
-    uint64_t jobs = 0;
-    int status = extend(store, id, realisations, &jobs, err);
+    uint64_t jobs = 0, edition;
+    int status = edition_of(store, id, &edition, err);
+    if (status == 0)
+        status = store_extend(store, id, realisations, edition, &jobs, err);
     if (status == 0)
         status = api_status(store, id, out, err);
     if (status == 0 && !field_put_count(*out, "queued", jobs)) {

@@ -116,7 +116,7 @@ static int cancel(struct pauses *pauses, struct error *err) {
 
 static int retry(struct pauses *pauses, struct error *err) {
     uint64_t count;
-    return store_retry(pauses->store, pauses->id, &count, err);
+    return store_retry(pauses->store, pauses->id, pauses->study->edition, &count, err);
 }
 
 static int extend(struct pauses *pauses, struct error *err) {

@@ -222,7 +222,7 @@ static int give_up(void *context, struct error *err) {
     if (status == 0)
         status = store_failures(life->store, id, &failures, &failed, err);
     if (status == 0)
-        status = store_retry(life->store, id, &again, err);
+        status = store_retry(life->store, id, 0, &again, err);
     if (status == 0)
         status = store_cancel(life->store, id, err);
     for (size_t n = 0; n < count; n++)

@@ -195,7 +195,7 @@ static int retry(struct world *world, struct store *store) {
         return 0;
     int study = below(world, world->life.study_count);
     uint64_t count = 0;
-    int status = store_retry(store, world->ids[study], &count, NULL);
+    int status = store_retry(store, world->ids[study], 0, &count, NULL);
     if (status == 0)
         expect(world, "jobs retried", (int)count, life_retry(&world->life, study));
     return status;
@@ -237,7 +237,7 @@ static void race(struct world *world, int study) {
     if (!world->racing)
         return;
     if (below(world, 2) == 0) {
-        assert_int_equal(store_retry(any_handle(world), world->ids[study], &count, NULL), 0);
+        assert_int_equal(store_retry(any_handle(world), world->ids[study], 0, &count, NULL), 0);
         expect(world, "jobs retried meanwhile", (int)count, life_retry(&world->life, study));
         for (int n = below(world, 8); n > 0; n--)
             assert_int_equal(claim(world, any_handle(world)) + complete(world, any_handle(world)),

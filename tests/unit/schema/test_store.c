@@ -253,7 +253,7 @@ static void three_attempts_then_failed_with_its_reason(void **state) {
     assert_string_equal(failures[1].reason, "hopeless");
     failures_free(failures, count);
     uint64_t retried;
-    assert_int_equal(store_retry(store, id, &retried, NULL), 0);
+    assert_int_equal(store_retry(store, id, 0, &retried, NULL), 0);
     assert_int_equal(retried, 2);
     assert_string_equal(state_of(store, id), "queued");
     assert_int_equal(claim(store, "w", &job), 1);
@@ -308,7 +308,7 @@ static void a_deadly_job_fails(void **state) {
     assert_int_equal(failures[0].attempts, 1);
     failures_free(failures, count);
     uint64_t retried;
-    assert_int_equal(store_retry(store, id, &retried, NULL), 0);
+    assert_int_equal(store_retry(store, id, 0, &retried, NULL), 0);
     assert_int_equal(claim(store, "victim", &job), 1);
     assert_int_equal(job.case_number, 0);
     claimed_job_clear(&job);
@@ -336,7 +336,7 @@ static void cancelled_studies_stop_their_jobs(void **state) {
     assert_int_equal(complete(store, &job, &first, &done, &err), ERROR_STATE);
     assert_int_equal(store_cancel(store, id, &err), ERROR_STATE);
     uint64_t retried;
-    assert_int_equal(store_retry(store, id, &retried, NULL), 0);
+    assert_int_equal(store_retry(store, id, 0, &retried, NULL), 0);
     assert_int_equal(retried, 4);
     assert_int_equal(store_cancel(store, "0123456789abcdef", &err), ERROR_ABSENT);
     claimed_job_clear(&job);

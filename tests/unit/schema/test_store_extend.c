@@ -17,20 +17,26 @@ static struct store *open_store(const char *path) {
     return store;
 }
 
-/* A study of two cases in blocks of ten: width is the second case's. */
-static void submit(struct store *store, int realisations, const char *width, uint64_t edition,
-                   const char *key, char id[STUDY_ID_SIZE], bool *existing) {
+/* Submits a study of two cases in blocks of ten: width is the second case's. Returns the status. */
+static int try_submit(struct store *store, int realisations, const char *width, uint64_t edition,
+                      const char *key, char id[STUDY_ID_SIZE], bool *existing) {
     char text[240];
     struct study *study = NULL;
     struct fault_list faults = {0};
     snprintf(text, sizeof text,
-             "{\"name\":\"of %d\",\"kind\":\"boxes\",\"realisations\":%d,\"seconds\":0.5,\"box\":{"
+             "{\"name\":\"boxes\",\"kind\":\"boxes\",\"realisations\":%d,\"seconds\":0.5,\"box\":{"
              "\"width\":[0.5,%s]}}",
-             realisations, realisations, width);
+             realisations, width);
     assert_int_equal(study_read(&study, text, strlen(text), NULL, FAKE_KINDS, 0, &faults, NULL), 0);
     study->edition = edition;
-    assert_int_equal(store_submit(store, study, key, id, existing, NULL), 0);
+    int status = store_submit(store, study, key, id, existing, NULL);
     study_destroy(&study);
+    return status;
+}
+
+static void submit(struct store *store, int realisations, const char *width, uint64_t edition,
+                   const char *key, char id[STUDY_ID_SIZE], bool *existing) {
+    assert_int_equal(try_submit(store, realisations, width, edition, key, id, existing), 0);
 }
 
 /* Does `count` jobs of a study, or fails them for good. */
@@ -134,14 +140,16 @@ static void what_is_missing_is_queued(void **state) {
     /* results without a form may be of any program */
     sqlite3 *db = NULL;
     assert_int_equal(sqlite3_open("missing.db", &db), SQLITE_OK);
-    assert_int_equal(sqlite3_exec(db, "UPDATE study SET edition = NULL", NULL, NULL, NULL),
-                     SQLITE_OK);
+    assert_int_equal(
+        sqlite3_exec(db, "UPDATE study SET edition = NULL, program = 'older'", NULL, NULL, NULL),
+        SQLITE_OK);
     sqlite3_close(db);
     assert_int_equal(store_extend(store, id, 60, 7, &jobs, &err), ERROR_STATE);
     store_close(&store);
 }
 
-/* The same document under the same key is still that study, also in its longer form. */
+/* The same document under the same key is still that study, also in its longer form; one that asks
+ * for another number is not, even for that which the study has by now. */
 static void a_key_knows_an_extended_study(void **state) {
     (void)state;
     struct store *store = open_store("key.db");
@@ -150,10 +158,13 @@ static void a_key_knows_an_extended_study(void **state) {
     uint64_t jobs;
     submit(store, 10, "1", 7, "k", id, &existing);
     assert_false(existing);
+    assert_int_equal(try_submit(store, 25, "1", 7, "k", again, &existing), ERROR_STATE);
     assert_int_equal(store_extend(store, id, 25, 7, &jobs, NULL), 0);
     submit(store, 10, "1", 7, "k", again, &existing);
     assert_true(existing);
     assert_string_equal(again, id);
+    assert_int_equal(try_submit(store, 25, "1", 7, "k", again, &existing), ERROR_STATE);
+    assert_int_equal(try_submit(store, 40, "1", 7, "k", again, &existing), ERROR_STATE);
     check_text("key.db", "SELECT json_extract(source, '$.realisations') FROM study_source", "25");
     store_close(&store);
 }

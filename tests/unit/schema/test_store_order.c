@@ -95,7 +95,7 @@ static void work_off(struct scene *scene, const char *id) {
             hand_in(scene, 0);
             continue;
         }
-        assert_int_equal(store_retry(scene->store, id, &again, NULL), 0);
+        assert_int_equal(store_retry(scene->store, id, 0, &again, NULL), 0);
         assert_int_equal(store_status(scene->store, id, &now, NULL), 0);
         bool ended = now.jobs_waiting + now.jobs_running == 0;
         study_status_clear(&now);
@@ -149,7 +149,7 @@ static void no_order_loses_or_doubles(void **state) {
                 uint64_t jobs;
                 (void)store_cancel(scene.store, id, NULL);
                 check_counts(path, REALISATIONS);
-                assert_int_equal(store_retry(scene.store, id, &jobs, NULL), 0);
+                assert_int_equal(store_retry(scene.store, id, 0, &jobs, NULL), 0);
             }
             if (step % 100 == 0)
                 check_counts(path, REALISATIONS);

@@ -24,7 +24,7 @@ static void a_span_is_a_row_however_long(void **state) {
     check_counts("long.db", STUDY_REALISATIONS_MOST);
     uint64_t jobs = 0;
     assert_int_equal(store_cancel(store, id, NULL), 0);
-    assert_int_equal(store_retry(store, id, &jobs, NULL), 0);
+    assert_int_equal(store_retry(store, id, 0, &jobs, NULL), 0);
     assert_int_equal(jobs, 29995);
     check_counts("long.db", STUDY_REALISATIONS_MOST);
     store_close(&store);

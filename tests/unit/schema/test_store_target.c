@@ -123,6 +123,25 @@ static void is_due_when_all_jobs_are_over(void **state) {
     study_status_clear(&status);
 }
 
+/* Components have numbers behind those of the cases, which are those that were asked for. */
+static void a_component_is_no_case(void **state) {
+    (void)state;
+    struct case_info info;
+    struct error err = {0};
+    for (uint64_t number = 0; number < 4; number++) {
+        bool is_case = number < 1, is_either = number < 3;
+        int status = store_case(store, id, number, &info, &err);
+        assert_int_equal(status, is_case ? 0 : ERROR_ABSENT);
+        if (status == 0)
+            case_info_clear(&info);
+        status = store_any_case(store, id, number, &info, NULL);
+        assert_int_equal(status, is_either ? 0 : ERROR_ABSENT);
+        if (status == 0)
+            case_info_clear(&info);
+    }
+    assert_non_null(strstr(err.text, "has no case 3; it has 1, from 0 on"));
+}
+
 static void a_round_is_queued_once(void **state) {
     (void)state;
     while (run_one())
@@ -163,7 +182,7 @@ static void nothing_grows_after_a_cancellation(void **state) {
     assert_true(is_due()); /* what it came to */
     assert_false(grow(revision_now(), 100, 100));
     uint64_t count;
-    assert_int_equal(store_retry(store, id, &count, NULL), 0);
+    assert_int_equal(store_retry(store, id, 0, &count, NULL), 0);
     assert_int_equal(count, 2);
     assert_false(is_due());
     while (run_one())
@@ -171,6 +190,28 @@ static void nothing_grows_after_a_cancellation(void **state) {
     assert_true(is_due());
     assert_true(grow(revision_now(), 9, 4));
     claimed_job_clear(&job);
+}
+
+/* The jobs of a round are over, and the next one is not planned yet: the study runs. */
+static void a_study_between_rounds_is_cancelled_and_goes_on(void **state) {
+    (void)state;
+    const struct case_result empty = {0};
+    uint64_t jobs = 7;
+    while (run_one())
+        ;
+    assert_int_equal(store_cancel(store, id, NULL), 0);
+    assert_int_equal(store_cancel(store, id, NULL), ERROR_STATE);
+    assert_false(grow(revision_now(), 100, 100));
+    assert_int_equal(store_publish(store, id, 0, revision_now(), &empty, NULL), 0);
+    assert_false(is_due());
+    assert_int_equal(store_retry(store, id, 0, &jobs, NULL), 0);
+    assert_int_equal(jobs, 0);
+    struct study_status status = status_now();
+    assert_string_equal(status.state, "running");
+    assert_string_equal(status.finished, "");
+    study_status_clear(&status);
+    assert_true(is_due());
+    assert_true(grow(revision_now(), 9, 4));
 }
 
 static void failed_jobs_end_a_round(void **state) {
@@ -196,7 +237,7 @@ static int refuse(void *context, struct store *of, const struct due_case *due, s
 
 static void check_done(uint64_t number, uint64_t done) {
     struct case_info info;
-    assert_int_equal(store_case(store, id, number, &info, NULL), 0);
+    assert_int_equal(store_any_case(store, id, number, &info, NULL), 0);
     assert_int_equal(info.realisations_done, done);
     case_info_clear(&info);
 }
@@ -215,7 +256,7 @@ static void what_cannot_be_published_is_computed_again(void **state) {
     assert_int_equal(counts.failed, 1);
     for (uint64_t number = 0; number < 3; number++)
         check_done(number, DONE[number]);
-    assert_int_equal(store_retry(store, id, &jobs, NULL), 0);
+    assert_int_equal(store_retry(store, id, 0, &jobs, NULL), 0);
     assert_int_equal(jobs, 3);
     for (uint64_t number = 0; number < 3; number++)
         check_done(number, 0);
@@ -234,8 +275,11 @@ static void what_cannot_be_published_is_computed_again(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(is_due_when_all_jobs_are_over, submit, end),
+        cmocka_unit_test_setup_teardown(a_component_is_no_case, submit, end),
         cmocka_unit_test_setup_teardown(a_round_is_queued_once, submit, end),
         cmocka_unit_test_setup_teardown(nothing_grows_after_a_cancellation, submit, end),
+        cmocka_unit_test_setup_teardown(a_study_between_rounds_is_cancelled_and_goes_on, submit,
+                                        end),
         cmocka_unit_test_setup_teardown(failed_jobs_end_a_round, submit, end),
         cmocka_unit_test_setup_teardown(what_cannot_be_published_is_computed_again, submit, end),
     };

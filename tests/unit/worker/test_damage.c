@@ -250,7 +250,7 @@ static void an_unfit_result_is_not_stored(void **state) {
     study_status_clear(&status);
     claimed_job_clear(&job);
     uint64_t again = 0;
-    assert_int_equal(store_retry(fixture.store, fixture.study, &again, &err), 0);
+    assert_int_equal(store_retry(fixture.store, fixture.study, 0, &again, &err), 0);
     assert_true(again > 0);
     work_off(fixture.database);
     status = fixture_status(&fixture);

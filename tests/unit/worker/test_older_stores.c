@@ -1,11 +1,12 @@
-/* Protects: stores that people have, of versions 1, 3, 17 and 18 and of two layouts before them.
- * Those of versions 1 and 3, left in the midst of work, open with this program, which goes on where
- * they were. They end with the rows of a fresh run: of cases that this program publishes, names,
- * abscissae, counts and curves without a model are the same bit for bit; curves of contact and all
- * scalars are to four digits, but for those whose definition or tolerance changed (check_study).
- * Statistics that were published before are not compared. Of version 17 the published ordinates are
- * read as they are in its rows, to twelve digits; of version 18 keys get their owners. All but the
- * first layout, which is refused with a word, have no flaw of structure once they were opened.
+/* Protects: stores that people have, of versions 1, 3, 17, 18 and 20 and of two layouts before
+ * them. Those of versions 1 and 3, left in the midst of work, open with this program, which goes on
+ * where they were. They end with the rows of a fresh run: of cases that this program publishes,
+ * names, abscissae, counts and curves without a model are the same bit for bit; curves of contact
+ * and all scalars are to four digits, but for those whose definition or tolerance changed
+ * (check_study). Statistics that were published before are not compared. Of version 17 the
+ * published ordinates are read as they are in its rows, to twelve digits; of version 18 keys get
+ * their owners, and of version 20 they know studies that were extended. All but the first layout,
+ * which is refused with a word, have no flaw of structure once they were opened.
  * tests/fixtures/stores/README.md says how the fixtures were made. */
 #include "tests/support/sql.h"
 #include "tests/unit/worker/small_study.h"
@@ -139,11 +140,18 @@ static void retry_failed(struct store *store, const char *path) {
     assert_int_equal(store_list(store, "", 10, &list, &count, &err), 0);
     for (size_t s = 0; s < count; s++) {
         if (list[s].cases_failed > 0)
-            assert_int_equal(store_retry(store, list[s].id, &retried, &err), 0);
+            assert_int_equal(store_retry(store, list[s].id, 0, &retried, &err), 0);
         study_status_clear(&list[s]);
     }
     free(list);
     work_off(path);
+}
+
+static void check_ended(struct store *store, const char *study) {
+    struct study_status now;
+    assert_int_equal(store_status(store, study, &now, NULL), 0);
+    assert_string_equal(now.state, "done");
+    study_status_clear(&now);
 }
 
 static void a_store_of_version_1_goes_on(void **state) {
@@ -163,7 +171,12 @@ static void a_store_of_version_1_goes_on(void **state) {
     for (size_t s = 0; s < count; s++) {
         assert_string_equal(list[s].state, STATES[s]);
         if (s >= 3)
-            assert_int_equal(store_retry(store, list[s].id, &retried, &err), 0);
+            assert_int_equal(store_retry(store, list[s].id, 0, &retried, &err), 0);
+    }
+    work_off("old.db");
+    for (size_t s = 0; s < count; s++) {
+        if (s >= 3) /* what was done of it is in another format, and was computed anew at once */
+            check_ended(store, list[s].id);
         study_status_clear(&list[s]);
     }
     free(list);
@@ -268,8 +281,8 @@ static int refuse_structure(void *context, const struct flaw *flaw, struct error
 /* Migrations make of each older store what they make of an empty one. */
 static void a_store_brought_up_is_like_a_new_one(void **state) {
     (void)state;
-    static const char *const FIXTURES[] = {"version-1.sql", "version-3.sql", "version-17.sql",
-                                           "version-18.sql", "early-layout.sql"};
+    static const char *const FIXTURES[] = {"version-1.sql",  "version-3.sql",  "version-17.sql",
+                                           "version-18.sql", "version-20.sql", "early-layout.sql"};
     for (size_t f = 0; f < sizeof FIXTURES / sizeof *FIXTURES; f++) {
         const struct verification verification = {.found = refuse_structure};
         struct verify_report report = {0};
@@ -299,6 +312,30 @@ static void keys_get_their_owners(void **state) {
     char *rows = rows_of("keys.db", KEYS, NULL);
     assert_string_equal(rows, "|monday\nanna|tuesday\n");
     free(rows);
+}
+
+/* How many realisations were first asked for is not known of an older program's study: its key
+ * takes the document with any number of them, as that of a study that was extended since. */
+static void a_key_knows_an_older_extended_study(void **state) {
+    (void)state;
+    static const char GIVEN[] =
+        "{\"name\":\"kept\",\"kind\":\"statistics\",\"seed\":1,\"realisations\":4,\"surface\":{"
+        "\"hurst\":0.8,\"wavelength_ratio\":4,\"length_ratio\":4,\"points_per_wavelength\":4}}";
+    struct store *store = NULL;
+    struct study *study = NULL;
+    struct fault_list faults = {0};
+    struct error err;
+    char id[STUDY_ID_SIZE];
+    bool existing = false;
+    load("version-20.sql", "extended.db");
+    assert_int_equal(store_open(&store, "extended.db", NULL, &err), 0);
+    assert_int_equal(kind_read_study(&study, GIVEN, strlen(GIVEN), NULL, &faults, &err), 0);
+    assert_int_equal(store_submit(store, study, "monday", id, &existing, &err), 0);
+    assert_true(existing);
+    assert_string_equal(id, "bda1b99f50318778");
+    assert_int_equal(store_submit(store, study, "tuesday", id, &existing, &err), ERROR_STATE);
+    study_destroy(&study);
+    store_close(&store);
 }
 
 static int refuse_flaw(void *context, const struct flaw *flaw, struct error *err) {
@@ -386,6 +423,7 @@ int main(void) {
         cmocka_unit_test(a_reader_reads_it),
         cmocka_unit_test(a_store_brought_up_is_like_a_new_one),
         cmocka_unit_test(keys_get_their_owners),
+        cmocka_unit_test(a_key_knows_an_older_extended_study),
         cmocka_unit_test(what_was_not_packed_is_read),
         cmocka_unit_test(the_first_layout_is_refused),
     };

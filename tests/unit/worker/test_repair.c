@@ -37,19 +37,24 @@ static uint64_t verify(const char *path, struct told *told, struct error *err) {
     return report.counts.flaws + (status != 0);
 }
 
-static int repair(const char *path, struct error *err) {
+static int repair_reported(const char *path, struct repair_report *report, struct error *err) {
     struct told told = {{0}, {0}};
     const struct verification verification = {.found = note_flaw, .context = &told};
     struct store_options options = {.existing = true};
-    struct repair_report report = {0};
     struct store *store = NULL;
+    *report = (struct repair_report){0};
     int status = store_open(&store, path, &options, err);
     if (status == 0)
         status = store_take_alone(store, err);
     if (status == 0)
-        status = repair_store(store, &verification, &report, err);
+        status = repair_store(store, &verification, report, err);
     store_close(&store);
     return status;
+}
+
+static int repair(const char *path, struct error *err) {
+    struct repair_report report;
+    return repair_reported(path, &report, err);
 }
 
 static void check_same(const char *path, const char *what) {
@@ -61,6 +66,46 @@ static void check_same(const char *path, const char *what) {
         else if (strcmp(text, whole.cases[c]) != 0)
             fail_msg("%s: case %d has changed", what, (int)c);
         free(text);
+    }
+}
+
+/* A case of four blocks in another form of results is given up whole, and all of them are counted;
+ * where the form is this program's, it is the damaged block alone. So it is with a target,
+ * whose components are repaired by another build. */
+static void results_given_up_are_counted(void **state) {
+    (void)state;
+    static const char TARGET[] =
+        "{\"name\":\"t\",\"kind\":\"statistics\",\"seed\":5,\"target\":{\"error\":0.1},\"surface\":"
+        "{"
+        "\"dimension\":1,\"hurst\":0.8,\"wavelength_ratio\":4,\"length_ratio\":4}}";
+    static const char DAMAGE[] = "; UPDATE result SET seal = seal + 1 WHERE job_id = (SELECT "
+                                 "min(id) FROM job WHERE case_number = 1)";
+    static const struct {
+        const char *sql;
+        bool target;
+        uint64_t blocks;
+    } REPAIRS[] = {{"UPDATE study SET program = 'other'", false, 1},
+                   {"UPDATE study SET edition = 1", false, 4},
+                   {"UPDATE study SET program = 'other'", true, 1}};
+    for (size_t c = 0; c < sizeof REPAIRS / sizeof *REPAIRS; c++) {
+        struct fixture fixture;
+        struct error err = {0};
+        struct repair_report report;
+        char sql[300];
+        fixture_open(&fixture);
+        fixture_submit(&fixture, REPAIRS[c].target ? TARGET : SMALL_STUDY, 6, NULL, 0);
+        store_close(&fixture.store);
+        if (REPAIRS[c].target)
+            sql_change(fixture.database, "UPDATE study_case SET block = 6");
+        work_off(fixture.database);
+        assert_true(
+            sql_integer(fixture.database, "SELECT count(*) FROM job WHERE case_number = 1") >= 4);
+        snprintf(sql, sizeof sql, "%s%s", REPAIRS[c].sql, DAMAGE);
+        sql_change(fixture.database, sql);
+        if (repair_reported(fixture.database, &report, &err) != 0)
+            fail_msg("%s", err.text);
+        assert_int_equal(report.blocks, REPAIRS[c].blocks);
+        remove_store(fixture.database);
     }
 }
 
@@ -234,6 +279,7 @@ static void what_has_no_checksum_gets_one(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(damage_is_found_and_mended),
+        cmocka_unit_test(results_given_up_are_counted),
         cmocka_unit_test(a_changed_bit_of_the_file_is_found),
         cmocka_unit_test(a_changed_layout_is_found),
         cmocka_unit_test(repair_needs_the_store_alone),
