@@ -1,6 +1,6 @@
 -- What an error costs, of the studies whose names are like :names: CPU seconds until 1.96 standard errors and what cell, mesh, block and model leave
 -- (|value| + bound) are below it together, in all cases at all loads from 0.05 on. The seconds rise as the realisations, these as the inverse square of
--- the standard error. Areas by edges of contact, densities of summits of statistics.
+-- the standard error. Areas by edges of contact; densities of summits of statistics.
 CREATE TEMP TABLE stays AS
 SELECT study, "case" AS number, model, level, x, sum(abs(value) + coalesce(bound, 0)) AS stays
 FROM curve_errors WHERE quantity = 'contact_area' AND series = 'edges' GROUP BY study, number, model, level, x;
