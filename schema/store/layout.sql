@@ -28,7 +28,7 @@ CREATE TABLE study (
 CREATE TABLE study_source (
     study_id INTEGER PRIMARY KEY REFERENCES study(id) ON DELETE CASCADE,
     source TEXT NOT NULL                   -- the document as it was given
-);
+, seal INTEGER);
 CREATE TABLE study_case (
     study_id INTEGER NOT NULL REFERENCES study(id) ON DELETE CASCADE,
     number INTEGER NOT NULL,

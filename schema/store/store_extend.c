@@ -78,6 +78,10 @@ static int extend(struct store *store, int64_t study, int64_t had, int64_t wante
                            "UPDATE study_source SET source = json_set(source, '$.realisations', "
                            "?) WHERE study_id = ?",
                            "ii", wanted, study);
+    if (status == 0)
+        status = store_run(store, err,
+                           "UPDATE study_source SET seal = seal_of(source) WHERE study_id = ?", "i",
+                           study);
     *jobs = again + queued.jobs;
     return status != 0 ? status : study_count_work(store, study, err);
 }

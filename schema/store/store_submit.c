@@ -123,10 +123,11 @@ static int insert_row(struct store *store, const struct study *study, const char
     if (status == 0)
         status =
             store_run(store, err, "INSERT OR IGNORE INTO share (owner) VALUES (?)", "t", owner);
-    return status != 0
-               ? status
-               : store_run(store, err, "INSERT INTO study_source (study_id, source) VALUES (?, ?)",
-                           "it", *row, study->source);
+    return status != 0 ? status
+                       : store_run(store, err,
+                                   "INSERT INTO study_source (study_id, source, seal) VALUES (?1, "
+                                   "?2, seal_of(?2))",
+                                   "it", *row, study->source);
 }
 
 static int insert_study(struct store *store, const struct study *study, const char *key,

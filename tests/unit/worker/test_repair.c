@@ -213,6 +213,30 @@ static void a_changed_bit_of_the_file_is_found(void **state) {
     assert_true(found > 0);
 }
 
+/* A character of a study's document, whether it is JSON still or not. Nothing else has it, so that
+ * repair leaves it, and says so. */
+static void a_changed_document_is_found(void **state) {
+    (void)state;
+    static const char *const CHANGES[] = {
+        "UPDATE study_source SET source = replace(source, '\"hurst\":', '\"hurst\"=')",
+        "UPDATE study_source SET source = replace(source, '\"realisations\":24', "
+        "'\"realisations\":25')",
+        "UPDATE study_source SET seal = NULL, source = substr(source, 2)"};
+    for (size_t c = 0; c < sizeof CHANGES / sizeof *CHANGES; c++) {
+        struct error err = {0};
+        struct told told;
+        copy_file("whole.db", "damaged.db");
+        sql_change("damaged.db", CHANGES[c]);
+        for (int again = 0; again < 2; again++) {
+            if (verify("damaged.db", &told, &err) == 0)
+                fail_msg("%s: is not found", CHANGES[c]);
+            assert_non_null(strstr(told.text, "its document does not match its checksum"));
+            assert_int_equal(repair("damaged.db", &err), 0);
+        }
+        remove_store("damaged.db");
+    }
+}
+
 /* A bit of the text that says what a table is: the key of names is none any more, which SQLite
  * takes as it is; nothing stored in such a table would be found. */
 static void a_changed_layout_is_found(void **state) {
@@ -281,6 +305,7 @@ int main(void) {
         cmocka_unit_test(damage_is_found_and_mended),
         cmocka_unit_test(results_given_up_are_counted),
         cmocka_unit_test(a_changed_bit_of_the_file_is_found),
+        cmocka_unit_test(a_changed_document_is_found),
         cmocka_unit_test(a_changed_layout_is_found),
         cmocka_unit_test(repair_needs_the_store_alone),
         cmocka_unit_test(what_has_no_checksum_gets_one),
