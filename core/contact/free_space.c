@@ -76,17 +76,32 @@ static double fold(size_t at, size_t count, double step) {
     return (double)(at <= count / 2 ? at : count - at) * step;
 }
 
-/* coated: NULL without a coating. */
+/* Fills what a coating adds to the displacement of a profile at the distance lx from a line load,
+ * to which all others are relative. Padded by lx, long waves are all of it there, however few the
+ * points are. */
+static int coating_at_reference(const struct grid *grid, const struct block *block, double *added,
+                                struct error *err) {
+    struct coated_space *space = NULL;
+    struct grid twice;
+    extend(grid, 2 * grid->nx, 1, &twice);
+    int status = coated_space_create(&space, grid, &twice, block, err);
+    if (status == 0)
+        *added = coated_space_far(space, grid->lx);
+    coated_space_destroy(&space);
+    return status;
+}
+
+/* coated: NULL without a coating. added: what is taken off its displacements. */
 static void transform_far(struct transform *transform, const struct grid *grid,
                           const struct grid *padded, const struct coated_space *coated,
-                          double *row) {
+                          double added, double *row) {
     for (size_t j = 0; j < padded->ny; j++) {
         double y = grid_is_profile(grid) ? 0 : fold(j, padded->ny, grid_dy(grid));
         for (size_t i = 0; i < padded->nx; i++) {
             double distance = hypot(fold(i, padded->nx, grid_dx(grid)), y);
             row[i] = far_kernel(grid, alpha_of(grid), distance);
             if (coated != NULL)
-                row[i] += coated_space_far(coated, distance);
+                row[i] += coated_space_far(coated, distance) - added;
         }
         transform_forward_rows(transform, j, 1, row);
     }
@@ -97,14 +112,16 @@ int free_space_symbol(const struct grid *grid, const struct grid *padded, const 
                       double *symbol, struct error *err) {
     struct transform *transform = NULL;
     struct coated_space *coated = NULL;
-    double *row = array_create(padded->nx, sizeof *row);
+    double added = 0, *row = array_create(padded->nx, sizeof *row);
     int status = row == NULL
                      ? error_memory(err, padded->nx * sizeof *row, "a compliance")
                      : transform_create(&transform, padded, padded->nx / 2, padded->ny / 2, err);
     if (status == 0 && block_is_coated(block))
         status = coated_space_create(&coated, grid, padded, block, err);
+    if (status == 0 && coated != NULL && grid_is_profile(grid))
+        status = coating_at_reference(grid, block, &added, err);
     if (status == 0) {
-        transform_far(transform, grid, padded, coated, row);
+        transform_far(transform, grid, padded, coated, added, row);
         const double complex *far = transform_spectrum(transform);
         double area = padded->lx * (grid_is_profile(grid) ? 1 : padded->ly);
         for (size_t mx = 0; mx <= padded->nx / 2; mx++)
