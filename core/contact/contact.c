@@ -34,6 +34,10 @@ static const double TANGENT_PART = 3, TANGENT_PART_ELEMENTS = 1, TANGENT_MOST = 
 /* The residual of unloading over that: of its tangent the stiffness alone is used. */
 static const double TANGENT_UNLOADING = 10;
 
+/* Pressures of a lowered face may exceed the hardness by this part, which is far above what the
+ * solver leaves. */
+static const double LOWERED_MOST = 1e-3;
+
 /* In this file heights are in units of the surface's RMS height and pressures in RMS height over
  * the largest compliance, so that all numbers are near 1 whatever the user's units. */
 struct contact {
@@ -462,6 +466,25 @@ static void solve_limited(struct contact *c, double mean, struct conjugate_gradi
     d->hardness = f->hardness;
 }
 
+/* A lowered face is elastic as long as pressures fall with the load. Under a stiff coating, which
+ * bends as a plate does, they may rise in places, beyond the hardness (F21.3). */
+static int check_lowered(const struct contact *c, double pressure, struct error *err) {
+    const struct flattening *f = &c->flattening;
+    double highest = 0;
+    if (!f->lowered || !block_is_coated(&c->compliance->block))
+        return 0;
+    for (size_t i = 0; i < c->solver.n; i++)
+        highest = fmax(highest, c->solver.p[i]);
+    if (highest <= (1 + LOWERED_MOST) * f->hardness)
+        return 0;
+    return error_set(err, ERROR_NUMERIC,
+                     "contact under a mean pressure of %g E* after %g E*: places would bear %.3g "
+                     "times the hardness, %g E*, again; under a coating of %g times the modulus "
+                     "they yield as the load falls, which is not computed",
+                     pressure, f->highest * pressure_unit(c), highest / f->hardness,
+                     c->options.hardness, c->compliance->block.coating.modulus);
+}
+
 static int press_partial(struct contact *c, double pressure, struct contact_state *out,
                          struct error *err) {
     struct conjugate_gradient *d = &c->solver;
@@ -485,6 +508,11 @@ static int press_partial(struct contact *c, double pressure, struct contact_stat
                          "contact under a mean pressure of %g E* did not converge: %zu iterations "
                          "left gaps of %.2g and penetrations of %.2g RMS heights",
                          pressure, end.iterations, end.inside, end.penetration);
+    int status = check_lowered(c, pressure, err);
+    if (status != 0) {
+        c->mean = 0;
+        return status;
+    }
     if (!c->tangent && mean != c->mean)
         take_secant(c, mean - c->mean);
     c->mean = mean;

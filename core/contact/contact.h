@@ -13,7 +13,8 @@
  * With a hardness p <= hardness, and nodes that reach it are lowered for good: their gap is 0, and
  * their depth is what the flat pushed out of the face as it was (F21.2). States depend on the load
  * and on the highest load since contact_begin. From that on the face yields; below it the lowered
- * face is elastic. */
+ * face is elastic. Under coatings of more than about three times the modulus it may yield again, at
+ * which contact_press fails. */
 #ifndef RUGO_CORE_CONTACT_CONTACT_H
 #define RUGO_CORE_CONTACT_CONTACT_H
 
@@ -94,7 +95,8 @@ int contact_set_team(struct contact *contact, struct team *team, struct error *e
 int contact_begin(struct contact *contact, const double *z, struct error *err);
 /* Presses to a mean pressure >= 0 and below the hardness, in free space over the rectangle.
  * ERROR_INPUT with both where it is not. ERROR_NUMERIC, with the load and what was reached, when
- * the tolerance is not met; the state before is lost then, and the next load starts anew. */
+ * the tolerance is not met, or where a lowered face under a coating would bear more than its
+ * hardness; the state before is lost then, and the next load starts anew. */
 int contact_press(struct contact *contact, double pressure, struct contact_state *out,
                   struct error *err);
 /* Returns the stiffness d pressure/d approach, E* per length, with the nodes p[grid_points] > 0

@@ -75,7 +75,8 @@ static const struct option_row OPTIONS[] = {
     {"effective-modulus", 0, OPTION_TEXT, 0, 0, AT(words.effective_modulus), "E*", NULL,
      "in place of it: E* = E/(1 - nu^2), or that of two elastic bodies"},
     {"hardness", 0, OPTION_TEXT, 0, 0, AT(words.hardness), "H", NULL,
-     "pressure at which the block yields, such as 2GPa; without it, it is elastic"},
+     "pressure at which the block yields, such as 2GPa; without it, it is elastic; loads also fall "
+     "again, where a coating of more than about 3 times the modulus may end it"},
     {"friction", 0, OPTION_NUMBER, 1e-3, 10, AT(words.friction), "MU", NULL,
      "coefficient of friction: what sticks, and how far the face gives, as a tangential load rises "
      "under the highest load (loads below it are added); the model full drags the flat along x "
