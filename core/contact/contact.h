@@ -23,7 +23,8 @@
 
 struct contact_options {
     double tolerance;        /* on the largest violation of complementarity, over the largest
-                                displacement from the mean; default 1e-8; 1e-12 is reachable */
+                                displacement: from the mean, in free space from the reference of
+                                free_space.h; default 1e-8; 1e-12 is reachable */
     size_t max_iterations;   /* a load; default 5000; on sides of more than 4096 nodes more, as the
                                 square root of their number */
     size_t stall_iterations; /* without halving the violation, after which steps become careful
