@@ -223,6 +223,7 @@ double contact_held_stiffness(struct contact *c, const double *p, double residua
     struct conjugate_gradient *d = &c->solver;
     size_t nodes = 0;
     c->mean = 0;
+    d->stopped = false;
     memset(d->q, 0, d->padded * sizeof *d->q); /* the digits do not depend on the set before */
     for (size_t i = 0; i < d->n; i++) {
         d->p[i] = p[i] > 0 ? p[i] : 0;
@@ -491,6 +492,7 @@ static int press_partial(struct contact *c, double pressure, struct contact_stat
     struct conjugate_gradient_end end;
     double mean = pressure / pressure_unit(c);
     d->transforms = 0;
+    d->stopped = false;
     flattening_turn(&c->flattening, d, mean, c->unit);
     if (isfinite(d->hardness))
         solve_limited(c, mean, &end);
@@ -519,6 +521,13 @@ static int press_partial(struct contact *c, double pressure, struct contact_stat
     fill_yielded(c, end.approach, mean, out);
     fill_partial(c, &end, out);
     out->work = d->transforms * (double)d->n;
+    if (d->stopped) {
+        c->mean = 0;
+        return error_set(err, ERROR_STOPPED,
+                         "stopped after %zu iterations of contact, in those of "
+                         "its stiffness",
+                         end.iterations);
+    }
     return 0;
 }
 

@@ -102,8 +102,8 @@ int contact_press(struct contact *contact, double pressure, struct contact_state
                   struct error *err);
 /* Returns the stiffness d pressure/d approach, E* per length, with the nodes p[grid_points] > 0
  * held in contact, whatever the surface that was begun. It removes the load. residual: the largest
- * one, over the approach; the error of the value is about its square. 0 without such nodes,
- * INFINITY where all of a periodic face are. */
+ * one, over the approach; the error of the value is about its square, and unknown where
+ * stop asked for an end. 0 without such nodes, INFINITY where all of a periodic face are. */
 double contact_held_stiffness(struct contact *contact, const double *p, double residual);
 /* Returns the smallest mean pressure of full contact of the elastic face, in E*; it is known from
  * contact_begin on. INFINITY in free space, where it is not known. */

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { STEPS_MOST = 1000, ARRAYS = 4 };
+enum { STEPS_MOST = 1000, STEPS_ASK = 4 /* steps between calls of stop */, ARRAYS = 4 };
 
 struct held {
     struct transfer transfer;
@@ -19,6 +19,8 @@ struct held {
     /* Fields of n values, owned: the tractions, their displacements less the mean of the set
      * (never 0 in it, 0 outside), the direction, and scratch. */
     double *t[FIELDS], *r[FIELDS], *d[FIELDS], *w[FIELDS];
+    int (*stop)(void *context); /* held_set_stop; may be NULL */
+    void *stop_context;
 };
 
 int held_create(struct held **out, const struct grid *grid, double poisson, struct error *err) {
@@ -56,6 +58,11 @@ void held_destroy(struct held **held) {
     transfer_clear(&gone->transfer);
     free(gone);
     *held = NULL;
+}
+
+void held_set_stop(struct held *held, int (*stop)(void *context), void *context) {
+    held->stop = stop;
+    held->stop_context = context;
 }
 
 double held_bytes(const struct grid *grid) {
@@ -180,6 +187,10 @@ static int solve(struct held *held, const double *p, const struct load *load, do
         }
         if (most <= residual * fabs(along))
             return 0;
+        if (held->stop != NULL && step % STEPS_ASK == STEPS_ASK - 1 &&
+            held->stop(held->stop_context) != 0)
+            return error_set(err, ERROR_STOPPED, "stopped after %zu iterations of a stiffness",
+                             *iterations);
         double energy = precondition(held, p, load);
         double curvature = direct(held, load, last > 0 ? energy / last : 0);
         if (!(curvature > 0))
