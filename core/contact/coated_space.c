@@ -5,8 +5,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double PI = 3.14159265358979323846;
-
 /* The part of a wave number k that long waves have is erfc((k - middle)/width)/2 with the middle
  * at 5 widths, which is 1 to 1e-12 at k = 0. What is left has a kernel below exp(-(width r/2)^2). A
  * width of 10 over the padding makes that exp(-25). */
@@ -52,7 +50,8 @@ static void size_waves(const struct coated_space *space, bool profile, double k,
                        double *size) {
     for (size_t o = 0; o < space->octaves; o++) {
         double part = ldexp(1, -(int)o), wave = part * k;
-        double own = part * weight * long_part(space, k) * coating_excess(wave, &space->block) / PI;
+        double own =
+            part * weight * long_part(space, k) * coating_excess(wave, &space->block) / M_PI;
         size[o] = profile ? own : own * wave / 2;
     }
 }

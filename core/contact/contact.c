@@ -219,6 +219,11 @@ double contact_full_pressure(const struct contact *c) {
     return c->compliance->open ? INFINITY : c->full * pressure_unit(c);
 }
 
+static double stiffness_of(struct contact *c, const double *set, double residual) {
+    struct conjugate_gradient *d = &c->solver;
+    return 1 / (conjugate_gradient_tangent(d, set, residual) * d->largest);
+}
+
 double contact_held_stiffness(struct contact *c, const double *p, double residual) {
     struct conjugate_gradient *d = &c->solver;
     size_t nodes = 0;
@@ -233,7 +238,7 @@ double contact_held_stiffness(struct contact *c, const double *p, double residua
         return 0;
     if (nodes == d->n && !c->compliance->open)
         return INFINITY;
-    return 1 / (conjugate_gradient_tangent(d, d->p, residual) * d->largest);
+    return stiffness_of(c, d->p, residual);
 }
 
 /* Lowers the face in gaps that were computed from heights as they were: the solver's (weighted)
@@ -289,11 +294,6 @@ static double tangent_residual(const struct contact *c) {
     bool elements = c->compliance->block.model == MODEL_LAYERED;
     double part = elements ? TANGENT_PART_ELEMENTS : TANGENT_PART;
     return fmin(TANGENT_MOST, part * sqrt(c->options.tolerance));
-}
-
-static double stiffness_of(struct contact *c, const double *set, double residual) {
-    struct conjugate_gradient *d = &c->solver;
-    return 1 / (conjugate_gradient_tangent(d, set, residual) * d->largest);
 }
 
 /* Fills the stiffness of unloading, under which all nodes resist, and returns the nodes that do

@@ -5,7 +5,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double PI = 3.14159265358979323846;
 static const double EULER = 0.57721566490153286061;
 
 /* The kernel is the sum of two parts, both known in closed form (F18.24). The far part is smooth:
@@ -19,7 +18,7 @@ static const double AROUND_BYTES = (1 + 0.5 + 2. / 3) * sizeof(double),
                     SPARE_BYTES = 2 * sizeof(double);
 
 static double alpha_of(const struct grid *grid) {
-    return PI / (2 * SPLIT * grid_widest_spacing(grid));
+    return M_PI / (2 * SPLIT * grid_widest_spacing(grid));
 }
 
 /* Twice the side, so that no two points of the map meet across the padding; more for small maps, so
@@ -58,17 +57,18 @@ void free_space_around(const struct grid *grid, struct grid *around) {
  * a unit line load. */
 static double far_kernel(const struct grid *grid, double alpha, double distance) {
     if (!grid_is_profile(grid))
-        return distance > 0 ? erf(alpha * distance) / (PI * distance) : 2 * alpha / pow(PI, 1.5);
+        return distance > 0 ? erf(alpha * distance) / (M_PI * distance)
+                            : 2 * alpha / pow(M_PI, 1.5);
     double square = alpha * distance * alpha * distance;
     if (!(square > 0))
-        return (EULER + 2 * log(alpha * grid->lx)) / PI;
+        return (EULER + 2 * log(alpha * grid->lx)) / M_PI;
     double rest = square < 500 ? gsl_sf_expint_E1(square) : 0;
-    return -(2 * log(distance / grid->lx) + rest) / PI;
+    return -(2 * log(distance / grid->lx) + rest) / M_PI;
 }
 
 /* Returns the transform of the near part. */
 static double near_symbol(double alpha, double k) {
-    return k > 0 ? 2 / k * erf(k / (2 * alpha)) : 2 / (alpha * sqrt(PI));
+    return k > 0 ? 2 / k * erf(k / (2 * alpha)) : 2 / (alpha * sqrt(M_PI));
 }
 
 /* Returns the distance of a point of the padded grid to the first one, around either side. */
@@ -126,9 +126,8 @@ int free_space_symbol(const struct grid *grid, const struct grid *padded, const 
         double area = padded->lx * (grid_is_profile(grid) ? 1 : padded->ly);
         for (size_t mx = 0; mx <= padded->nx / 2; mx++)
             for (size_t j = 0; j < padded->ny; j++) {
-                size_t my = j <= padded->ny / 2 ? j : padded->ny - j;
-                double qx = (double)mx / padded->lx, qy = my > 0 ? (double)my / padded->ly : 0;
-                double k = 2 * PI * hypot(qx, qy), *out = &symbol[mx * padded->ny + j];
+                double k = transform_wave_number(padded, mx, j);
+                double *out = &symbol[mx * padded->ny + j];
                 *out = area * creal(far[mx * padded->ny + j]) + near_symbol(alpha_of(grid), k);
                 if (coated != NULL)
                     *out += coated_space_near(coated, k);

@@ -88,13 +88,6 @@ static double centre(const struct held *held, const double *p, double *x) {
     return mean;
 }
 
-static double dot(size_t n, const double *a, const double *b) {
-    double sum = 0;
-    for (size_t i = 0; i < n; i++)
-        sum += a[i] * b[i];
-    return sum;
-}
-
 /* Returns the largest |r|, and marks the set by values that are not 0. */
 static double mark(size_t n, const double *p, double *r) {
     double most = 0;
@@ -123,7 +116,7 @@ static double precondition(struct held *held, const double *p, const struct load
         else
             pyramid_transpose(&held->pyramid, held->r[f], held->w[f]);
         centre(held, p, held->w[f]);
-        energy += dot(held->n, held->w[f], held->r[f]);
+        energy += transfer_dot(held->n, held->w[f], held->r[f]);
     }
     return energy;
 }
@@ -139,7 +132,7 @@ static double direct(struct held *held, const struct load *load, double beta) {
     }
     transfer_apply(&held->transfer, in, out);
     for (size_t f = load->first; f < load->end; f++)
-        curvature += dot(held->n, held->d[f], held->w[f]);
+        curvature += transfer_dot(held->n, held->d[f], held->w[f]);
     return curvature;
 }
 
@@ -183,7 +176,7 @@ static int solve(struct held *held, const double *p, const struct load *load, do
         *displacement = along;
         for (size_t f = load->first; f < load->end; f++) {
             most = fmax(most, mark(held->n, p, held->r[f]));
-            *displacement += dot(held->n, held->t[f], held->r[f]) / (double)held->n;
+            *displacement += transfer_dot(held->n, held->t[f], held->r[f]) / (double)held->n;
         }
         if (most <= residual * fabs(along))
             return 0;
