@@ -4,8 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double PI = 3.14159265358979323846;
-
 /* The double sine has about WAVE_STEPS points a wave and is pressed at several positions on the
  * grid. At the lower loads its patches are as large as those of a rough surface with 8 points a
  * shortest wave. */
@@ -84,13 +82,13 @@ static void wave_shift(struct double_sine *wave, size_t which) {
     for (size_t j = 0; j < grid->ny; j++)
         for (size_t i = 0; i < grid->nx; i++)
             wave->z[j * grid->nx + i] = grid_dx(grid) *
-                                        cos(2 * PI * ((double)i + x) / (double)grid->nx) *
-                                        cos(2 * PI * ((double)j + y) / (double)grid->ny);
+                                        cos(2 * M_PI * ((double)i + x) / (double)grid->nx) *
+                                        cos(2 * M_PI * ((double)j + y) / (double)grid->ny);
 }
 
 static int add_loads(struct double_sine *wave, const struct area_law *law, struct squares *sums,
                      struct error *err) {
-    double full = PI * grid_dx(&wave->grid) * hypot(1 / wave->grid.lx, 1 / wave->grid.ly);
+    double full = M_PI * grid_dx(&wave->grid) * hypot(1 / wave->grid.lx, 1 / wave->grid.ly);
     int status = contact_begin(wave->contact, wave->z, err);
     for (size_t k = 0; status == 0 && k < LOADS; k++) {
         struct contact_state state;
@@ -115,7 +113,7 @@ static int make_edges(struct area_law *out, const struct grid *grid, const struc
     int status = edge_law_make(grid, block, &out->edge, err);
     /* The boundary of cells along a straight edge is 4/pi times as long as the edge, averaged over
      * angles. */
-    out->overlap = status == 0 ? PI / 4 * edge_overlap(&out->edge) : 0;
+    out->overlap = status == 0 ? M_PI / 4 * edge_overlap(&out->edge) : 0;
     return status;
 }
 
@@ -124,7 +122,6 @@ int area_law_make(const struct grid *grid, const struct block *block, struct are
     struct double_sine wave = {0};
     struct squares squares = {0};
     struct block bare = *block;
-    bool weighted = block->model == MODEL_LAYERED && block->weighting == GAP_STANDARD;
     int status = compliance_check_spacings(grid, err);
     bare.coating = (struct coating){0};
     if (status == 0)
@@ -141,7 +138,7 @@ int area_law_make(const struct grid *grid, const struct block *block, struct are
         status = add_loads(&wave, out, &squares, err);
     }
     if (status == 0)
-        squares_solve(&squares, weighted, out);
+        squares_solve(&squares, compliance_has_weight(block), out);
     double_sine_close(&wave);
     if (status == 0 && block_is_coated(block))
         status = make_edges(out, grid, block, err);

@@ -2,10 +2,9 @@
 #include "core/contact/coating.h"
 #include "core/contact/free_space.h"
 #include "core/contact/layered.h"
+#include "core/surface/transform.h"
 #include <math.h>
 #include <stdlib.h>
-
-static const double PI = 3.14159265358979323846;
 
 static size_t wave_count(const struct grid *grid) {
     return (grid->nx / 2 + 1) * grid->ny;
@@ -15,14 +14,9 @@ bool compliance_has_weight(const struct block *block) {
     return block->model == MODEL_LAYERED && block->weighting == GAP_STANDARD;
 }
 
-/* Returns |my| of a row of the half spectrum. */
-static size_t row_mode(const struct grid *grid, size_t row) {
-    return row <= grid->ny / 2 ? row : grid->ny - row;
-}
-
 /* S of an elastic layer whose far side stays flat and free of shear (F10.2). q = exp(-2kH) is
  * factored out of the hyperbolic functions, so that no term overflows or cancels. */
-double block_compliance(double k, double height) {
+static double block_compliance(double k, double height) {
     double x = 2 * k * height;
     if (isinf(x))
         return 2 / k;
@@ -40,14 +34,11 @@ double block_compliance_exact(double k, const struct block *block) {
 static void halfspace_lengths(struct compliance *compliance) {
     const struct grid *grid = &compliance->grid;
     for (size_t mx = 0; mx <= grid->nx / 2; mx++)
-        for (size_t row = 0; row < grid->ny; row++) {
-            double qx = (double)mx / grid->lx;
-            double qy = row == 0 ? 0 : (double)row_mode(grid, row) / grid->ly;
+        for (size_t row = 0; row < grid->ny; row++)
             compliance->length[mx * grid->ny + row] =
-                mx == 0 && row == 0
-                    ? 0
-                    : block_compliance_exact(2 * PI * hypot(qx, qy), &compliance->block);
-        }
+                mx == 0 && row == 0 ? 0
+                                    : block_compliance_exact(transform_wave_number(grid, mx, row),
+                                                             &compliance->block);
 }
 
 static void weight_symbols(struct compliance *compliance) {
@@ -55,7 +46,8 @@ static void weight_symbols(struct compliance *compliance) {
     for (size_t mx = 0; mx <= grid->nx / 2; mx++)
         for (size_t row = 0; row < grid->ny; row++)
             compliance->weight[mx * grid->ny + row] =
-                gap_weight_symbol(mx, grid->nx) * gap_weight_symbol(row_mode(grid, row), grid->ny);
+                gap_weight_symbol(mx, grid->nx) *
+                gap_weight_symbol(transform_row_mode(grid, row), grid->ny);
 }
 
 /* Refuses lengths whose ratios overflow or underflow a double. */

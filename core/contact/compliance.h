@@ -35,9 +35,7 @@ struct compliance {
     size_t layers;     /* of the mesh; 0 for a half-space */
 };
 
-/* S E* of an uncoated block itself, without a mesh (F10.1, F10.2), under a wave number k > 0. */
-double block_compliance(double k, double height);
-/* S E* of any block, without a mesh. */
+/* S E* of a block itself, without a mesh (F10.1, F10.2), under a wave number k > 0. */
 double block_compliance_exact(double k, const struct block *block);
 
 /* ERROR_INPUT where one spacing is more than 100 times the other: the memory and the time of free

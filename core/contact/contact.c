@@ -34,6 +34,10 @@ static const double TANGENT_PART = 3, TANGENT_PART_ELEMENTS = 1, TANGENT_MOST = 
 /* The residual of unloading over that: of its tangent the stiffness alone is used. */
 static const double TANGENT_UNLOADING = 10;
 
+/* Pressures of a lowered face may exceed the hardness by this part, which is far above what the
+ * solver leaves. */
+static const double LOWERED_MOST = 1e-3;
+
 /* In this file heights are in units of the surface's RMS height and pressures in RMS height over
  * the largest compliance, so that all numbers are near 1 whatever the user's units. */
 struct contact {
@@ -215,10 +219,16 @@ double contact_full_pressure(const struct contact *c) {
     return c->compliance->open ? INFINITY : c->full * pressure_unit(c);
 }
 
+static double stiffness_of(struct contact *c, const double *set, double residual) {
+    struct conjugate_gradient *d = &c->solver;
+    return 1 / (conjugate_gradient_tangent(d, set, residual) * d->largest);
+}
+
 double contact_held_stiffness(struct contact *c, const double *p, double residual) {
     struct conjugate_gradient *d = &c->solver;
     size_t nodes = 0;
     c->mean = 0;
+    d->stopped = false;
     memset(d->q, 0, d->padded * sizeof *d->q); /* the digits do not depend on the set before */
     for (size_t i = 0; i < d->n; i++) {
         d->p[i] = p[i] > 0 ? p[i] : 0;
@@ -228,7 +238,7 @@ double contact_held_stiffness(struct contact *c, const double *p, double residua
         return 0;
     if (nodes == d->n && !c->compliance->open)
         return INFINITY;
-    return 1 / (conjugate_gradient_tangent(d, d->p, residual) * d->largest);
+    return stiffness_of(c, d->p, residual);
 }
 
 /* Lowers the face in gaps that were computed from heights as they were: the solver's (weighted)
@@ -284,11 +294,6 @@ static double tangent_residual(const struct contact *c) {
     bool elements = c->compliance->block.model == MODEL_LAYERED;
     double part = elements ? TANGENT_PART_ELEMENTS : TANGENT_PART;
     return fmin(TANGENT_MOST, part * sqrt(c->options.tolerance));
-}
-
-static double stiffness_of(struct contact *c, const double *set, double residual) {
-    struct conjugate_gradient *d = &c->solver;
-    return 1 / (conjugate_gradient_tangent(d, set, residual) * d->largest);
 }
 
 /* Fills the stiffness of unloading, under which all nodes resist, and returns the nodes that do
@@ -462,12 +467,32 @@ static void solve_limited(struct contact *c, double mean, struct conjugate_gradi
     d->hardness = f->hardness;
 }
 
+/* A lowered face is elastic as long as pressures fall with the load. Under a stiff coating, which
+ * bends as a plate does, they may rise in places, beyond the hardness (F21.3). */
+static int check_lowered(const struct contact *c, double pressure, struct error *err) {
+    const struct flattening *f = &c->flattening;
+    double highest = 0;
+    if (!f->lowered || !block_is_coated(&c->compliance->block))
+        return 0;
+    for (size_t i = 0; i < c->solver.n; i++)
+        highest = fmax(highest, c->solver.p[i]);
+    if (highest <= (1 + LOWERED_MOST) * f->hardness)
+        return 0;
+    return error_set(err, ERROR_NUMERIC,
+                     "contact under a mean pressure of %g E* after %g E*: places would bear %.3g "
+                     "times the hardness, %g E*, again; under a coating of %g times the modulus "
+                     "they yield as the load falls, which is not computed",
+                     pressure, f->highest * pressure_unit(c), highest / f->hardness,
+                     c->options.hardness, c->compliance->block.coating.modulus);
+}
+
 static int press_partial(struct contact *c, double pressure, struct contact_state *out,
                          struct error *err) {
     struct conjugate_gradient *d = &c->solver;
     struct conjugate_gradient_end end;
     double mean = pressure / pressure_unit(c);
     d->transforms = 0;
+    d->stopped = false;
     flattening_turn(&c->flattening, d, mean, c->unit);
     if (isfinite(d->hardness))
         solve_limited(c, mean, &end);
@@ -485,12 +510,24 @@ static int press_partial(struct contact *c, double pressure, struct contact_stat
                          "contact under a mean pressure of %g E* did not converge: %zu iterations "
                          "left gaps of %.2g and penetrations of %.2g RMS heights",
                          pressure, end.iterations, end.inside, end.penetration);
+    int status = check_lowered(c, pressure, err);
+    if (status != 0) {
+        c->mean = 0;
+        return status;
+    }
     if (!c->tangent && mean != c->mean)
         take_secant(c, mean - c->mean);
     c->mean = mean;
     fill_yielded(c, end.approach, mean, out);
     fill_partial(c, &end, out);
     out->work = d->transforms * (double)d->n;
+    if (d->stopped) {
+        c->mean = 0;
+        return error_set(err, ERROR_STOPPED,
+                         "stopped after %zu iterations of contact, in those of "
+                         "its stiffness",
+                         end.iterations);
+    }
     return 0;
 }
 

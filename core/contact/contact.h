@@ -13,7 +13,8 @@
  * With a hardness p <= hardness, and nodes that reach it are lowered for good: their gap is 0, and
  * their depth is what the flat pushed out of the face as it was (F21.2). States depend on the load
  * and on the highest load since contact_begin. From that on the face yields; below it the lowered
- * face is elastic. */
+ * face is elastic. Under coatings of more than about three times the modulus it may yield again, at
+ * which contact_press fails. */
 #ifndef RUGO_CORE_CONTACT_CONTACT_H
 #define RUGO_CORE_CONTACT_CONTACT_H
 
@@ -22,7 +23,8 @@
 
 struct contact_options {
     double tolerance;        /* on the largest violation of complementarity, over the largest
-                                displacement from the mean; default 1e-8; 1e-12 is reachable */
+                                displacement: from the mean, in free space from the reference of
+                                free_space.h; default 1e-8; 1e-12 is reachable */
     size_t max_iterations;   /* a load; default 5000; on sides of more than 4096 nodes more, as the
                                 square root of their number */
     size_t stall_iterations; /* without halving the violation, after which steps become careful
@@ -94,13 +96,14 @@ int contact_set_team(struct contact *contact, struct team *team, struct error *e
 int contact_begin(struct contact *contact, const double *z, struct error *err);
 /* Presses to a mean pressure >= 0 and below the hardness, in free space over the rectangle.
  * ERROR_INPUT with both where it is not. ERROR_NUMERIC, with the load and what was reached, when
- * the tolerance is not met; the state before is lost then, and the next load starts anew. */
+ * the tolerance is not met, or where a lowered face under a coating would bear more than its
+ * hardness; the state before is lost then, and the next load starts anew. */
 int contact_press(struct contact *contact, double pressure, struct contact_state *out,
                   struct error *err);
 /* Returns the stiffness d pressure/d approach, E* per length, with the nodes p[grid_points] > 0
  * held in contact, whatever the surface that was begun. It removes the load. residual: the largest
- * one, over the approach; the error of the value is about its square. 0 without such nodes,
- * INFINITY where all of a periodic face are. */
+ * one, over the approach; the error of the value is about its square, and unknown where
+ * stop asked for an end. 0 without such nodes, INFINITY where all of a periodic face are. */
 double contact_held_stiffness(struct contact *contact, const double *p, double residual);
 /* Returns the smallest mean pressure of full contact of the elastic face, in E*; it is known from
  * contact_begin on. INFINITY in free space, where it is not known. */

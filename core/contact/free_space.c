@@ -5,7 +5,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double PI = 3.14159265358979323846;
 static const double EULER = 0.57721566490153286061;
 
 /* The kernel is the sum of two parts, both known in closed form (F18.24). The far part is smooth:
@@ -19,7 +18,7 @@ static const double AROUND_BYTES = (1 + 0.5 + 2. / 3) * sizeof(double),
                     SPARE_BYTES = 2 * sizeof(double);
 
 static double alpha_of(const struct grid *grid) {
-    return PI / (2 * SPLIT * grid_widest_spacing(grid));
+    return M_PI / (2 * SPLIT * grid_widest_spacing(grid));
 }
 
 /* Twice the side, so that no two points of the map meet across the padding; more for small maps, so
@@ -58,17 +57,18 @@ void free_space_around(const struct grid *grid, struct grid *around) {
  * a unit line load. */
 static double far_kernel(const struct grid *grid, double alpha, double distance) {
     if (!grid_is_profile(grid))
-        return distance > 0 ? erf(alpha * distance) / (PI * distance) : 2 * alpha / pow(PI, 1.5);
+        return distance > 0 ? erf(alpha * distance) / (M_PI * distance)
+                            : 2 * alpha / pow(M_PI, 1.5);
     double square = alpha * distance * alpha * distance;
     if (!(square > 0))
-        return (EULER + 2 * log(alpha * grid->lx)) / PI;
+        return (EULER + 2 * log(alpha * grid->lx)) / M_PI;
     double rest = square < 500 ? gsl_sf_expint_E1(square) : 0;
-    return -(2 * log(distance / grid->lx) + rest) / PI;
+    return -(2 * log(distance / grid->lx) + rest) / M_PI;
 }
 
 /* Returns the transform of the near part. */
 static double near_symbol(double alpha, double k) {
-    return k > 0 ? 2 / k * erf(k / (2 * alpha)) : 2 / (alpha * sqrt(PI));
+    return k > 0 ? 2 / k * erf(k / (2 * alpha)) : 2 / (alpha * sqrt(M_PI));
 }
 
 /* Returns the distance of a point of the padded grid to the first one, around either side. */
@@ -76,17 +76,32 @@ static double fold(size_t at, size_t count, double step) {
     return (double)(at <= count / 2 ? at : count - at) * step;
 }
 
-/* coated: NULL without a coating. */
+/* Fills what a coating adds to the displacement of a profile at the distance lx from a line load,
+ * to which all others are relative. Padded by lx, long waves are all of it there, however few the
+ * points are. */
+static int coating_at_reference(const struct grid *grid, const struct block *block, double *added,
+                                struct error *err) {
+    struct coated_space *space = NULL;
+    struct grid twice;
+    extend(grid, 2 * grid->nx, 1, &twice);
+    int status = coated_space_create(&space, grid, &twice, block, err);
+    if (status == 0)
+        *added = coated_space_far(space, grid->lx);
+    coated_space_destroy(&space);
+    return status;
+}
+
+/* coated: NULL without a coating. added: what is taken off its displacements. */
 static void transform_far(struct transform *transform, const struct grid *grid,
                           const struct grid *padded, const struct coated_space *coated,
-                          double *row) {
+                          double added, double *row) {
     for (size_t j = 0; j < padded->ny; j++) {
         double y = grid_is_profile(grid) ? 0 : fold(j, padded->ny, grid_dy(grid));
         for (size_t i = 0; i < padded->nx; i++) {
             double distance = hypot(fold(i, padded->nx, grid_dx(grid)), y);
             row[i] = far_kernel(grid, alpha_of(grid), distance);
             if (coated != NULL)
-                row[i] += coated_space_far(coated, distance);
+                row[i] += coated_space_far(coated, distance) - added;
         }
         transform_forward_rows(transform, j, 1, row);
     }
@@ -97,21 +112,22 @@ int free_space_symbol(const struct grid *grid, const struct grid *padded, const 
                       double *symbol, struct error *err) {
     struct transform *transform = NULL;
     struct coated_space *coated = NULL;
-    double *row = array_create(padded->nx, sizeof *row);
+    double added = 0, *row = array_create(padded->nx, sizeof *row);
     int status = row == NULL
                      ? error_memory(err, padded->nx * sizeof *row, "a compliance")
                      : transform_create(&transform, padded, padded->nx / 2, padded->ny / 2, err);
     if (status == 0 && block_is_coated(block))
         status = coated_space_create(&coated, grid, padded, block, err);
+    if (status == 0 && coated != NULL && grid_is_profile(grid))
+        status = coating_at_reference(grid, block, &added, err);
     if (status == 0) {
-        transform_far(transform, grid, padded, coated, row);
+        transform_far(transform, grid, padded, coated, added, row);
         const double complex *far = transform_spectrum(transform);
         double area = padded->lx * (grid_is_profile(grid) ? 1 : padded->ly);
         for (size_t mx = 0; mx <= padded->nx / 2; mx++)
             for (size_t j = 0; j < padded->ny; j++) {
-                size_t my = j <= padded->ny / 2 ? j : padded->ny - j;
-                double qx = (double)mx / padded->lx, qy = my > 0 ? (double)my / padded->ly : 0;
-                double k = 2 * PI * hypot(qx, qy), *out = &symbol[mx * padded->ny + j];
+                double k = transform_wave_number(padded, mx, j);
+                double *out = &symbol[mx * padded->ny + j];
                 *out = area * creal(far[mx * padded->ny + j]) + near_symbol(alpha_of(grid), k);
                 if (coated != NULL)
                     *out += coated_space_near(coated, k);

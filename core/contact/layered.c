@@ -33,8 +33,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double PI = 3.14159265358979323846;
-
 /* Number of waves that are eliminated together, one in each lane of the innermost loops. */
 enum { LANES = 32 };
 typedef double lane[LANES];
@@ -58,7 +56,7 @@ struct symbols {
 
 static struct symbols symbols_of(size_t mode, size_t n, double distance) {
     /* At the Nyquist wave c is 0, not the cosine of a rounded pi/2. */
-    double angle = PI * (double)mode / (double)n;
+    double angle = M_PI * (double)mode / (double)n;
     double s = sin(angle), c = 2 * mode == n ? 0 : cos(angle);
     return (struct symbols){.mass = 1 - 2 * s * s / 3,
                             .stiffness = 4 * s * s / (distance * distance),

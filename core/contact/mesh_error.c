@@ -3,8 +3,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double PI = 3.14159265358979323846;
-
 struct mesh_error_workspace {
     size_t points;
     struct transform *transform; /* NULL for a half-space, as all below */
@@ -17,12 +15,11 @@ static void fill_missing(struct mesh_error_workspace *workspace,
     const struct grid *grid = &compliance->grid;
     for (size_t mx = 0; mx <= grid->nx / 2; mx++)
         for (size_t row = 0; row < grid->ny; row++) {
-            size_t my = row <= grid->ny / 2 ? row : grid->ny - row, k = mx * grid->ny + row;
-            double qx = (double)mx / grid->lx, qy = my > 0 ? (double)my / grid->ly : 0;
+            size_t k = mx * grid->ny + row;
             if (k > 0)
-                workspace->missing[k] =
-                    block_compliance_exact(2 * PI * hypot(qx, qy), &compliance->block) -
-                    compliance->length[k];
+                workspace->missing[k] = block_compliance_exact(transform_wave_number(grid, mx, row),
+                                                               &compliance->block) -
+                                        compliance->length[k];
         }
 }
 

@@ -81,7 +81,7 @@ void patches_find(struct patch_finder *finder, const double *p, struct patches *
     for (size_t i = 0; i < n; i++)
         link[i] = p[i] > 0 ? -1 : 0;
     join_neighbours(finder, p);
-    double nodes = 0, squares = 0;
+    double nodes = 0;
     *out = (struct patches){0};
     for (size_t i = 0; i < n; i++) {
         if (link[i] >= 0)
@@ -92,9 +92,7 @@ void patches_find(struct patch_finder *finder, const double *p, struct patches *
         out->count++;
         out->largest = size > out->largest ? size : out->largest;
         nodes += (double)size;
-        squares += (double)size * (double)size;
     }
     out->mean = out->count > 0 ? nodes / (double)out->count : NAN;
-    out->second = out->count > 0 ? squares / nodes : NAN;
     finder->link = finder->own;
 }

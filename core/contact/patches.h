@@ -9,7 +9,6 @@ struct patches {
     size_t count;
     size_t largest; /* nodes */
     double mean;    /* nodes a patch; NaN without patches */
-    double second;  /* mean over contact points of the size of their patch: sum n^2/sum n; or NaN */
 };
 struct patch_finder;
 int patch_finder_create(struct patch_finder **out, const struct grid *grid, struct error *err);

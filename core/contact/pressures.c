@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
 /* Least values: of the reach of a strip and the width of a chord, in steps, and of the cells that a
  * strip covers. Largest ones: of the law's factor on a squared pressure further inside, and of the
  * factor by which all strips together are stretched to make the area. */
@@ -148,7 +147,7 @@ static void add_chord(struct pressures *p, const struct run *run, double part, d
     double force = 0;
     for (size_t a = 0; a < run->count; a++)
         force += sqrt(p->rise[run_node(run, a)]);
-    double top = 4 * force / (PI * width);
+    double top = 4 * force / (M_PI * width);
     add_strip(p, &(struct strip){
                      .area = beyond,
                      .slope = 4 * top * top / width,

@@ -93,9 +93,12 @@ static void write_cells(FILE *file, const struct grid *grid, size_t cells) {
 
 /* A comment holds no "--". */
 static void put_title(FILE *file, const char *title) {
+    char last = '\0';
     for (; *title != '\0'; title++)
-        if (*title != '-' && (unsigned char)*title >= ' ')
-            fputc(*title, file);
+        if ((unsigned char)*title >= ' ' && !(*title == '-' && last == '-')) {
+            last = *title;
+            fputc(last, file);
+        }
 }
 
 int map_vtu(FILE *file, const char *title, const struct grid *grid, const double *z,

@@ -2,8 +2,10 @@
 #include "core/file/file.h"
 #include "core/nodal/map_vtu.h"
 #include "core/nodal/node_table.h"
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* Writes the path of a file of the folder into folder->name. */
 static void name_step(struct step_folder *folder, size_t number) {
@@ -72,8 +74,21 @@ int step_folder_put(struct step_folder *folder, const struct nodal_step *step, s
     return status;
 }
 
+/* Removes the steps that a longer earlier run left: it numbered its files in a row. */
+static int remove_left(struct step_folder *folder, struct error *err) {
+    for (size_t number = folder->count + 1;; number++) {
+        name_step(folder, number);
+        if (unlink(folder->name) != 0)
+            return errno == ENOENT ? 0
+                                   : error_set(err, ERROR_SYSTEM, "cannot remove %s: %s",
+                                               folder->name, strerror(errno));
+    }
+}
+
 int step_folder_close(struct step_folder *folder, int status, struct error *err) {
     if (folder->collection != NULL) {
+        int removed = remove_left(folder, status == 0 ? err : NULL);
+        status = status != 0 ? status : removed;
         fputs("  </Collection>\n</VTKFile>\n", folder->collection);
         name_collection(folder);
         status = file_close(folder->collection, folder->name, status, err);

@@ -16,8 +16,8 @@ struct step_folder {
     FILE *collection, *table;
     size_t count; /* steps so far */
 };
-/* Makes the folder if it is missing, and opens its files, which replace those of an earlier run.
- * ERROR_SYSTEM names what could not be made. */
+/* Makes the folder if it is missing, and opens its files, which replace those of an earlier run:
+ * when it is closed, also those of more steps. ERROR_SYSTEM names what could not be made. */
 int step_folder_open(struct step_folder *out, const char *path, const char *nodes,
                      struct error *err);
 int step_folder_put(struct step_folder *folder, const struct nodal_step *step, struct error *err);

@@ -13,8 +13,20 @@
 #include "core/surface/grid.h"
 #include "core/team.h"
 #include <complex.h>
+#include <math.h>
 
 struct transform;
+
+/* Returns |my| of a row of the half spectrum. */
+static inline size_t transform_row_mode(const struct grid *grid, size_t row) {
+    return row <= grid->ny / 2 ? row : grid->ny - row;
+}
+/* Returns the wave number |k| of a mode of the half spectrum; ly of a profile does not enter. */
+static inline double transform_wave_number(const struct grid *grid, size_t mx, size_t row) {
+    double qx = (double)mx / grid->lx;
+    double qy = row == 0 ? 0 : (double)transform_row_mode(grid, row) / grid->ly;
+    return 2 * M_PI * hypot(qx, qy);
+}
 
 /* Returns the least even number of 2, 3 and 5 alone that is n or more: transforms of so many points
  * are fast. */

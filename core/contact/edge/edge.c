@@ -3,8 +3,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double PI = 3.14159265358979323846;
-
 static const double SCALE_TOLERANCE = 1e-6; /* Newton's next step is about its square */
 enum { SCALE_STEPS = 40, ANGLE_STEPS = 40 };
 
@@ -122,7 +120,7 @@ double edge_lone(double force, double gap_left, double gap_right) {
     /* At a distance x = a cosh t from the middle of a contact of half-width a the gap is
      * (2 force/(pi E*)) (sinh(2t)/2 - t) (Johnson 1985, section 4.2); the two nodes are 2 steps
      * apart. */
-    double scale = PI / (2 * force);
+    double scale = M_PI / (2 * force);
     return 2 / (cosh(hertz_angle(scale * fmax(0, gap_left))) +
                 cosh(hertz_angle(scale * fmax(0, gap_right))));
 }
@@ -145,7 +143,7 @@ static double hertz_ratio(double y) {
 double edge_lone_axis(double force, double gap_left, double gap_right) {
     /* At a distance r a from the middle of a contact of radius a the gap is (3 force/(4 pi E* a))
      * ((r^2 - 2) acos(1/r) + sqrt(r^2 - 1)) (Johnson 1985, section 3.4). */
-    double scale = 4 * PI / (3 * force);
+    double scale = 4 * M_PI / (3 * force);
     return 2 / (hertz_ratio(scale * fmax(0, gap_left)) + hertz_ratio(scale * fmax(0, gap_right)));
 }
 
@@ -182,23 +180,23 @@ struct wave {
 
 /* Distance to the edge at which the pressure is p (F11.2). */
 static double wave_inside(const struct wave *wave, double p) {
-    double root = p * wave->length / (2 * PI), square = root * root;
+    double root = p * wave->length / (2 * M_PI), square = root * root;
     double sum = 1 + WAVE_LOAD, product = WAVE_LOAD - square;
     if (!(product > 0))
-        return wave->edge * wave->length / PI;
+        return wave->edge * wave->length / M_PI;
     double sine_squared = 2 * product / (sum + sqrt(sum * sum - 4 * product));
-    return (wave->edge - asin(sqrt(sine_squared))) * wave->length / PI;
+    return (wave->edge - asin(sqrt(sine_squared))) * wave->length / M_PI;
 }
 
 /* Gap at a distance outside of the edge: the continuation of the pressure there. */
 static double wave_gap(const struct wave *wave, double distance) {
-    double sine = sin(wave->edge + PI * distance / wave->length);
+    double sine = sin(wave->edge + M_PI * distance / wave->length);
     double root = sqrt(fmax(0, sine * sine - WAVE_LOAD));
     return 2 * (sine * root - WAVE_LOAD * log((sine + root) / sqrt(WAVE_LOAD)));
 }
 
 static double wave_outside(const struct wave *wave, double gap) {
-    double least = 0, most = wave->length / 2 * (1 - 2 / PI * wave->edge);
+    double least = 0, most = wave->length / 2 * (1 - 2 / M_PI * wave->edge);
     for (int a = 0; a < HALVINGS; a++) {
         double middle = 0.5 * (least + most);
         if (wave_gap(wave, middle) < gap)
@@ -222,14 +220,14 @@ struct tip {
 /* Return the squared pressure, and the gap to the power of 2/3, of an uncoated wave of the same
  * contact over what they would be if its edge were straight, at a distance inside or outside. */
 static double wave_bend_inside(const struct wave *wave, double distance) {
-    double by = PI * distance / wave->length, sine = sin(wave->edge - by);
+    double by = M_PI * distance / wave->length, sine = sin(wave->edge - by);
     double cosine = cos(wave->edge - by) / cos(wave->edge), edge = sin(wave->edge);
     return by > 1e-3 ? cosine * cosine * (edge * edge - sine * sine) / (by * sin(2 * wave->edge))
                      : 1;
 }
 
 static double wave_bend_outside(const struct wave *wave, double distance) {
-    double by = PI * distance / wave->length, sine = sin(wave->edge + by), edge = sin(wave->edge);
+    double by = M_PI * distance / wave->length, sine = sin(wave->edge + by), edge = sin(wave->edge);
     double root = sqrt(fmax(0, sine * sine - edge * edge));
     double gap = sine * root - edge * edge * log((sine + root) / edge);
     double straight = 4.0 / 3 * cos(wave->edge) * sqrt(sin(2 * wave->edge)) * pow(by, 1.5);
@@ -249,7 +247,7 @@ static void read_tip(const struct contact_state *state, double step, struct wave
     double square = state->p[near] * state->p[near];
     double fall = state->p[next] * state->p[next] - square;
     double edge = (double)near + (fall > 0 ? FINE_EDGE * square / fall : 0);
-    wave->edge = PI * edge * step / wave->length;
+    wave->edge = M_PI * edge * step / wave->length;
     double inside = fmax(0, edge - (double)to_unit), outside = edge + (double)to_unit;
     size_t in = (size_t)inside, beyond = (size_t)outside;
     double a = inside - (double)in, b = outside - (double)beyond, apart = (double)to_unit * step;
@@ -262,7 +260,7 @@ static void read_tip(const struct contact_state *state, double step, struct wave
 /* Solves the wave of amplitude `spacing`, on the exact block. */
 static int solve_tip(const struct block *exact, double spacing, struct wave *wave, struct tip *out,
                      struct error *err) {
-    const double length = wave->length * spacing, k = 2 * PI / length;
+    const double length = wave->length * spacing, k = 2 * M_PI / length;
     const struct grid grid = {FINE_COUNT, 1, length, length};
     struct contact_options options = CONTACT_DEFAULTS;
     struct compliance *compliance = NULL;
@@ -275,7 +273,7 @@ static int solve_tip(const struct block *exact, double spacing, struct wave *wav
     if (status == 0)
         status = contact_create(&contact, compliance, &options, err);
     for (size_t i = 0; status == 0 && i < FINE_COUNT; i++)
-        z[i] = spacing * cos(2 * PI * (double)i / FINE_COUNT);
+        z[i] = spacing * cos(2 * M_PI * (double)i / FINE_COUNT);
     if (status == 0)
         status = contact_begin(contact, z, err);
     if (status == 0)
@@ -426,14 +424,14 @@ static int press_wave(struct contact *contact, size_t count, const struct lesson
     const struct wave *wave = &lesson->wave;
     struct contact_state state;
     for (size_t i = 0; i < count; i++)
-        z[i] = lesson->spacing * cos(2 * PI * ((double)i - phase) / (double)count);
+        z[i] = lesson->spacing * cos(2 * M_PI * ((double)i - phase) / (double)count);
     int status = contact_begin(contact, z, err);
     if (status == 0)
         status = contact_press(contact, lesson->load, &state, err);
     if (status != 0)
         return status;
     for (size_t i = 1; i < count / 2; i++) {
-        double distance = wave->edge * wave->length / PI - ((double)i - phase) / lesson->steps;
+        double distance = wave->edge * wave->length / M_PI - ((double)i - phase) / lesson->steps;
         if (fabs(distance) > REACH)
             continue;
         if (state.p[i] > 0 && out->inside_count < PAIRS_MOST)
@@ -450,12 +448,12 @@ static int press_wave(struct contact *contact, size_t count, const struct lesson
  * law, which is 0 before. */
 static int lesson_make(struct lesson *out, const struct compliance *line, double steps,
                        double *stiffness, struct error *err) {
-    const double count = (double)line->grid.nx, softer = line->length[1] * PI / line->grid.lx;
+    const double count = (double)line->grid.nx, softer = line->length[1] * M_PI / line->grid.lx;
     struct block exact = line->block;
     *out = (struct lesson){.wave = {count / steps, asin(sqrt(WAVE_LOAD))},
                            .spacing = line->grid.lx / count * steps,
                            .steps = steps,
-                           .load = WAVE_LOAD * PI / (count / steps * softer),
+                           .load = WAVE_LOAD * M_PI / (count / steps * softer),
                            .softer = softer,
                            .coated = block_is_coated(&exact)};
     if (!out->coated) {
@@ -464,7 +462,7 @@ static int lesson_make(struct lesson *out, const struct compliance *line, double
     }
     exact.model = MODEL_HALFSPACE;
     exact.height = INFINITY;
-    out->softer = line->length[1] / block_compliance_exact(2 * PI / line->grid.lx, &exact);
+    out->softer = line->length[1] / block_compliance_exact(2 * M_PI / line->grid.lx, &exact);
     int status = solve_tip(&exact, out->spacing, &out->wave, &out->tip, err);
     if (status == 0 && !(*stiffness > 0))
         *stiffness = out->tip.pressure / (0.75 * out->tip.gap);

@@ -1,7 +1,6 @@
 #include "core/contact/edge/edge_find.h"
 #include <math.h>
 
-static const double PI = 3.14159265358979323846;
 static const double COSINE_LEAST = 0.1;
 /* Limits of the bends: squared pressure is p^2 = c^2 d (1 - bend d), and the gap's rise bends
  * likewise. */
@@ -177,7 +176,7 @@ static double lone_in_surface(const struct edge_crossing *x, const double *rise)
         edge_lone_axis(force / x->step, gap_of(rise[x->before]), gap_of(rise[x->outside]));
     double beside = edge_lone_axis(force / x->across, gap_of(rise[x->inside_left]),
                                    gap_of(rise[x->inside_right]));
-    return fmin(1, 0.5 * PI * along * beside);
+    return fmin(1, 0.5 * M_PI * along * beside);
 }
 
 /* Beside a narrow gap between two contacts the pressure rises more steeply than bends allow for.

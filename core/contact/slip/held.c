@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { STEPS_MOST = 1000, ARRAYS = 4 };
+enum { STEPS_MOST = 1000, STEPS_ASK = 4 /* steps between calls of stop */, ARRAYS = 4 };
 
 struct held {
     struct transfer transfer;
@@ -19,6 +19,8 @@ struct held {
     /* Fields of n values, owned: the tractions, their displacements less the mean of the set
      * (never 0 in it, 0 outside), the direction, and scratch. */
     double *t[FIELDS], *r[FIELDS], *d[FIELDS], *w[FIELDS];
+    int (*stop)(void *context); /* held_set_stop; may be NULL */
+    void *stop_context;
 };
 
 int held_create(struct held **out, const struct grid *grid, double poisson, struct error *err) {
@@ -58,6 +60,11 @@ void held_destroy(struct held **held) {
     *held = NULL;
 }
 
+void held_set_stop(struct held *held, int (*stop)(void *context), void *context) {
+    held->stop = stop;
+    held->stop_context = context;
+}
+
 double held_bytes(const struct grid *grid) {
     double fields = grid_is_profile(grid) ? ALONG_Y : FIELDS;
     return transfer_bytes(grid) + ARRAYS * fields * sizeof(double) * (double)grid_points(grid) +
@@ -79,13 +86,6 @@ static double centre(const struct held *held, const double *p, double *x) {
     for (size_t i = 0; i < held->n; i++)
         x[i] = p[i] > 0 ? x[i] - mean : 0;
     return mean;
-}
-
-static double dot(size_t n, const double *a, const double *b) {
-    double sum = 0;
-    for (size_t i = 0; i < n; i++)
-        sum += a[i] * b[i];
-    return sum;
 }
 
 /* Returns the largest |r|, and marks the set by values that are not 0. */
@@ -116,7 +116,7 @@ static double precondition(struct held *held, const double *p, const struct load
         else
             pyramid_transpose(&held->pyramid, held->r[f], held->w[f]);
         centre(held, p, held->w[f]);
-        energy += dot(held->n, held->w[f], held->r[f]);
+        energy += transfer_dot(held->n, held->w[f], held->r[f]);
     }
     return energy;
 }
@@ -132,7 +132,7 @@ static double direct(struct held *held, const struct load *load, double beta) {
     }
     transfer_apply(&held->transfer, in, out);
     for (size_t f = load->first; f < load->end; f++)
-        curvature += dot(held->n, held->d[f], held->w[f]);
+        curvature += transfer_dot(held->n, held->d[f], held->w[f]);
     return curvature;
 }
 
@@ -176,10 +176,14 @@ static int solve(struct held *held, const double *p, const struct load *load, do
         *displacement = along;
         for (size_t f = load->first; f < load->end; f++) {
             most = fmax(most, mark(held->n, p, held->r[f]));
-            *displacement += dot(held->n, held->t[f], held->r[f]) / (double)held->n;
+            *displacement += transfer_dot(held->n, held->t[f], held->r[f]) / (double)held->n;
         }
         if (most <= residual * fabs(along))
             return 0;
+        if (held->stop != NULL && step % STEPS_ASK == STEPS_ASK - 1 &&
+            held->stop(held->stop_context) != 0)
+            return error_set(err, ERROR_STOPPED, "stopped after %zu iterations of a stiffness",
+                             *iterations);
         double energy = precondition(held, p, load);
         double curvature = direct(held, load, last > 0 ? energy / last : 0);
         if (!(curvature > 0))

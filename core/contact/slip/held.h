@@ -23,6 +23,9 @@ struct held;
 int held_create(struct held **out, const struct grid *grid, double poisson, struct error *err);
 void held_destroy(struct held **held);
 double held_bytes(const struct grid *grid);
+/* Sets stop, which is called every few iterations. When it returns non-zero, held_measure fails
+ * with ERROR_STOPPED. NULL, the initial value, never stops. */
+void held_set_stop(struct held *held, int (*stop)(void *context), void *context);
 
 /* Of the nodes p[grid_points] > 0, for a load at this angle from the x axis, in radians; profiles
  * have one direction, and a ratio of 1. residual: the largest one, over the displacement; the error

@@ -280,13 +280,6 @@ static void precondition(struct slip_sets *sets, double *residual, double *out) 
 
 /* --- biconjugate gradients --- */
 
-static double dot(size_t n, const double *a, const double *b) {
-    double sum = 0;
-    for (size_t i = 0; i < n; i++)
-        sum += a[i] * b[i];
-    return sum;
-}
-
 /* to = from + step x. Returns the largest of them. */
 static double advance(size_t n, const double *from, double step, const double *x, double *to) {
     double most = 0;
@@ -322,19 +315,20 @@ size_t slip_sets_solve(struct slip_sets *sets, double *r, double enough, size_t 
     memcpy(shadow, r, n * sizeof *r);
     memset(change, 0, n * sizeof *change);
     for (; iteration < max_iterations && most > enough; iteration++) {
-        double energy = dot(n, shadow, r), beta = last != 0 ? energy / last * first / second : 0;
+        double energy = transfer_dot(n, shadow, r),
+               beta = last != 0 ? energy / last * first / second : 0;
         for (size_t i = 0; i < n; i++)
             d[i] = beta == 0 ? r[i] : r[i] + beta * (d[i] - second * dv[i]);
         precondition(sets, d, step);
         apply(sets, step, dv);
-        first = energy / dot(n, shadow, dv);
+        first = energy / transfer_dot(n, shadow, dv);
         if (!isfinite(first))
             break;
         advance(n, r, -first, dv, r);
         precondition(sets, r, rest);
         apply(sets, rest, rv);
-        double square = dot(n, rv, rv);
-        second = square > 0 ? dot(n, rv, r) / square : 0;
+        double square = transfer_dot(n, rv, rv);
+        second = square > 0 ? transfer_dot(n, rv, r) / square : 0;
         advance(n, change, first, step, change);
         advance(n, change, second, rest, change);
         most = advance(n, r, -second, rv, r);

@@ -1,8 +1,6 @@
 #include "core/contact/slip/transfer.h"
 #include <math.h>
 
-static const double PI = 3.14159265358979323846;
-
 int transfer_create(struct transfer *out, const struct grid *grid, double poisson,
                     struct error *err) {
     *out = (struct transfer){.grid = *grid, .poisson = poisson};
@@ -37,8 +35,8 @@ struct wave {
 
 static struct wave wave_at(const struct grid *grid, size_t mx, size_t row) {
     double my = row <= grid->ny / 2 ? (double)row : (double)row - (double)grid->ny;
-    double kx = 2 * PI * (double)mx / grid->lx;
-    double ky = row == 0 ? 0 : 2 * PI * my / grid->ly, k = hypot(kx, ky);
+    double kx = 2 * M_PI * (double)mx / grid->lx;
+    double ky = row == 0 ? 0 : 2 * M_PI * my / grid->ly, k = hypot(kx, ky);
     struct wave wave = {.k = k, .x = kx / k, .y = ky / k};
     wave.odd_x = 2 * mx == grid->nx ? 0 : wave.x;
     wave.odd_y = 2 * row == grid->ny ? 0 : wave.y;

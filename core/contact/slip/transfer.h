@@ -34,4 +34,12 @@ void transfer_apply(struct transfer *transfer, double *const in[FIELDS], double 
 void transfer_precondition(struct transfer *transfer, double *const in[FIELDS],
                            double *const out[FIELDS]);
 
+/* Returns the product of two fields, or vectors of fields, of n values. */
+static inline double transfer_dot(size_t n, const double *a, const double *b) {
+    double sum = 0;
+    for (size_t i = 0; i < n; i++)
+        sum += a[i] * b[i];
+    return sum;
+}
+
 #endif

@@ -19,7 +19,8 @@ void conjugate_gradient_run(struct conjugate_gradient *solver, double mean, doub
 /* Solves for q in the nodes where set > 0 (padded nodes; the pressures, or some of them), starting
  * from the q given, and returns -d(approach)/d(mean p) > 0, which is minus the derivative of the
  * mean gap. The largest residual is `enough` of that at most. The value is an energy, whose error
- * is the square of that of q. Keeps u. */
+ * is the square of that of q. Keeps u. Sets solver->stopped, and returns what was reached, where
+ * stop asks for it; the next call returns at once as long as that is set. */
 double conjugate_gradient_tangent(struct conjugate_gradient *solver, const double *set,
                                   double enough);
 

@@ -12,8 +12,6 @@ enum { LANES = CONJUGATE_GRADIENT_LANES };
 
 /* Padding nodes lie so deep that they never come into contact. */
 static const double FAR = 1e30;
-static const double PI = 3.14159265358979323846;
-
 static size_t padded(size_t n) {
     return (n + LANES - 1) / LANES * LANES;
 }
@@ -49,11 +47,9 @@ static int arrays_create(struct conjugate_gradient *solver, struct error *err) {
 static void fill_periodic_inverse(struct conjugate_gradient *solver) {
     const struct grid *grid = &solver->around;
     for (size_t mx = 0; mx <= grid->nx / 2; mx++)
-        for (size_t row = 0; row < grid->ny; row++) {
-            size_t my = row <= grid->ny / 2 ? row : grid->ny - row;
-            double qx = (double)mx / grid->lx, qy = my > 0 ? (double)my / grid->ly : 0;
-            solver->inverse[mx * grid->ny + row] = PI * hypot(qx, qy) * solver->largest;
-        }
+        for (size_t row = 0; row < grid->ny; row++)
+            solver->inverse[mx * grid->ny + row] =
+                transform_wave_number(grid, mx, row) / 2 * solver->largest;
 }
 
 /* Returns the mean over all waves of a symbol that has half of them. */

@@ -43,6 +43,7 @@ struct conjugate_gradient {
     double transforms;       /* Fourier transforms made so far, forward and inverse */
     int (*stop)(void *context); /* called every few iterations, non-zero stops; may be NULL */
     void *stop_context;
+    bool stopped; /* a tangent was stopped; the caller clears it */
 };
 
 /* Borrows the compliance. */

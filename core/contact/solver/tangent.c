@@ -106,7 +106,9 @@ double conjugate_gradient_tangent(struct conjugate_gradient *solver, const doubl
         pass.mean = sums.sum[RESIDUAL] / sums.sum[MEMBERS];
         mean += pass.mean;
         double most = pass_run(&solver->board, &pass, centre_block).most[0];
-        if (most <= enough * fabs(mean) || iteration == STEPS_MOST)
+        if (iteration % CONJUGATE_ASK == 0 && solver->stop != NULL && !solver->stopped)
+            solver->stopped = solver->stop(solver->stop_context) != 0;
+        if (most <= enough * fabs(mean) || iteration == STEPS_MOST || solver->stopped)
             return energy;
         conjugate_step_direct(solver, &memory);
         pass.step = conjugate_step_length(solver);

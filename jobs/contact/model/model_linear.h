@@ -17,6 +17,13 @@ int linear_press(struct contact_solver *solver, double pressure, struct contact_
                  struct error *err);
 double linear_full_pressure(const struct contact_solver *solver);
 
+/* Initialises the members of a struct contact_model that are the same in all linear ones. */
+#define LINEAR_MODEL                                                                               \
+    .yields = true, .coatings = true, .counter_faces = true, .bytes = linear_bytes,                \
+    .seconds = linear_seconds, .create = linear_create, .destroy = linear_destroy,                 \
+    .set_team = linear_set_team, .begin = linear_begin, .press = linear_press,                     \
+    .full_pressure = linear_full_pressure
+
 /* Returns whether a model is linear and presses a half-space or an exact layer. */
 bool linear_is_exact(const struct contact_model *model);
 

@@ -160,6 +160,7 @@ static int measure(struct quantity_state *state, const struct measure_context *c
     if (state != NULL && state->held != NULL) {
         static const double RESIDUAL = 1e-3; /* its square is the error */
         struct held_stiffness held;
+        held_set_stop(state->held, context->stop, context->stop_context);
         int status =
             held_measure(state->held, contact->p, one_case->slip_angle, RESIDUAL, &held, err);
         if (status != 0)

@@ -18,7 +18,8 @@ static const struct parameter ROWS[] = {
      .target_refusal = "a target answers contact that is elastic",
      .example_json = "true",
      .help = "with a hardness: the loads fall again, from the highest through all below it; areas "
-             "and gaps on that path, and the approach that is left without a load"},
+             "and gaps on that path, and the approach that is left without a load; under a coating "
+             "of more than about 3 times the modulus the study may fail there"},
 };
 const struct parameter_table UNLOAD_PARAMETERS = {"contact", ROWS, sizeof ROWS / sizeof *ROWS};
 

@@ -552,7 +552,7 @@ int map_press_loads(struct map_press *press, const double *z, size_t loads, cons
 }
 
 int map_press_step(const struct map_press *press, const double *z, double load, double modulus,
-                   struct contact_step *out, struct error *err) {
+                   const char *length, struct contact_step *out, struct error *err) {
     const struct contact_step_order order = {.model = model_of(press),
                                              .solver = press->solver,
                                              .grid = press->map,
@@ -561,6 +561,7 @@ int map_press_step(const struct map_press *press, const double *z, double load, 
                                              .load = load,
                                              .unit = modulus > 0 ? 1 / modulus : press->slope,
                                              .unit_name = modulus > 0 ? "Pa" : "E* h'",
-                                             .lengths = "the map's unit"};
+                                             .lengths =
+                                                 *length != '\0' ? length : "the map's unit"};
     return contact_step_fill(out, &order, &press->state, err);
 }

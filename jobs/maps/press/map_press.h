@@ -157,9 +157,9 @@ int map_press_loads(struct map_press *press, const double *z, size_t loads, cons
 
 /* What the last load left at the nodes of the map as it was measured, the first of its mirror
  * images. z: heights as they are pressed; load: as it was given; modulus: E* in Pa, pressures are
- * then in Pa, else over E* h'; 0: not known. *out, {0} at first, is cleared by the caller in any
- * case. */
+ * then in Pa, else over E* h'; 0: not known. length: unit of the map's lengths, "" where it has
+ * none. *out, {0} at first, is cleared by the caller in any case. */
 int map_press_step(const struct map_press *press, const double *z, double load, double modulus,
-                   struct contact_step *out, struct error *err);
+                   const char *length, struct contact_step *out, struct error *err);
 
 #endif

@@ -500,6 +500,18 @@ static void a_measured_map_is_pressed_in_units(void **state) {
     assert_true(contains("shell.err", "--pressure needs the stiffness of the block"));
 }
 
+/* A map too small to have an inside is pressed without a warning of its seam; one with an inside is
+ * not. */
+static void small_maps_have_no_seam(void **state) {
+    (void)state;
+    spit("few.csv", "1,2\n2,1\n");
+    assert_int_equal(run_shell("$RUGO press few.csv --boundary periodic --loads 0.1"), 0);
+    assert_false(contains("shell.err", "its seam is rougher"));
+    spit("tilt.csv", "1,2,3,4,5,6,7,8,9,10,11,12\n1,2,3,4,5,6,7,8,9,10,11,12\n");
+    assert_int_equal(run_shell("$RUGO press tilt.csv --boundary periodic --loads 0.1"), 0);
+    assert_true(contains("shell.err", "its seam is rougher than the roughest place inside"));
+}
+
 /* Threads that share a large map give its digits, whatever their number. */
 static void threads_give_the_same_digits(void **state) {
     (void)state;
@@ -626,6 +638,7 @@ int main(void) {
         cmocka_unit_test(groups_are_printed),
         cmocka_unit_test(planes_have_units),
         cmocka_unit_test(a_measured_map_is_pressed_in_units),
+        cmocka_unit_test(small_maps_have_no_seam),
         cmocka_unit_test(threads_give_the_same_digits),
         cmocka_unit_test(steps_and_ranges_are_written),
         cmocka_unit_test(wrong_steps_and_ranges_are_refused),

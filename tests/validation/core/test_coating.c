@@ -315,7 +315,8 @@ static double padding_error(size_t n, bool profile, const struct block *block) {
     struct grid large = {8 * n, profile ? 1 : 8 * n, wide, wide};
     struct compliance *one = open_compliance(small, block), *other = open_compliance(large, block);
     /* Displacements of profiles are relative to a point at the side's length. */
-    double shift = profile ? 2 / M_PI * log(8) : 0, unit = fabs(displacement(one, 0, 0));
+    double shift = profile ? displacement(other, n, 0) : 0;
+    double unit = fabs(displacement(other, 0, 0));
     for (size_t i = 0; i < n; i += n / 4)
         for (size_t j = 0; j < (profile ? 1 : n); j += n / 2)
             most = fmax(most, fabs(displacement(one, i, j) + shift - displacement(other, i, j)));

@@ -193,6 +193,11 @@ static void isotropic_rough_surface(void **state) {
 
 /* --- ends --- */
 
+static int stop_at_once(void *context) {
+    (void)context;
+    return 1;
+}
+
 static void ends(void **state) {
     (void)state;
     struct error err = {0};
@@ -218,6 +223,8 @@ static void ends(void **state) {
     assert_int_equal(held_measure(held, p, 0, NAN, &out, &err), ERROR_INPUT);
     assert_int_equal(held_measure(held, p, 0, 1e-300, &out, &err), ERROR_NUMERIC);
     assert_non_null(strstr(err.text, "15 nodes"));
+    held_set_stop(held, stop_at_once, NULL);
+    assert_int_equal(held_measure(held, p, 0, 1e-300, &out, &err), ERROR_STOPPED);
     held_destroy(&held);
 }
 

@@ -75,7 +75,8 @@ static const struct option_row OPTIONS[] = {
     {"effective-modulus", 0, OPTION_TEXT, 0, 0, AT(words.effective_modulus), "E*", NULL,
      "in place of it: E* = E/(1 - nu^2), or that of two elastic bodies"},
     {"hardness", 0, OPTION_TEXT, 0, 0, AT(words.hardness), "H", NULL,
-     "pressure at which the block yields, such as 2GPa; without it, it is elastic"},
+     "pressure at which the block yields, such as 2GPa; without it, it is elastic; loads also fall "
+     "again, where a coating of more than about 3 times the modulus may end it"},
     {"friction", 0, OPTION_NUMBER, 1e-3, 10, AT(words.friction), "MU", NULL,
      "coefficient of friction: what sticks, and how far the face gives, as a tangential load rises "
      "under the highest load (loads below it are added); the model full drags the flat along x "
@@ -198,16 +199,18 @@ static const char *boundary_by(const struct press_order *order) {
     return order->boundary == PRESS_MIRRORED ? "model" : order->record.boundary_by;
 }
 
-/* A map is taken as periodic where the option says so; this warns of the jumps at its seam. */
-static void warn_of_seam(const struct press_order *order, const char *path,
+/* A map is taken as periodic where the option says so; this warns of the jumps at its seam. Sides
+ * of fewer than SEAM_POINTS points have no inside to compare them with. */
+static void warn_of_seam(const struct press_order *order, const char *path, const struct grid *grid,
                          const struct preparation_record *record) {
-    const struct seam *seam = &record->seam;
-    if (order->options->boundary == ASKED_PERIODIC && seam_is_rough(seam))
+    const struct seam seam = {grid->nx < SEAM_POINTS ? 0 : record->seam.x,
+                              grid->ny < SEAM_POINTS ? 0 : record->seam.y};
+    if (order->options->boundary == ASKED_PERIODIC && seam_is_rough(&seam))
         fprintf(
             stderr,
             "rugo press: warning: %s: contact takes the map as periodic, and its seam is rougher "
             "than the roughest place inside: %.3g times across x, %.3g times across y\n",
-            path, seam->x, seam->y);
+            path, seam.x, seam.y);
 }
 
 /* Gives the blocks the coating, whose thickness is in the map's lengths. */
@@ -235,7 +238,7 @@ static int read_whole(struct height_map *map, struct preparation_record *record,
     if (status == 0 && height_map_check_whole(map, &holes) != 0)
         return error_set(err, ERROR_INPUT, "%s: %s; --fill fills them", path, holes.text);
     if (status == 0)
-        warn_of_seam(order, path, record);
+        warn_of_seam(order, path, &map->grid, record);
     return status;
 }
 

@@ -98,8 +98,8 @@ int press_files_write(struct press_files *files, const struct map_press *press, 
     const struct nodal_step *step = &files->step.step;
     if (!press_paths_ask(files->paths))
         return 0;
-    int status =
-        map_press_step(press, files->z, loads->value[load], loads->modulus, &files->step, err);
+    int status = map_press_step(press, files->z, loads->value[load], loads->modulus,
+                                files->units.length, &files->step, err);
     if (status == 0)
         status = step_folder_put(&files->folder, step, err);
     if (status != 0 || files->mesh.path == NULL)

@@ -1,6 +1,7 @@
 /* Protects contact under a hardness: what is refused; digits without a hardness where no node
  * reaches it; faces so soft that their heights alone decide; conditions of every solution in all
- * models; unloading, which is elastic, and loads that rise again; both stiffnesses. */
+ * models; unloading, which is elastic but under stiff coatings, and loads that rise again; both
+ * stiffnesses. */
 #include "tests/support/check.h"
 
 #include "core/contact/pressures.h"
@@ -238,6 +239,38 @@ static void loads_fall_and_rise(void **state) {
     }
 }
 
+/* Under a stiff coating the lowered face may bear more than the hardness as the load falls: that is
+ * refused, and the solver goes on. Under a soft one it is elastic. */
+static void stiff_coatings_may_yield_again(void **state) {
+    (void)state;
+    static const double MODULI[] = {2, 20};
+    enum { LOADS = 8 };
+    for (size_t m = 0; m < 2; m++) {
+        struct block block = DEEP;
+        struct scene scene;
+        struct error err = {0};
+        size_t refused = 0;
+        block.coating = (struct coating){0.03, MODULI[m], 0.3};
+        const double hardness = hard_scene(&scene, (struct grid){40, 40, 1, 1}, block, 0.3, 1);
+        for (size_t l = 1; l <= LOADS; l++) {
+            const double load = 0.1 * (double)l * hardness;
+            scene_press(&scene, load);
+            check_hard_contact(&scene, hardness, true);
+            int status = contact_press(scene.contact, 0.95 * load, &scene.state, &err);
+            if (status != 0) {
+                refused++;
+                assert_int_equal(status, ERROR_NUMERIC);
+                assert_non_null(strstr(err.text, "times the hardness, "));
+                assert_non_null(strstr(err.text, "under a coating of 20 times the modulus"));
+            } else
+                assert_true(largest(1600, scene.state.p) <= 1.001 * hardness);
+        }
+        printf("E1/E2 %g: %zu of %d falling loads refused\n", MODULI[m], refused, LOADS);
+        assert_true(m == 0 ? refused == 0 : refused > 0);
+        scene_close(&scene);
+    }
+}
+
 /* The depth of a node never falls as the load rises, so that a face flattened by one load leads to
  * the same next one. */
 static void depths_rise(void **state) {
@@ -366,6 +399,7 @@ int main(void) {
         cmocka_unit_test(guesses_that_yield),
         cmocka_unit_test(highest_nodes_are_equally_high),
         cmocka_unit_test(loads_fall_and_rise),
+        cmocka_unit_test(stiff_coatings_may_yield_again),
         cmocka_unit_test(depths_rise),
         cmocka_unit_test(stiffnesses_are_differences),
         cmocka_unit_test(areas_beside_yielded_nodes),

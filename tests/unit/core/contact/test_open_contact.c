@@ -1,6 +1,7 @@
 /* Protects contact in free space: displacements against potentials in closed form, and solutions
  * against dense systems of equations (with the same kernel, and with Love's uniform pressures on
- * rectangles). It tests flat punches, the sides of the map, and refusals, too. */
+ * rectangles). It tests coatings on long maps and profiles, flat punches, the sides of the map, and
+ * refusals, too. */
 #include "tests/support/check.h"
 
 #include "core/contact/free_space.h"
@@ -8,6 +9,7 @@
 #include "tests/support/contact_scene.h"
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_sf_bessel.h>
+#include <time.h>
 
 static const double EULER = 0.57721566490153286061;
 
@@ -106,6 +108,102 @@ static void bell_of_a_profile_sinks_as_its_potential(void **state) {
     check_close(u[200], -2 * load / M_PI * (log(far / 100.5) - pow(s / far, 2) / 2), 1e-4);
     compliance_destroy(&compliance);
     free(p);
+    free(u);
+}
+
+/* --- coatings --- */
+
+static struct block coated(double thickness, double modulus) {
+    struct block block = DEEP;
+    block.coating = (struct coating){thickness, modulus, DEEP.poisson};
+    return block;
+}
+
+/* Fills u with the displacements E* on a grid, whose first rows bear these pressures. */
+static void displace_coated(struct grid grid, const struct block *block, size_t n, const double *p,
+                            double *u) {
+    struct compliance *compliance = NULL;
+    struct error err = {0};
+    double *all = zeros(grid_points(&grid)), *moved = zeros(grid_points(&grid));
+    memcpy(all, p, n * sizeof *p);
+    if (compliance_create_open(&compliance, &grid, block, &err) != 0)
+        fail_msg("%s", err.text);
+    displace(compliance, all, moved);
+    memcpy(u, moved, n * sizeof *u);
+    compliance_destroy(&compliance);
+    free(all);
+    free(moved);
+}
+
+/* Adds a bell of pressure that the grid resolves. */
+static void add_bell(const struct grid *grid, double x, double y, double *p) {
+    for (size_t i = 0; i < grid_points(grid); i++) {
+        const size_t column = i % grid->nx, row = i / grid->nx;
+        double across = (double)column - x, along = (double)row - y;
+        p[i] += exp(-(across * across + along * along) / (2 * 2.2 * 2.2));
+    }
+}
+
+/* A long narrow map has displacements of its own rows on a square one, which is padded far more. */
+static void narrow_coated_maps_are_rows_of_wide_ones(void **state) {
+    (void)state;
+    enum { LONG = 512, ROWS = 32, NODES = LONG * ROWS };
+    static const double THICKNESS[] = {0.5, 5, 300}, MODULUS[] = {5, 0.2, 3};
+    const struct grid strip = {LONG, ROWS, LONG, ROWS}, square = {LONG, LONG, LONG, LONG};
+    double *p = zeros(NODES), *narrow = zeros(NODES), *wide = zeros(NODES);
+    add_bell(&strip, 20, 15, p);
+    add_bell(&strip, 490, 17, p);
+    for (size_t b = 0; b < sizeof MODULUS / sizeof *MODULUS; b++) {
+        const struct block block = coated(THICKNESS[b], MODULUS[b]);
+        displace_coated(strip, &block, NODES, p, narrow);
+        displace_coated(square, &block, NODES, p, wide);
+        double most = 0, deepest = largest(NODES, wide);
+        for (size_t i = 0; i < NODES; i++)
+            most = fmax(most, fabs(narrow[i] - wide[i]));
+        printf("t %g, E1/E2 %g: %.1e of %g\n", THICKNESS[b], MODULUS[b], most, deepest);
+        assert_true(most <= 1e-7 * deepest);
+    }
+    free(p);
+    free(narrow);
+    free(wide);
+}
+
+/* The cost of a coating grows with the points and the logarithm of the sides' ratio: with the
+ * square of the ratio this would take minutes. */
+static void long_coated_maps_are_cheap(void **state) {
+    (void)state;
+    const struct block block = coated(2, 5);
+    const struct grid grid = {4096, 8, 4096, 8};
+    struct compliance *compliance = NULL;
+    clock_t begun = clock();
+    assert_int_equal(compliance_create_open(&compliance, &grid, &block, NULL), 0);
+    double seconds = (double)(clock() - begun) / CLOCKS_PER_SEC;
+    printf("4096 x 8 points with a coating: %.2f s of CPU time\n", seconds);
+    assert_true(seconds < 20);
+    compliance_destroy(&compliance);
+}
+
+/* Displacements of a coated profile are relative to the distance lx, too: under a coating that is
+ * far thicker they are those of a half-space of its material, and without a difference in modulus
+ * those without a coating. */
+static void coated_profiles_have_the_same_reference(void **state) {
+    (void)state;
+    static const double MODULI[] = {0.1, 1, 10};
+    enum { NODES = 200 };
+    const struct grid grid = {NODES, 1, 50, 1};
+    double *p = zeros(NODES), *bare = zeros(NODES), *u = zeros(NODES), most = 0;
+    add_bell(&grid, 40, 0, p);
+    displace_coated(grid, &DEEP, NODES, p, bare);
+    for (size_t m = 0; m < sizeof MODULI / sizeof *MODULI; m++) {
+        const struct block block = coated(1e4 * grid.lx, MODULI[m]);
+        displace_coated(grid, &block, NODES, p, u);
+        for (size_t i = 0; i < NODES; i++)
+            most = fmax(most, fabs(MODULI[m] * u[i] - bare[i]));
+    }
+    printf("reference: %.1e of %g\n", most, bare[40]);
+    assert_true(most <= 1e-7 * bare[40]);
+    free(p);
+    free(bare);
     free(u);
 }
 
@@ -347,6 +445,9 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bell_sinks_as_its_potential),
         cmocka_unit_test(bell_of_a_profile_sinks_as_its_potential),
+        cmocka_unit_test(narrow_coated_maps_are_rows_of_wide_ones),
+        cmocka_unit_test(long_coated_maps_are_cheap),
+        cmocka_unit_test(coated_profiles_have_the_same_reference),
         cmocka_unit_test(solutions_are_those_of_dense_equations),
         cmocka_unit_test(flat_map_is_a_punch),
         cmocka_unit_test(sides_do_not_meet),

@@ -36,10 +36,10 @@ static unsigned char *array_of(const char *text, const char *name, size_t *size)
 static char *written(const struct grid *grid, const double *z, const struct map_field *field) {
     struct memory_file memory;
     assert_true(memory_file_open(&memory));
-    assert_int_equal(map_vtu(memory.file, "a--map", grid, z, 1, field, NULL), 0);
+    assert_int_equal(map_vtu(memory.file, "a--map at 1e-05 --", grid, z, 1, field, NULL), 0);
     char *text = memory_file_close(&memory, NULL);
     assert_non_null(text);
-    assert_non_null(strstr(text, "<!-- amap -->"));
+    assert_non_null(strstr(text, "<!-- a-map at 1e-05 - -->"));
     return text;
 }
 

@@ -24,12 +24,12 @@ static struct nodal_step step_of(double load, bool displaced) {
                                .u = displaced ? U : NULL};
 }
 
-static void write_steps(const char *folder, const char *nodes, bool displaced) {
+static void write_steps(const char *folder, const char *nodes, size_t count, bool displaced) {
     const double loads[] = {0.1, 0.25};
     struct step_folder files = {0};
     struct error err = {0};
     int status = step_folder_open(&files, folder, nodes, &err);
-    for (size_t k = 0; k < 2 && status == 0; k++) {
+    for (size_t k = 0; k < count && status == 0; k++) {
         struct nodal_step step = step_of(loads[k], displaced);
         status = step_folder_put(&files, &step, &err);
     }
@@ -67,7 +67,7 @@ static void check_table(const char *text, size_t displacements) {
 static void steps_and_nodes_come_back(void **state) {
     (void)state;
     for (int again = 0; again < 2; again++) { /* the second run replaces the first */
-        write_steps("steps", "nodes.csv", false);
+        write_steps("steps", "nodes.csv", 2, false);
         char *text = slurp("steps/steps.pvd");
         assert_non_null(strstr(text, "timestep=\"0.1\" group=\"\" part=\"0\" file=\"step-1.vtu\""));
         assert_non_null(
@@ -80,11 +80,23 @@ static void steps_and_nodes_come_back(void **state) {
         check_table(text, 0);
         free(text);
     }
-    write_steps(NULL, "moved.csv", true);
+    write_steps(NULL, "moved.csv", 2, true);
     char *text = slurp("moved.csv");
     assert_non_null(strstr(text, "status,u_x,u_y,u_z\n"));
     check_table(text, 3);
     free(text);
+}
+
+/* A run with fewer steps leaves none of a longer one, and nothing else is touched. */
+static void a_shorter_run_replaces_a_longer_one(void **state) {
+    (void)state;
+    write_steps("fewer", NULL, 2, false);
+    spit("fewer/step-2.vtu.kept", "somebody's own");
+    write_steps("fewer", NULL, 1, false);
+    assert_int_equal(access("fewer/step-1.vtu", F_OK), 0);
+    assert_int_not_equal(access("fewer/step-2.vtu", F_OK), 0);
+    assert_int_equal(access("fewer/step-2.vtu.kept", F_OK), 0);
+    assert_false(contains("fewer/steps.pvd", "step-2"));
 }
 
 /* A failure closes all files, and names what it is about. */
@@ -108,6 +120,7 @@ static void what_cannot_be_written_is_told(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(steps_and_nodes_come_back),
+        cmocka_unit_test(a_shorter_run_replaces_a_longer_one),
         cmocka_unit_test(what_cannot_be_written_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -105,10 +105,11 @@ static void compare_with_study(const char *kinematics, const char *weighting,
     for (size_t l = 0; l < 2; l++) {
         struct press_row row;
         if (map_press_load(&press, one_case.loads[l] * slope, &row, &err) != 0 ||
-            map_press_step(&press, z, one_case.loads[l], 0, &step, &err) != 0)
+            map_press_step(&press, z, one_case.loads[l], 0, "m", &step, &err) != 0)
             fail_msg("%s", err.text);
         const size_t bytes = points * sizeof(double);
         assert_non_null(step.values);
+        assert_non_null(strstr(step.title, "lengths in m; "));
         assert_memory_equal(step.step.p, found.p + l * points, bytes);
         assert_memory_equal(step.step.gap, found.gap + l * points, bytes);
         assert_true(row.value[MEASURE_NODES] > 0 && row.value[MEASURE_NODES] < 1);
