@@ -172,7 +172,7 @@ struct rugo_map {
 };
 /* Reads NumPy's npy, csv (a grid row a line) or xyz (x y z lines), by the ending of the name. dx:
  * the spacing of points where the file has none (0: 1). INPUT names the line at fault, or the first
- * hole (NaN); SYSTEM. */
+ * hole (NaN), which rugo_open_map_read takes; SYSTEM. */
 RUGO_API int rugo_map_read(struct rugo_map *out, const char *path, double dx,
                            struct rugo_error *err);
 /* Frees the heights; NULL and {0} are accepted. */
@@ -224,6 +224,9 @@ RUGO_API void rugo_summits_clear(struct rugo_summits *summits);
 
 /* RUGO_MEAN, RUGO_PLANE, RUGO_QUADRATIC. */
 enum rugo_trend { RUGO_TRENDS(RUGO_ENTRY) };
+/* As rugo_map_read, with holes, which stay NaN in z. */
+RUGO_API int rugo_open_map_read(struct rugo_map *out, const char *path, double dx,
+                                struct rugo_error *err);
 /* Subtracts the trend of least squares from z in place. INPUT, z unchanged, where there are too few
  * heights. */
 RUGO_API int rugo_detrend(const struct rugo_grid *grid, double *z, enum rugo_trend trend,

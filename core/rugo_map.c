@@ -14,7 +14,8 @@ static int format_of(const char *path, enum height_map_format *format, struct er
                : error_set(err, ERROR_INPUT, "the name does not end in .npy, .csv or .xyz");
 }
 
-static int read_map(struct height_map *map, const char *path, double dx, struct error *err) {
+static int read_map(struct height_map *map, const char *path, double dx, bool holes,
+                    struct error *err) {
     enum height_map_format format;
     char *text = NULL;
     size_t size = 0;
@@ -26,7 +27,7 @@ static int read_map(struct height_map *map, const char *path, double dx, struct 
         return status == ERROR_MEMORY ? status : ERROR_SYSTEM;
     status = height_map_parse(map, format, text, size, dx, err);
     free(text);
-    if (status == 0)
+    if (status == 0 && !holes)
         status = height_map_check_whole(map, err);
     if (status == 0)
         return 0;
@@ -34,13 +35,22 @@ static int read_map(struct height_map *map, const char *path, double dx, struct 
     return error_context(err, "%s", path);
 }
 
-int rugo_map_read(struct rugo_map *out, const char *path, double dx, struct rugo_error *err) {
+static int give_map(struct rugo_map *out, const char *path, double dx, bool holes,
+                    struct rugo_error *err) {
     struct error why = {0};
     struct height_map map = {0};
-    int status = read_map(&map, path, dx, &why);
+    int status = read_map(&map, path, dx, holes, &why);
     if (status == 0)
         *out = (struct rugo_map){{map.grid.nx, map.grid.ny, map.grid.lx, map.grid.ly}, map.z};
     return error_give(status, &why, err);
+}
+
+int rugo_map_read(struct rugo_map *out, const char *path, double dx, struct rugo_error *err) {
+    return give_map(out, path, dx, false, err);
+}
+
+int rugo_open_map_read(struct rugo_map *out, const char *path, double dx, struct rugo_error *err) {
+    return give_map(out, path, dx, true, err);
 }
 
 void rugo_map_clear(struct rugo_map *map) {

@@ -48,10 +48,10 @@ struct lease {
     bool give_back;   /* a running one is to be released while it runs */
     int64_t begun_ms; /* when a thread took it */
     int64_t ended_ms;
-    struct job_end end; /* of an ended one; owned */
-    size_t bytes;       /* of its result, as sent */
-    atomic_bool lost;
-    _Atomic double done; /* realisations, with a part of one */
+    struct job_end end;           /* of an ended one; owned */
+    size_t bytes;                 /* of its result, as sent */
+    atomic_bool lost, given_back; /* lost, too, what was given back */
+    _Atomic double done;          /* realisations, with a part of one */
     struct lease *next;
 };
 
@@ -114,6 +114,10 @@ void lease_progress(struct lease *lease, double done) {
 
 bool lease_is_lost(const struct lease *lease) {
     return atomic_load(&lease->lost);
+}
+
+bool lease_is_given_back(const struct lease *lease) {
+    return atomic_load(&lease->given_back);
 }
 
 /* Returns the time between two heartbeats. */
@@ -292,6 +296,8 @@ static void settle_beat(struct dispatcher *dispatcher, struct lease *lease,
     if (!beats(lease))
         return;
     int64_t interval = lease_interval_ms(dispatcher, lease);
+    if (released && report->status == 0)
+        atomic_store(&lease->given_back, true);
     if (report->status == ERROR_STATE || (released && report->status == 0))
         lose(dispatcher, lease);
     else
@@ -411,6 +417,7 @@ static void stock_add(struct dispatcher *dispatcher, struct claimed_job *jobs, s
         lease->state = LEASE_STOCK;
         lease->due_ms = clock_ms() + lease_interval_ms(dispatcher, lease);
         atomic_init(&lease->lost, false);
+        atomic_init(&lease->given_back, false);
         atomic_init(&lease->done, 0);
         *last = lease;
         last = &lease->next;

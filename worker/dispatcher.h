@@ -69,6 +69,8 @@ void lease_progress(struct lease *lease, double done);
 /* Returns whether the result is not wanted: the lease is lost or given back, or the study
  * cancelled. */
 bool lease_is_lost(const struct lease *lease);
+/* Returns whether it is lost because it was given back, so that the job waits in the queue. */
+bool lease_is_given_back(const struct lease *lease);
 
 /* Hands in a job: takes the lease, which it nulls, and the result, which it empties, and sends them
  * soon. Waits while much is to be sent. */

@@ -206,9 +206,11 @@ static void job_work(struct worker_thread *thread, struct lease *lease) {
     atomic_fetch_sub(&thread->pool->computing, 1);
     if (status != 0)
         end.verb = status == ERROR_STOPPED ? REPORT_RELEASE : REPORT_FAIL;
-    if (lease_is_lost(lease))
+    if (lease_is_given_back(lease))
+        thread_log(thread, LEVEL_INFO, job, "given back; it runs again when a worker takes it");
+    else if (lease_is_lost(lease))
         thread_log(thread, LEVEL_WARNING, job,
-                   "dropped: the lease is lost or given back, or the study cancelled");
+                   "dropped: the lease is lost, or the study cancelled");
     else
         job_log(thread, job, &end);
     bool whole = status == 0 && end.result.count == job->count;

@@ -341,6 +341,8 @@ static const struct shown_name NAMES[] = {
     {"bgt_light_load", "BGT, light load", NULL},
     {"gw_mccool", "GW (McCool)", NULL},
     {"kappa", "slope at light load", "slope at light load kappa"},
+    {"kappa.theory", "Persson", NULL},
+    {"erf_kappa.theory", "Persson", NULL},
     {"erf_kappa", "slope of the error function", "slope of the error function kappa"},
     {"eps_h", "error of the heights", "error of the heights eps_h"},
     {"eps_s", "error of the spectrum", "error of the spectrum eps_s"},

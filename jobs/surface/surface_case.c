@@ -776,5 +776,7 @@ void surface_case_estimate(const struct surface_case *surface, struct study_cost
     out->wavelength_ratio = surface->ratio_solved ? surface->wavelength_ratio : 0;
     out->hurst = surface->hurst_solved ? surface->spectrum.hurst : 0;
     out->skewness = known ? heights.skewness : 0;
-    out->kurtosis = known ? heights.kurtosis : 0;
+    out->kurtosis = known                            ? heights.kurtosis
+                    : surface_case_gaussian(surface) ? KURTOSIS_GAUSSIAN
+                                                     : 0;
 }

@@ -47,11 +47,14 @@ struct study_cost {
     double law_outside, law_misfit;
     double fine_height; /* of blocks of finite elements, in lambda_s, where it is given; else 0 */
     double tolerance;   /* of solutions of contact; else 0 */
-    /* Of surfaces: what was solved for nayak_alpha, and what heights that are not Gaussian have;
-     * else 0. */
+    /* Of surfaces: what was solved for nayak_alpha, and the moments of heights, where they are
+     * known; else 0. */
     double wavelength_ratio, hurst, skewness, kurtosis;
     struct study_kept kept;
 };
+
+/* The kurtosis of heights that need no word. */
+#define KURTOSIS_GAUSSIAN 3.0
 
 struct study_case;
 /* What the reader must know of a kind of study. */

@@ -307,17 +307,19 @@ static int fill(struct study *study, const cJSON *document, const struct study_r
     int status = common_read(study, document, reading->kinds, faults, err);
     if (status != 0)
         return status;
-    if (study->kind != NULL) {
-        check_names(study->kind, document, "", faults);
-        check_parameters(study->kind, document, faults);
-    }
-    if (faults->count != 0 || study->kind == NULL)
+    if (study->kind == NULL)
+        return faulty(faults, err);
+    /* What all studies have, such as the name, bears on no case, which are checked all the same. */
+    const size_t common = faults->count;
+    check_names(study->kind, document, "", faults);
+    check_parameters(study->kind, document, faults);
+    if (faults->count != common)
         return faulty(faults, err);
     study->source = json_print(document);
     if (study->source == NULL)
         return error_memory(err, strlen(study->kind->name), "a study");
     status = sweep_open(study, document, faults, err);
-    if (status == 0 && faults->count == 0)
+    if (status == 0 && faults->count == common)
         status = check_cases(study, document, reading, faults, err);
     if (status == 0 && faults->count != 0)
         status = faulty(faults, err);

@@ -51,18 +51,19 @@ static void print_law(struct text_table *table, const struct study_cost *cost) {
 /* Columns of what only some studies have. */
 static const struct own_column {
     const char *heading;
-    size_t at; /* of its number in study_cost, 0 where a case has none */
+    size_t at;    /* of its number in study_cost, 0 where a case has none */
+    double usual; /* needs no column either; 0: none */
     const char *legend;
 } OWN_COLUMNS[] = {
-    {"fine zone", offsetof(struct study_cost, fine_height),
+    {"fine zone", offsetof(struct study_cost, fine_height), 0,
      "fine zone: depth in lambda_s in which columns of elements are as wide as those of the "
      "surface"},
-    {"solver", offsetof(struct study_cost, tolerance),
+    {"solver", offsetof(struct study_cost, tolerance), 0,
      "solver: tolerance of contact, the largest violation over the largest displacement"},
-    {"wavelength_ratio", offsetof(struct study_cost, wavelength_ratio), NULL},
-    {"hurst", offsetof(struct study_cost, hurst), NULL},
-    {"skewness", offsetof(struct study_cost, skewness), NULL},
-    {"kurtosis", offsetof(struct study_cost, kurtosis), NULL},
+    {"wavelength_ratio", offsetof(struct study_cost, wavelength_ratio), 0, NULL},
+    {"hurst", offsetof(struct study_cost, hurst), 0, NULL},
+    {"skewness", offsetof(struct study_cost, skewness), 0, NULL},
+    {"kurtosis", offsetof(struct study_cost, kurtosis), KURTOSIS_GAUSSIAN, NULL},
 };
 enum { OWN_COUNT = sizeof OWN_COLUMNS / sizeof *OWN_COLUMNS };
 
@@ -104,8 +105,10 @@ static size_t own_columns(const struct study *study, bool shown[OWN_COUNT]) {
         bool listed =
             OWN_COLUMNS[a].at == offsetof(struct study_cost, tolerance) && shows_tolerance(study);
         shown[a] = false;
-        for (size_t c = 0; c < study->case_count && !listed; c++)
-            shown[a] = shown[a] || own_number(&study->cases[c], &OWN_COLUMNS[a]) != 0;
+        for (size_t c = 0; c < study->case_count && !listed; c++) {
+            double number = own_number(&study->cases[c], &OWN_COLUMNS[a]);
+            shown[a] = shown[a] || (number != 0 && number != OWN_COLUMNS[a].usual);
+        }
         count += shown[a];
     }
     return count;

@@ -36,6 +36,17 @@ __all__ = ["Server", "Study", "Rows", "RugoError"]
 CSV_CASES_MOST = 64  # of one answer; each case of a larger study is asked for by itself
 MAIN_SERIES = "main"  # in rows, of a curve that is the only one of its quantity: pandas drops rows without a name
 ENDS = ("done", "failed", "cancelled")
+# What the package rugo has besides, whose name this file may have.
+IN_PACKAGE = ("LibraryError", "Pressed", "Result", "characterise", "choices", "detrend", "generate", "library_version", "press",
+              "psd", "run", "summits", "surface")
+
+
+def __getattr__(name):
+    """Explains what is missing where this file, as rugo.py, hides the package."""
+    if name in IN_PACKAGE and "." not in __name__:
+        raise AttributeError(f"{__file__} is the client of a Rugo service; the package rugo has {name!r}: rename the file, "
+                             "e.g. to rugo_client.py, or take it out of the way")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 class RugoError(Exception):

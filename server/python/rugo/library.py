@@ -16,6 +16,7 @@ from ctypes import POINTER, Structure, byref, c_char, c_char_p, c_double, c_int,
 from .client import RugoError
 
 SONAME = "librugo.so.0.1"  # whose structs are those below
+LISTS = ("spectra", "distributions", "summit_rules", "trends", "models")  # those that rugo_choice knows
 
 
 class LibraryError(RugoError):
@@ -177,7 +178,9 @@ def _choices(kind: str) -> dict:
 
 def choices(kind: str) -> dict:
     """The names of a list of librugo and the values of its enumeration: of "spectra", "distributions",
-    "summit_rules", "trends" or "models"; empty for another list."""
+    "summit_rules", "trends" or "models"; ValueError for another list."""
+    if kind not in LISTS:
+        raise ValueError(f"{kind!r} is none of the lists: {', '.join(LISTS)}")
     return dict(_choices(kind))
 
 

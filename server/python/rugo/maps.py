@@ -30,6 +30,8 @@ def _open(boundary: str) -> bool:
 def _grid(shape: typing.Sequence[int], dx: float, dy: typing.Optional[float]) -> library.Grid:
     if len(shape) not in (1, 2):
         raise ValueError(f"a map has the shape (ny, nx), a profile (nx,), not {tuple(shape)}")
+    if numpy.ndim(dx) != 0 or (dy is not None and numpy.ndim(dy) != 0):
+        raise ValueError(f"dx and dy are one number each, the spacings along x and y: not dx={dx!r}, dy={dy!r}")
     nx, ny = shape[-1], shape[0] if len(shape) == 2 else 1
     return library.Grid(nx, ny, nx * dx, ny * (dx if dy is None else dy))
 
@@ -109,7 +111,8 @@ def _summit_group(z: numpy.ndarray, dx: float, dy, rule: str, boundary: str) -> 
 
 def characterise(z: ArrayLike, dx: float = 1.0, *, dy: typing.Optional[float] = None, boundary: str = "periodic",
                  trend: typing.Optional[str] = None, rule: str = "nine_point") -> typing.Dict[str, dict]:
-    """What a map is like: a dict of groups, named as those of `rugo characterise`.
+    """What a map is like: a dict of groups, named as those of `rugo characterise`, whose defaults are others: the
+    command looks whether a map is periodic, and takes a plane off one that is not.
 
     grid: points, spacings. heights: mean, rms (about the mean), skewness, kurtosis (3 for Gaussian ones), lowest,
     highest. finite_difference: rms_slope, the root mean square of the gradient, by forward differences;
@@ -120,7 +123,7 @@ def characterise(z: ArrayLike, dx: float = 1.0, *, dy: typing.Optional[float] = 
     areal: parameters of ISO 25178-2 (surfaces alone).
 
     boundary: "periodic", or "open" for a map that ends at its sides, such as a measured one, and may have holes.
-    trend: "mean", "plane" or "quadratic" is subtracted first, from a copy.
+    trend: "mean", "plane" or "quadratic" is subtracted first, from a copy; None: nothing, of open maps, too.
 
     SurfaceTopography's heights() are z.T: its first index runs along x. Of its periodic topographies
     rms_height_from_area, rms_gradient and rms_curvature_from_area are heights.rms, finite_difference.rms_slope
@@ -199,6 +202,7 @@ def press(z: ArrayLike, dx: float = 1.0, pressures: ArrayLike = (), *, dy: typin
           height: typing.Optional[float] = None, layer_growth: typing.Optional[float] = None,
           maps: bool = False) -> Pressed:
     """Presses a rough elastic block, whose face is the map, on a rigid flat, without friction and adhesion.
+    Hardness, friction, leak and conductance are for the command `rugo press` and for studies.
 
     z: heights towards the flat, the highest touch first; any mean. pressures: mean pressures over E*, one after
     the other; a load p/(E* h') of studies times the RMS slope h' (characterise: spectral). boundary: "periodic", or

@@ -94,7 +94,7 @@ static bool is_drawn(const struct plot_lines *lines, size_t line, size_t panel, 
 
 /* Draws the theories of the lines of one panel, whose frame the pen has: each once where lines
  * share it, black where all of them do, else in the colour of its line, darkened. */
-static void plot_theories_draw(const struct plot_lines *lines, enum plot_marks marks, size_t panel,
+static void plot_theories_draw(const struct plot_lines *lines, size_t panel,
                                const struct plot_pen *pen) {
     const char *names[NAMES_MOST];
     size_t count = names_of(lines, names), first;
@@ -107,15 +107,14 @@ static void plot_theories_draw(const struct plot_lines *lines, enum plot_marks m
                 continue;
             plot_colour(&lines->channels[CHANNEL_COLOUR], line->at[CHANNEL_COLOUR], colour);
             plot_darken(colour);
-            plot_theory_style(lines, marks, t, shared ? BLACK : colour, style);
+            plot_theory_style(t, shared ? BLACK : colour, style);
             pen_line(pen, line->curve->n, line->curve->x, theory_of(line, names[t]), style);
         }
     }
 }
 
 /* Adds a row for each theory of any line. */
-static void plot_theories_name(const struct plot_lines *lines, enum plot_marks marks,
-                               struct legend *legend) {
+static void plot_theories_name(const struct plot_lines *lines, struct legend *legend) {
     const char *names[NAMES_MOST];
     size_t count = names_of(lines, names), first;
     for (size_t t = 0; t < count; t++) {
@@ -127,7 +126,7 @@ static void plot_theories_name(const struct plot_lines *lines, enum plot_marks m
         snprintf(label, sizeof label, "%s%s%s",
                  strncmp(name, "theory", 6) == 0 ? "" : "theory: ", name,
                  shared ? "" : ", of each case");
-        plot_theory_style(lines, marks, t, shared ? BLACK : "#777777", style);
+        plot_theory_style(t, shared ? BLACK : "#777777", style);
         legend_add(legend, label, style);
     }
 }
@@ -264,11 +263,11 @@ static bool is_one_plus(const struct plot *plot) {
     return plot->request->axes == AXES_ONE_PLUS && plot->lines->list[0].curve->minuend == NULL;
 }
 
-/* Marks at the ends keep away from the frame. */
-static void widen(struct plot_axis *axis) {
+/* Marks at the ends keep away from the frame by this share of it. */
+static void widen(struct plot_axis *axis, double share) {
     double low = axis->low, high = axis->high;
-    double margin = low < high ? 0.06 * (high - low) : 0.5 * fabs(low) + (low == 0);
-    double factor = low < high ? pow(high / low, 0.06) : 2;
+    double margin = low < high ? share * (high - low) : 0.5 * fabs(low) + (low == 0);
+    double factor = low < high ? pow(high / low, share) : 2;
     axis->low = axis->logarithmic ? low / factor : low - margin;
     axis->high = axis->logarithmic ? high * factor : high + margin;
 }
@@ -292,9 +291,14 @@ static bool fit(struct plot *plot, const struct study_result *study) {
     struct plot_axis own = frame->x;
     if (!frame_finish(frame))
         return false;
+    static const double POINTS = 0.06, MARKS = 0.03;
     if (plot->words->points) {
         frame->x = own;
-        widen(&frame->x);
+        widen(&frame->x, POINTS);
+    } else if (plot->marks != MARKS_NONE) {
+        double low = frame->x.low;
+        widen(&frame->x, MARKS);
+        frame->x.low = low == 0 ? 0 : frame->x.low; /* an axis from zero begins there */
     }
     return true;
 }
@@ -338,7 +342,7 @@ static void draw_panel(struct plot *plot, size_t panel) {
         for (size_t n = 0; n < lines->count; n++)
             if (lines->list[n].at[CHANNEL_PANEL] == panel && lines->list[n].coarseness == level)
                 draw_line(plot, &lines->list[n]);
-    plot_theories_draw(lines, plot->marks, panel, &plot->pen);
+    plot_theories_draw(lines, panel, &plot->pen);
     fputs("</g>\n", plot->pen.file);
 }
 
@@ -433,7 +437,7 @@ static void lay_out(struct plot *plot, const struct study_result *study) {
     plot->panels = panels->count < PANELS_MOST ? panels->count : PANELS_MOST;
     plot->marks = plot_marks_of(plot->lines, plot->words);
     plot_legend_lines(&plot->legend, plot->lines, plot->marks, plot->words);
-    plot_theories_name(plot->lines, plot->marks, &plot->legend);
+    plot_theories_name(plot->lines, &plot->legend);
     plot_errors_choose(&plot->errors, plot->lines, plot->panels,
                        plot->marks == MARKS_NONE || plot->lines->list[0].curve->minuend != NULL,
                        !plot->request->without_total);

@@ -62,14 +62,20 @@ void frame_include_point(struct frame *frame, double x, double y) {
     axis_include(&frame->y, y);
 }
 
-void frame_set(struct frame *frame, const double x[2], const double y[2], bool same_lengths) {
+double frame_set(struct frame *frame, const double x[2], const double y[2], bool same_lengths) {
     const double height = FRAME_BOTTOM - FRAME_TOP, width = FRAME_RIGHT - FRAME_LEFT;
-    double wanted = height * (x[1] - x[0]) / (y[1] - y[0]);
+    const double ratio = (x[1] - x[0]) / (y[1] - y[0]);
+    const double shown = fmin(fmax(ratio, 1 / FRAME_RATIO_MOST), FRAME_RATIO_MOST);
     frame_start(frame, false, false);
     frame->x = (struct plot_axis){.low = x[0], .high = x[1]};
     frame->y = (struct plot_axis){.low = y[0], .high = y[1]};
-    if (same_lengths && wanted >= width / 3 && wanted < width)
-        frame->right = FRAME_LEFT + (int)lrint(wanted);
+    if (!same_lengths)
+        return 1;
+    if (shown * height < width)
+        frame->right = FRAME_LEFT + (int)lrint(shown * height);
+    else
+        frame->bottom = FRAME_TOP + (int)lrint(width / shown);
+    return ratio / shown;
 }
 
 /* Zero belongs to an axis that begins near it. */

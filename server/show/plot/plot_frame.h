@@ -18,7 +18,7 @@ struct plot_axis {
 };
 struct frame {
     struct plot_axis x, y;
-    int left, top, right, bottom; /* FRAME_LEFT and so on; right is less in a narrower picture */
+    int left, top, right, bottom; /* FRAME_LEFT and so on, or those of a frame of its own */
     double scale;                 /* of letters and their distances; 1 on screens */
     bool without_x, without_y;    /* no numbers and label at this axis */
     bool opposite;                /* ticks and labels at the top and at the right */
@@ -34,9 +34,11 @@ void frame_include(struct frame *frame, size_t n, const double *x, const double 
 bool frame_finish(struct frame *frame);
 /* Includes a point as it is, also one at zero. */
 void frame_include_point(struct frame *frame, double x, double y);
-/* In place of all of these: linear axes between exactly these ends, and, where the ratio of the
- * sides allows it, a length of x as long as one of y. */
-void frame_set(struct frame *frame, const double x[2], const double y[2], bool same_lengths);
+/* In place of all of these: linear axes between exactly these ends. same_lengths: the frame is
+ * narrower or lower than others, so that a length of y is as long as one of x; up to this ratio of
+ * its sides. Returns how many times as long it is: 1 but for sides of a larger ratio. */
+#define FRAME_RATIO_MOST 8.0
+double frame_set(struct frame *frame, const double x[2], const double y[2], bool same_lengths);
 
 /* Returns where a value stands on the picture. */
 double frame_x(const struct frame *frame, double x);

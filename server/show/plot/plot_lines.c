@@ -200,7 +200,8 @@ static int refuse(const struct study_result *study, const struct lines_request *
 
 /* Says what a step that left something out has kept. */
 static void note(struct plot_lines *lines, const struct choosing *choosing, int step) {
-    const char *series = choosing->first->series != NULL ? choosing->first->series : "";
+    const struct curve *first = choosing->first; /* a series without a name is the quantity's */
+    const char *series = is_named_series(first) ? first->series : first->quantity;
     char model[64];
     const char *const words[KEEP_STEPS] = {
         [KEEP_ESTIMATES] = "without brackets",

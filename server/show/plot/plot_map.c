@@ -1,4 +1,5 @@
 #include "server/show/plot/plot_map.h"
+#include "core/file/memory_file.h"
 #include "jobs/maps/map_parameters.h"
 #include "server/show/plot/plot_heat.h"
 #include "server/show/quantity.h"
@@ -6,13 +7,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MARKS_MOST = 1000, GROUPS_MOST = 1000, CELLS_A_SIDE = 128 };
-enum { BELOW = 70, TRACE_TOP = FRAME_BOTTOM + BELOW, TRACE_BOTTOM = TRACE_TOP + 150 };
+enum { MARKS_MOST = 1000, GROUPS_MOST = 1000 };
+/* A cell takes up to 35 bytes of the file. Of two classes most lie in runs of one. */
+enum { CELLS_MOST = 1 << 15, CELLS_OF_CLASSES_MOST = 1 << 17 };
+enum { BELOW = 70, TRACE_HEIGHT = 150, TRACE_WIDTH_LEAST = 200 };
 
 struct map_plot {
     const struct map_picture *picture;
     struct plot_pen pen;
     struct summit_list summits; /* the highest first */
+    int bottom;                 /* of the lowest frame */
 };
 
 /* --- summits --- */
@@ -113,8 +117,9 @@ static int draw_profile(struct map_plot *plot, struct error *err) {
     double range[2];
     range_of(picture->grid->nx, picture->z, range);
     double margin = 0.06 * (range[1] - range[0]);
-    frame_set(&pen->frame, (const double[]){picture->x0, picture->x0 + picture->grid->lx},
-              (const double[]){range[0] - margin, range[1] + margin}, false);
+    (void)frame_set(&pen->frame, (const double[]){picture->x0, picture->x0 + picture->grid->lx},
+                    (const double[]){range[0] - margin, range[1] + margin}, false);
+    plot->bottom = pen->frame.bottom;
     frame_draw(pen->file, &pen->frame, picture->x_label, picture->z_label);
     return draw_trace(pen, &map, picture->x0, err);
 }
@@ -138,7 +143,7 @@ static bool has_trace(const struct map_picture *picture) {
 }
 
 /* Marks a row across the surface, and draws it below, over the same x. */
-static int draw_row(const struct map_plot *plot, struct error *err) {
+static int draw_row(struct map_plot *plot, struct error *err) {
     const struct map_picture *picture = plot->picture;
     const struct grid *grid = picture->grid;
     struct plot_pen below = plot->pen;
@@ -150,8 +155,10 @@ static int draw_row(const struct map_plot *plot, struct error *err) {
     fprintf(below.file,
             "<path class=\"cut\" d=\"M%d %.2fH%d\" stroke=\"#d55e00\" stroke-width=\"1.5\"/>\n",
             below.frame.left, y, below.frame.right);
-    below.frame.top = TRACE_TOP;
-    below.frame.bottom = TRACE_BOTTOM;
+    below.frame.top = below.frame.bottom + BELOW;
+    plot->bottom = below.frame.bottom = below.frame.top + TRACE_HEIGHT;
+    if (below.frame.right < below.frame.left + TRACE_WIDTH_LEAST)
+        below.frame.right = below.frame.left + TRACE_WIDTH_LEAST;
     range_of(grid->nx, map.z, range);
     double margin = 0.06 * (range[1] - range[0]);
     below.frame.y = (struct plot_axis){.low = range[0] - margin, .high = range[1] + margin};
@@ -159,55 +166,130 @@ static int draw_row(const struct map_plot *plot, struct error *err) {
     return draw_trace(&below, &map, picture->x0, err);
 }
 
+static size_t cells_along(size_t points, size_t step) {
+    return (points + step - 1) / step;
+}
+
+/* Returns the side of the squares of points that are joined: the least whose cells are neither
+ * smaller than pixels nor too many for a file. */
+static size_t step_of(const struct map_picture *picture, const struct frame *frame) {
+    const struct grid *grid = picture->grid;
+    const size_t most = picture->classes[0] != NULL ? CELLS_OF_CLASSES_MOST : CELLS_MOST;
+    const size_t width = (size_t)(frame->right - frame->left);
+    const size_t height = (size_t)(frame->bottom - frame->top);
+    size_t step = 1;
+    while (cells_along(grid->nx, step) > width || cells_along(grid->ny, step) > height ||
+           cells_along(grid->nx, step) * cells_along(grid->ny, step) > most)
+        step++;
+    return step;
+}
+
+static struct heat_scale scale_of(const struct map_picture *picture) {
+    double range[2];
+    if (picture->classes[0] != NULL) /* a cell of several points belongs to most of them */
+        return (struct heat_scale){.count = 2, .bounds = {0, 0.5, 1.5}, .ramp = HEAT_DENSITY};
+    range_of(grid_points(picture->grid), picture->z, range);
+    return heat_scale_between(range[0], range[1], 10, HEAT_HEIGHT);
+}
+
+/* Names the colours, and says what of the map is not seen as it is. */
+static void name_surface(struct map_plot *plot, const struct heat_scale *scale, size_t step,
+                         double stretched) {
+    const struct map_picture *picture = plot->picture;
+    const struct grid *grid = picture->grid;
+    char text[PLOT_LABEL_SIZE], style[HEAT_STYLE_SIZE], range[HEAT_LABEL_SIZE];
+    if (picture->classes[0] == NULL)
+        heat_legend(&plot->pen, scale, picture->z_label);
+    for (size_t level = 2; level-- > 0 && picture->classes[0] != NULL;) {
+        heat_level(scale, level, style, range);
+        pen_legend(&plot->pen, picture->classes[level], style);
+    }
+    if (step > 1) {
+        snprintf(text, sizeof text, "%s of %zu × %zu points",
+                 picture->classes[0] != NULL ? "majorities" : "means",
+                 step < grid->nx ? step : grid->nx, step < grid->ny ? step : grid->ny);
+        pen_note(&plot->pen, text);
+    }
+    if (fabs(stretched - 1) > 1e-3) {
+        snprintf(text, sizeof text, "not to scale: %c stretched %.3g times",
+                 stretched > 1 ? 'y' : 'x', stretched > 1 ? stretched : 1 / stretched);
+        pen_note(&plot->pen, text);
+    }
+}
+
 static int draw_surface(struct map_plot *plot, struct error *err) {
     const struct map_picture *picture = plot->picture;
     const struct grid *grid = picture->grid;
     struct plot_pen *pen = &plot->pen;
-    size_t longer = grid->nx > grid->ny ? grid->nx : grid->ny;
-    size_t step = (longer + CELLS_A_SIDE - 1) / CELLS_A_SIDE;
-    struct heat_cells cells = {.nx = (grid->nx + step - 1) / step,
-                               .ny = (grid->ny + step - 1) / step};
-    double range[2], dx = grid_dx(grid), dy = grid_dy(grid);
+    double dx = grid_dx(grid), dy = grid_dy(grid);
+    const double left = picture->x0 - dx / 2, low = picture->y0 - dy / 2;
+    /* A point lies in the middle of its square. */
+    double stretched = frame_set(&pen->frame, (const double[]){left, left + grid->lx},
+                                 (const double[]){low, low + grid->ly}, true);
+    size_t step = step_of(picture, &pen->frame);
+    struct heat_cells cells = {.nx = cells_along(grid->nx, step),
+                               .ny = cells_along(grid->ny, step)};
     double *values = array_create(cells.nx * cells.ny, sizeof *values);
     if (values == NULL)
         return error_memory(err, cells.nx * cells.ny * sizeof *values, "a picture");
     const struct measured_map map = {grid, picture->z, picture->boundary};
     map_join_points(&map, step, values);
     cells.values = values;
-    cells.x[0] = picture->x0 - dx / 2; /* a point lies in the middle of its square */
-    cells.x[1] = cells.x[0] + (double)(cells.nx * step) * dx;
-    cells.y[0] = picture->y0 - dy / 2;
-    cells.y[1] = cells.y[0] + (double)(cells.ny * step) * dy;
-    range_of(grid_points(grid), picture->z, range);
-    const struct heat_scale scale = heat_scale_between(range[0], range[1], 10, HEAT_HEIGHT);
-    frame_set(&pen->frame, cells.x, cells.y, true);
+    cells.x[0] = left;
+    cells.x[1] = left + (double)(cells.nx * step) * dx;
+    cells.y[0] = low;
+    cells.y[1] = low + (double)(cells.ny * step) * dy;
+    pen->frame.x.high = cells.x[1]; /* the last squares may have fewer points */
+    pen->frame.y.high = cells.y[1];
+    plot->bottom = pen->frame.bottom;
+    const struct heat_scale scale = scale_of(picture);
     frame_draw(pen->file, &pen->frame, has_trace(picture) ? NULL : picture->x_label,
                picture->y_label);
     heat_draw(pen, &cells, &scale);
-    heat_legend(pen, &scale, picture->z_label);
+    name_surface(plot, &scale, step, stretched);
     free(values);
     return has_trace(picture) ? draw_row(plot, err) : 0;
 }
 
-/* Draws a picture whose values and labels are those that are drawn. */
-static int draw_as_it_is(const struct map_picture *picture, FILE *file, struct error *err) {
-    struct map_plot plot = {.picture = picture, .pen = {.file = file}};
-    int status = picture->unmarked ? 0 : find_summits(&plot, err);
+/* Draws all but the head, whose size depends on it. */
+static int draw_body(struct map_plot *plot, struct error *err) {
+    const struct map_picture *picture = plot->picture;
+    int status = picture->unmarked ? 0 : find_summits(plot, err);
     if (status == 0) {
-        int bottom = has_trace(picture) ? TRACE_BOTTOM : FRAME_BOTTOM;
-        pen_head_sized(&plot.pen, &(struct pen_size){PEN_WIDTH, bottom + BELOW, 13, 0});
-        pen_title(&plot.pen, picture->name, picture->subject);
-        status =
-            grid_is_profile(picture->grid) ? draw_profile(&plot, err) : draw_surface(&plot, err);
+        pen_title(&plot->pen, picture->name, picture->subject);
+        status = grid_is_profile(picture->grid) ? draw_profile(plot, err) : draw_surface(plot, err);
     }
     if (status == 0) {
         if (!picture->unmarked)
-            draw_summits(&plot);
+            draw_summits(plot);
         if (picture->note != NULL)
-            pen_note(&plot.pen, picture->note);
-        fputs("</svg>\n", file);
+            pen_note(&plot->pen, picture->note);
+        fputs("</svg>\n", plot->pen.file);
     }
-    summit_list_clear(&plot.summits);
+    summit_list_clear(&plot->summits);
+    return status;
+}
+
+/* Draws a picture whose values and labels are those that are drawn. */
+static int draw_as_it_is(const struct map_picture *picture, FILE *file, struct error *err) {
+    struct map_plot plot = {.picture = picture};
+    struct memory_file memory;
+    size_t size = 0;
+    if (!memory_file_open(&memory))
+        return error_memory(err, 0, "a picture");
+    plot.pen.file = memory.file;
+    int status = draw_body(&plot, err);
+    char *body = memory_file_close(&memory, &size);
+    if (status == 0 && body == NULL)
+        status = error_memory(err, 0, "a picture");
+    if (status == 0) {
+        int legend = pen_row(plot.pen.rows), frames = plot.bottom + BELOW;
+        plot.pen.file = file;
+        pen_head_sized(&plot.pen,
+                       &(struct pen_size){PEN_WIDTH, legend > frames ? legend : frames, 13, 0});
+        (void)fwrite(body, 1, size, file); /* the file remembers a failure */
+    }
+    free(body);
     return status;
 }
 

@@ -11,6 +11,7 @@ struct map_picture { /* borrows */
     const char *xy_unit, *z_unit; /* "m", "m^2", "rad/m" and "Pa" are drawn with the prefix that is
                                      read best, other units as they are; NULL or "": none */
     const char *note;             /* in the legend; NULL: none */
+    const char *classes[2]; /* of a surface of 0 and 1: what these are; NULL: it has numbers */
     const struct grid *grid;
     double x0, y0;          /* of the first point */
     const double *z;        /* grid_points; NaN: a hole, of an open map */
@@ -22,8 +23,11 @@ struct map_picture { /* borrows */
  * both with a mark at each nine-point summit (of profiles: peak), at most 1000, the highest,
  * unless these are not wanted. Points
  * are joined, of traces by their extremes, of surfaces by their means, until the picture can show
- * them. A row that is drawn below is marked by a line across the surface; that at y = 0 is asked
- * for by the length along y. Write errors are left to the file's own flag. */
+ * them; of classes that of most points stands for all. Lengths of a surface are to scale, up to
+ * sides of 1 to FRAME_RATIO_MOST. The legend says where means are shown, and where lengths are not
+ * to scale. A row that is drawn below is marked by a line across the surface, and is as wide, if
+ * that is not too narrow to read; that at y = 0 is asked for by the length along y. Write errors
+ * are left to the file's own flag. */
 int plot_map(const struct map_picture *picture, FILE *file, struct error *err);
 
 /* Fills x and y, room for 2 groups + 1 each, with the trace of a profile: two points of each group

@@ -6,12 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const DASHES[DASHES_MOST] = {"",         "8 4",         "2 3",
-                                                "12 3 2 3", "5 2 2 2 2 2", "16 5"};
-/* Theories, thinner, differ by their dashes; by dots where curves have dashes and no marks. */
-static const char *const THEORIES[] = {"7 4", "2 3", "12 3 2 3", "9 2 1 2 1 2", "16 6", "1 6"};
-static const char *const DOTTED[] = {"1.5 2.5",         "9 2 1.5 2", "1.5 6",
-                                     "6 2 1.5 2 1.5 2", "3 2 1 2",   "1 9"};
+/* Curves have dashes alone, theories have dots, so that no theory is taken for a curve. */
+static const char *const DASHES[DASHES_MOST] = {"",         "8 4",          "4 3",
+                                                "14 3 5 3", "16 3 5 3 5 3", "20 6"};
+static const char *const THEORIES[] = {"1.5 2.5",         "9 2.5 1.5 2.5",    "1.5 6",
+                                       "9 2 1.5 2 1.5 2", "18 2.5 1.5 2.5",   "1.5 2 1.5 7",
+                                       "4 2 1.5 2",       "1.5 2 1.5 2 1.5 8"};
 enum { THEORY_COUNT = sizeof THEORIES / sizeof *THEORIES };
 
 /* Coarser levels are fainter. */
@@ -20,7 +20,7 @@ static const char *const LEVELS[] = {
     "stroke-opacity=\".5\" stroke-width=\".9\"", "stroke-opacity=\".35\" stroke-width=\".7\""};
 enum { LEVEL_COUNT = sizeof LEVELS / sizeof *LEVELS };
 /* Coarser levels have shorter dashes, too, where nothing else has. */
-static const char *const LEVEL_DASHES[LEVEL_COUNT] = {"", "9 3", "4 3", "1.5 3"};
+static const char *const LEVEL_DASHES[LEVEL_COUNT] = {"", "9 3", "4 3", "4 7"};
 
 /* Stops of the colour map "viridis", whose lightness rises evenly, without the palest. */
 static const double STOPS[][3] = {{68, 1, 84},    {70, 50, 127},  {54, 92, 141}, {39, 127, 142},
@@ -64,11 +64,9 @@ void plot_curve_style(const struct plot_lines *lines, const struct plot_line *li
     style_of(lines, colour, line->at[CHANNEL_DASH], line->coarseness, style);
 }
 
-void plot_theory_style(const struct plot_lines *lines, enum plot_marks marks, size_t number,
-                       const char *colour, char style[LEGEND_STYLE_SIZE]) {
-    bool dotted = lines->channels[CHANNEL_DASH].count > 1 && marks != MARKS_SHAPES;
+void plot_theory_style(size_t number, const char *colour, char style[LEGEND_STYLE_SIZE]) {
     snprintf(style, LEGEND_STYLE_SIZE, "class=\"theory\" stroke=\"%s\" stroke-dasharray=\"%s\"",
-             colour, (dotted ? DOTTED : THEORIES)[number % THEORY_COUNT]);
+             colour, THEORIES[number % THEORY_COUNT]);
 }
 
 enum plot_marks plot_marks_of(const struct plot_lines *lines, const struct plot_words *words) {

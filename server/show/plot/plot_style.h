@@ -15,8 +15,7 @@ void plot_curve_style(const struct plot_lines *lines, const struct plot_line *li
 /* Darkens it by half, for a theory that lies upon its curve. */
 void plot_darken(char colour[COLOUR_SIZE]);
 /* number: of the theory among those of the picture. */
-void plot_theory_style(const struct plot_lines *lines, enum plot_marks marks, size_t number,
-                       const char *colour, char style[LEGEND_STYLE_SIZE]);
+void plot_theory_style(size_t number, const char *colour, char style[LEGEND_STYLE_SIZE]);
 /* Few points are seen as shapes or dots, many as a line alone. */
 enum plot_marks plot_marks_of(const struct plot_lines *lines, const struct plot_words *words);
 

@@ -178,7 +178,7 @@ static bool put_own(cJSON *document, const struct study_case *one) {
                 {"wavelength_ratio", cost->wavelength_ratio},
                 {"hurst", cost->hurst},
                 {"skewness", cost->skewness},
-                {"kurtosis", cost->kurtosis}};
+                {"kurtosis", cost->kurtosis != KURTOSIS_GAUSSIAN ? cost->kurtosis : 0}};
     bool complete = true;
     for (size_t a = 0; a < sizeof list / sizeof *list && complete; a++)
         complete =

@@ -12,24 +12,37 @@ bool progress_is_due(const struct progress_bar *bar) {
     return clock_ms() >= bar->next_ms;
 }
 
+/* Returns the share to show. Jobs that are given back, and times that were taken for shorter, would
+ * let it fall. */
+static double rising_share(struct progress_bar *bar, const struct progress_state *state) {
+    if (state->total > bar->total && bar->total > 0) {
+        bar->next_round = true;
+        bar->share = 0;
+    }
+    bar->total = state->total;
+    bar->share = fmax(bar->share, state->share);
+    return bar->share;
+}
+
 /* With the time since it began, which moves whatever else stands still. */
 static void print_bar(const struct progress_bar *bar, const struct progress_state *state,
                       const char *left, int64_t now_ms) {
     long long seconds = (now_ms - bar->start_ms) / 1000;
     char text[BAR + 1];
     for (int i = 0; i < BAR; i++)
-        text[i] = i < (int)(state->share * BAR) ? '#' : '.';
+        text[i] = i < (int)(bar->share * BAR) ? '#' : '.';
     text[BAR] = '\0';
     char done[32];
     realisations_text(state->done, done, sizeof done);
-    fprintf(stderr, "\r[%s] %5.1f %%  %s of %.0f realisations, %lld:%02lld:%02lld, %s left\033[K",
-            text, 100 * state->share, done, state->total, seconds / 3600, seconds / 60 % 60,
-            seconds % 60, left);
+    fprintf(stderr, "\r[%s] %5.1f %%%s  %s of %.0f realisations, %lld:%02lld:%02lld, %s left\033[K",
+            text, 100 * bar->share, bar->next_round ? ", next round" : "", done, state->total,
+            seconds / 3600, seconds / 60 % 60, seconds % 60, left);
 }
 
 void progress_draw(struct progress_bar *bar, const struct progress_state *state) {
     int64_t now_ms = clock_ms();
     bool terminal = isatty(STDERR_FILENO);
+    double share = rising_share(bar, state);
     char left[48];
     if (bar->next_ms == 0)
         bar->start_ms = now_ms;
@@ -41,8 +54,8 @@ void progress_draw(struct progress_bar *bar, const struct progress_state *state)
     if (terminal)
         print_bar(bar, state, left, now_ms);
     else
-        fprintf(stderr, "rugo %s: %s %.1f %%, %s left\n", bar->command, state->study,
-                100 * state->share, left);
+        fprintf(stderr, "rugo %s: %s %.1f %%%s, %s left\n", bar->command, state->study, 100 * share,
+                bar->next_round ? ", next round" : "", left);
     fflush(stderr);
     bar->shown = terminal;
 }

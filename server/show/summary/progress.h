@@ -10,12 +10,15 @@ struct progress_bar {
     const char *command; /* for lines, as all texts borrowed */
     int64_t next_ms;     /* when the next one is due; 0 at first */
     int64_t start_ms;
-    bool shown; /* a bar stands on the line */
+    double share, total; /* the most that was shown, of so many realisations */
+    bool next_round;     /* there are more realisations than at first */
+    bool shown;          /* a bar stands on the line */
 };
 /* Whether a line or the bar is due, so that it is worth asking how far the study is. */
 bool progress_is_due(const struct progress_bar *bar);
 /* Draws the bar, or prints a line. share: of the work, 0 to 1; seconds_left: NaN where it is not
- * known. */
+ * known. The share that is shown never falls, but where there is more to do: a target's next round,
+ * which is named. */
 struct progress_state {
     const char *study;
     double share, seconds_left;

@@ -142,16 +142,19 @@ static double physical_x(const struct curve *curve, char unit[PHYSICAL_SIZE]) {
     return scale / unit_readable(curve->x_unit.unit, most, unit, PHYSICAL_SIZE);
 }
 
-/* The largest of the errors of a curve by a source, within their bounds, over its values; NaN where
- * nothing is known. */
-static double largest_error(const struct curve *curve, enum error_source source) {
+/* The error of a point by a source, within its bound, over the value; NaN where nothing is known.
+ */
+static double error_size(const struct curve *curve, enum error_source source, size_t k) {
     const struct curve_error *error = &curve->errors[source];
+    double bound = number_at(error->bound, curve, k);
+    double size = fabs(number_at(error->value, curve, k)) + (isnan(bound) ? 0 : bound);
+    return size / fabs(number_at(curve->y, curve, k));
+}
+
+static double largest_error(const struct curve *curve, enum error_source source) {
     double largest = NAN;
-    for (size_t k = 0; k < curve->n && error->value != NULL; k++) {
-        double bound = number_at(error->bound, curve, k);
-        double size = fabs(error->value[k]) + (isnan(bound) ? 0 : bound);
-        largest = fmax(largest, size / fabs(curve->y[k]));
-    }
+    for (size_t k = 0; k < curve->n; k++)
+        largest = fmax(largest, error_size(curve, source, k));
     return largest;
 }
 
@@ -312,31 +315,6 @@ static void print_case(const struct quantity_table *words, const struct shown_ca
     }
 }
 
-/* Returns the largest law difference of a curve over its values; NaN where none is known. */
-static double largest_law(const struct curve *curve) {
-    double largest = NAN;
-    for (size_t k = 0; curve->law_difference != NULL && k < curve->n; k++)
-        largest = fmax(largest, fabs(curve->law_difference[k] / curve->y[k]));
-    return largest;
-}
-
-/* Puts the size of the total over a curve, as the sizes of its errors are: half the widths over the
- * values, of each the root of the sum of squares. */
-static void total_size_cell(struct text_table *table, const struct curve *curve) {
-    double squares = 0, reference = 0;
-    bool unknown[UNKNOWN_SOURCES], partial = false;
-    curve_unknown(curve, unknown);
-    for (size_t s = 0; s < UNKNOWN_SOURCES; s++)
-        partial = partial || unknown[s];
-    for (size_t k = 0; k < curve->n; k++) {
-        const struct total total = curve_total(curve, k);
-        double half = total_half_width(curve->y[k], &total);
-        squares += isnan(half) ? 0 : half * half;
-        reference += isnan(half) ? 0 : curve->y[k] * curve->y[k];
-    }
-    total_share_cell(table, reference > 0 ? sqrt(squares / reference) : (double)NAN, partial);
-}
-
 /* --- a row a case --- */
 
 enum { SAMPLES = 3 }; /* first, middle and last point */
@@ -361,15 +339,47 @@ static void find_samples(const struct quantity_table *words, const struct shown_
     }
 }
 
-/* Finds the sources that are known of a case's main curve: of size, or small in all cases. */
-static void find_known(const struct study_report *report, const struct shown_cases *shown,
+/* A row has the largest size of each error at its samples: what it says holds of all of them. */
+
+static double largest_sampled(const struct finest_curves *finest, enum error_source source) {
+    double largest = NAN;
+    for (size_t n = 0; n < SAMPLES && finest->model_count > 0; n++)
+        largest = fmax(largest, error_size(finest->curves[0], source, sample_place(finest, n)));
+    return largest;
+}
+
+static double largest_law(const struct finest_curves *finest) {
+    double largest = NAN;
+    for (size_t n = 0; n < SAMPLES && finest->model_count > 0; n++) {
+        size_t k = sample_place(finest, n);
+        double law = number_at(finest->curves[0]->law_difference, finest->curves[0], k);
+        largest = fmax(largest, fabs(law / number_at(finest->curves[0]->y, finest->curves[0], k)));
+    }
+    return largest;
+}
+
+static void total_size_cell(struct text_table *table, const struct finest_curves *finest) {
+    double largest = NAN;
+    bool partial = false;
+    for (size_t n = 0; n < SAMPLES && place_count(finest) > 0; n++) {
+        const struct curve *curve = finest->curves[0];
+        size_t k = sample_place(finest, n);
+        const struct total total = curve_total(curve, k);
+        largest = fmax(largest, total_half_width(curve->y[k], &total) / fabs(curve->y[k]));
+        partial = partial || total_is_partial(&total);
+    }
+    total_share_cell(table, largest, partial);
+}
+
+/* Finds the sources that are known in some case: of size, or small in all of them. */
+static void find_known(const struct quantity_table *words, const struct shown_cases *shown,
                        bool known[ERROR_SOURCES], bool small[ERROR_SOURCES]) {
     for (size_t s = 0; s < ERROR_SOURCES; s++) {
         double largest = NAN;
         for (size_t c = 0; c < shown->count; c++) {
-            const struct case_report *cost = report_of(report, shown->list[c]);
-            if (cost != NULL && cost->main != NULL)
-                largest = fmax(largest, cost->main->errors[s]);
+            struct finest_curves finest;
+            find_finest(&finest, words, shown->list[c]);
+            largest = fmax(largest, largest_sampled(&finest, (enum error_source)s));
         }
         known[s] = largest >= error_shown(s);
         small[s] = largest < error_shown(s);
@@ -427,16 +437,12 @@ static void put_row(const struct quantity_table *words, const struct shown_cases
     table_number(table, (double)one->realisations);
     for (size_t n = 0; n < SAMPLES; n++)
         value_cell(table, one, finest.curves[0], sample_place(&finest, n));
-    if (finest.model_count > 0)
-        total_size_cell(table, finest.curves[0]);
-    else
-        table_cell(table, "-");
+    total_size_cell(table, &finest);
     for (int source = 0; source < ERROR_SOURCES; source++)
         if (known[source])
-            percent_cell(table, cost != NULL && cost->main != NULL ? cost->main->errors[source]
-                                                                   : (double)NAN);
+            percent_cell(table, largest_sampled(&finest, (enum error_source)source));
     if (law)
-        percent_cell(table, finest.model_count > 0 ? largest_law(finest.curves[0]) : (double)NAN);
+        percent_cell(table, largest_law(&finest));
     for (const char *const *name = words->scalars; name != NULL && *name != NULL; name++) {
         const struct scalar *scalar = result_scalar(one, *name);
         measured_cell(table, scalar != NULL ? scalar->value : (double)NAN,
@@ -448,12 +454,43 @@ static void put_row(const struct quantity_table *words, const struct shown_cases
     duration_cell(table, cost != NULL ? cost->time.cpu_seconds : (double)NAN);
 }
 
+/* Says of which curve the rows are, and at which points their errors: where cases have different
+ * curves, of which kind. */
+static void print_whose(const struct quantity_table *words, const struct shown_cases *shown,
+                        bool law, FILE *file) {
+    const struct curve *first = NULL;
+    bool same_model = true, same_level = true;
+    char model[64];
+    for (size_t c = 0; c < shown->count; c++) {
+        struct finest_curves finest;
+        find_finest(&finest, words, shown->list[c]);
+        const struct curve *own = finest.curves[0];
+        if (own == NULL)
+            continue;
+        first = first != NULL ? first : own;
+        same_model = same_model && strcmp(text_or(own->model, ""), text_or(first->model, "")) == 0;
+        same_level = same_level && (own->level == first->level || isnan(first->level));
+    }
+    if (first == NULL)
+        return;
+    fprintf(file, "%s: of %s by %s", words->value,
+            same_model ? model_text(first->model, first->kinematics, model, sizeof model)
+                       : "the first model of each case",
+            text_or(first->series, "-"));
+    if (same_level && !isnan(first->level))
+        fprintf(file, " at %.4g points a shortest wave", first->level);
+    else
+        fputs(same_level ? "" : " at the finest level of each case", file);
+    fprintf(file, "; its total, its errors%s: the largest at the %ss of the row.\n",
+            law ? " and law" : "", words->x);
+}
+
 static void print_rows(const struct quantity_table *words, const struct shown_cases *shown,
                        const struct study_report *report, FILE *file) {
     bool known[ERROR_SOURCES], small[ERROR_SOURCES], unknown[UNKNOWN_SOURCES] = {false};
     size_t scalars = 0, sources = 0;
     bool law = any_law(words, shown);
-    find_known(report, shown, known, small);
+    find_known(words, shown, known, small);
     for (size_t s = 0; s < ERROR_SOURCES; s++)
         sources += known[s];
     while (words->scalars != NULL && words->scalars[scalars] != NULL)
@@ -472,6 +509,7 @@ static void print_rows(const struct quantity_table *words, const struct shown_ca
     fputc('\n', file);
     table_print(&table, file);
     table_clear(&table);
+    print_whose(words, shown, law, file);
     print_unknown(unknown, words->error_words, file);
     print_small(small, words->error_words, file);
 }

@@ -481,6 +481,19 @@ static int read_part(const char *text, size_t *size) {
     return PART_VALUE;
 }
 
+/* A number that goes on ends in no part: those that there are are named. */
+static int refuse_number(const char *asked_as, const char *text, struct error *err) {
+    char parts[200] = "", *end;
+    (void)strtod(text, &end);
+    for (int part = PART_THEORY; part < PART_SOURCES + ERROR_SOURCES && end != text; part++) {
+        size_t used = strlen(parts);
+        snprintf(parts + used, sizeof parts - used, "%s.%s",
+                 used > 0 ? ", " : "; allowed behind one: ", part_name(part));
+    }
+    return error_set(err, ERROR_INPUT, "%s: \"%.60s\" is no number behind @%s", asked_as, text,
+                     parts);
+}
+
 /* Reads "QUANTITY:WORD:WORD@X.PART" out of size characters. */
 static int read_wish(struct table_wish *wish, const char *asked_as, const char *text, size_t size,
                      struct error *err) {
@@ -496,8 +509,7 @@ static int read_wish(struct table_wish *wish, const char *asked_as, const char *
         errno = 0;
         wish->x = strtod(at + 1, &end);
         if (end == at + 1 || *end != '\0' || errno != 0 || !isfinite(wish->x))
-            return error_set(err, ERROR_INPUT, "%s: \"%.60s\" is no number behind @", asked_as,
-                             at + 1);
+            return refuse_number(asked_as, at + 1, err);
         *at = '\0';
     }
     char *rest = wish->text;

@@ -6,12 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { LABEL_SIZE = 160 };
+
 struct sweep {
     struct case_table *table;
     const char *x;          /* pointer of the parameter */
     struct plot_line *list; /* owned until the lines take it */
     size_t count;
-    size_t left_out; /* rows without a value, or without this parameter */
 };
 
 /* --- the parameter --- */
@@ -166,6 +167,16 @@ static int set_error(struct sweep *sweep, const struct table_column *column, con
     return 0;
 }
 
+/* Returns what the theory of a column is called: of a scalar what the kind calls "NAME.theory". */
+static const char *theory_name(const struct sweep *sweep, const struct table_column *column) {
+    char key[LABEL_SIZE];
+    if (column->theory != NULL)
+        return column->theory;
+    snprintf(key, sizeof key, "%.100s.theory", column->name);
+    const char *words = view_words(view_of(sweep->table->study.kind), key);
+    return words != key ? words : "theory";
+}
+
 /* Makes the curve of a line in the table's room. */
 static int add_line(struct sweep *sweep, const struct table_column *column, const size_t *rows,
                     size_t n, struct error *err) {
@@ -190,7 +201,7 @@ static int add_line(struct sweep *sweep, const struct table_column *column, cons
     *curve = curve_named(column->name, "", "");
     curve->model = column->model;
     curve_set_points(curve, n, numbers[0], numbers[1], numbers[2]);
-    add_theory(curve, column->theory != NULL ? column->theory : "theory", numbers[3]);
+    add_theory(curve, theory_name(sweep, column), numbers[3]);
     add_theory(curve, "theory of the grid", numbers[4]);
     sweep->list[sweep->count++] =
         (struct plot_line){.one = sweep->table->rows[rows[0]], .curve = curve};
@@ -204,9 +215,7 @@ static int add_column(struct sweep *sweep, const struct table_column *column, si
                       struct error *err) {
     int status = 0;
     for (size_t r = 0; r < sweep->table->row_count && status == 0; r++) {
-        if (!has_point(sweep, column, r))
-            sweep->left_out++;
-        else if (!is_taken(sweep, column, r))
+        if (has_point(sweep, column, r) && !is_taken(sweep, column, r))
             status = add_line(sweep, column, rows, gather(sweep, column, r, rows), err);
     }
     return status;
@@ -229,9 +238,18 @@ static int add_lines(struct sweep *sweep, const char *name, struct error *err) {
     return status;
 }
 
-/* --- the picture --- */
+/* Returns whether some column that is drawn has no value for a row, or the row not the parameter.
+ */
+static bool is_left_out(const struct sweep *sweep, size_t row) {
+    const struct case_table *table = sweep->table;
+    bool out = false;
+    for (size_t n = 0; n < table->column_count && !out; n++)
+        out = table->columns[n].type != COLUMN_PARAMETER &&
+              !has_point(sweep, &table->columns[n], row);
+    return out;
+}
 
-enum { LABEL_SIZE = 160 };
+/* --- the picture --- */
 
 /* Returns the column that is drawn. */
 static const struct table_column *drawn_column(const struct case_table *table) {
@@ -286,13 +304,33 @@ static void make_subject(const struct sweep *sweep, const char *name, char subje
              words > end ? ")" : "", place, over);
 }
 
+/* Writes "without a value: cases 1, 4, 5", or nothing. */
+static void name_left_out(const struct sweep *sweep, char text[LABEL_SIZE]) {
+    enum { NAMED_MOST = 6 };
+    const struct case_table *table = sweep->table;
+    size_t all = 0, named = 0;
+    *text = '\0';
+    for (size_t r = 0; r < table->row_count; r++)
+        all += is_left_out(sweep, r);
+    if (all == 0)
+        return;
+    int used = snprintf(text, LABEL_SIZE, "without a value: %s", all == 1 ? "case" : "cases");
+    for (size_t r = 0; r < table->row_count && named < NAMED_MOST; r++)
+        if (is_left_out(sweep, r))
+            used +=
+                snprintf(text + used, LABEL_SIZE - (size_t)used, "%s %llu", named++ > 0 ? "," : "",
+                         (unsigned long long)table->rows[r]->case_number);
+    if (all > named)
+        snprintf(text + used, LABEL_SIZE - (size_t)used, " and %zu more", all - named);
+}
+
 static int draw(struct sweep *sweep, const char *name, const struct plot_request *request,
                 FILE *file, struct error *err) {
     const struct study_result *study = &sweep->table->study;
     struct lines_request lines_request = request->lines;
     struct plot_lines lines;
     char x[LABEL_SIZE], y[LABEL_SIZE], bare[LABEL_SIZE], subject[LABEL_SIZE];
-    char left_out[LABEL_SIZE] = "";
+    char left_out[LABEL_SIZE];
     lines_request.left_out = sweep->x;
     struct plot_line *list = sweep->list;
     sweep->list = NULL;
@@ -302,9 +340,7 @@ static int draw(struct sweep *sweep, const char *name, const struct plot_request
     plot_parameter_label(study->kind, sweep->x, x, sizeof x);
     label_y(sweep->table, name, y, bare);
     make_subject(sweep, name, subject);
-    if (sweep->left_out > 0)
-        snprintf(left_out, sizeof left_out, "without a value: %zu %s", sweep->left_out,
-                 sweep->left_out == 1 ? "case" : "cases");
+    name_left_out(sweep, left_out);
     const struct plot_words words = {
         .subject = subject, .x = x, .y = y, .y_bare = bare, .note = left_out, .points = true};
     status = plot_lines_draw(&lines, study, request, &words, file, err);

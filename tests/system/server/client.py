@@ -184,7 +184,18 @@ def tokens_are_read_as_commands_do():
     path.unlink()
 
 
+def names_of_the_package_are_explained():
+    for name, words in (("press", ("rugo.py is the client", "the package rugo has 'press'", "rugo_client.py")),
+                        ("pres", ("has no attribute 'pres'",))):
+        try:
+            getattr(rugo, name)
+            raise AssertionError(name)
+        except AttributeError as error:
+            assert all(word in str(error) for word in words), error
+
+
 assert pathlib.Path(rugo.__file__).name == "rugo.py"
+names_of_the_package_are_explained()
 os.chdir(FOLDER)
 here = rugo.Server(URL)
 one = a_study_from_submission_to_tables(here)

@@ -115,10 +115,13 @@ def choices_are_those_of_the_lists():
         for other in re.findall(r"RUGO_(\w+)\(ENTRY\)", body):
             entries = {**lists.pop(other.lower()), **entries}
         lists[name.lower()] = entries
-    assert sorted(lists) == ["distributions", "models", "spectra", "summit_rules", "trends"]
+    assert sorted(lists) == sorted(library.LISTS)
     for name, entries in lists.items():
         assert len(entries) >= 3 and rugo.choices(name) == entries, (name, rugo.choices(name))
     raises(ValueError, lambda: library.choice("models", "beam"), "halfspace, layered, full")
+    raises(ValueError, lambda: rugo.choices("model"), "'model'", "spectra, distributions, summit_rules, trends, models")
+    assert set(rugo.client.IN_PACKAGE) | set(rugo.client.__all__) == set(rugo.__all__)
+    raises(AttributeError, lambda: rugo.client.press, "no attribute 'press'")
 
 
 def versions_are_one():
@@ -267,6 +270,7 @@ def maps_are_characterised_as_by_the_program(numpy):
     raises(ValueError, lambda: rugo.characterise(z, rule="six_point"), "nine_point, five_point, refined")
     raises(ValueError, lambda: rugo.characterise(z, boundary="closed"), "closed")
     raises(ValueError, lambda: rugo.characterise(z.reshape(2, 64, 128)), "(ny, nx)")
+    raises(ValueError, lambda: rugo.characterise(z, dx=(0.1, 0.2)), "one number each", "dx=(0.1, 0.2)")
     holes = z.copy()
     holes[3, 5] = numpy.nan
     assert raises(rugo.LibraryError, lambda: rugo.characterise(holes), "hole").code == -1

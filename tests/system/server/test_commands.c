@@ -40,6 +40,8 @@ static const struct {
     {"$RUGO generate --file x one.json", 2, "unknown option --file; see"},
     {"$RUGO press -q text.csv", 2, "unknown option -q"},
     {"$RUGO check --schema=1", 2, "--schema takes no value"},
+    {"$RUGO help study surface/heigths", 2, "(did you mean /surface/heights?)"},
+    {"$RUGO help study surface.like.heigths", 2, "(did you mean /surface/like/heights?)"},
     {"$RUGO run --workers -1 one.json", 2, "--workers -1 is not a whole number in [0, 4096]"},
     {"$RUGO run --workers many one.json", 2, "--workers many is not a whole number"},
     {"$RUGO serve --lease 0", 2, "--lease 0 is not a whole number in [1, 31536000]"},
@@ -180,6 +182,22 @@ static void check_says_between_what_a_steep_study_lies(void **state) {
     }
     cJSON_Delete(plan);
     free(text);
+}
+
+/* Gaussian heights beside others have the moments of Gaussian ones; alone they need no column. */
+static void check_knows_the_moments_of_gaussian_heights(void **state) {
+    (void)state;
+    static const char SWEPT[] =
+        "--set '/surface/heights/distribution=[\"gaussian\",\"weibull_max\"]' "
+        "--set /surface/heights/shape=1.5";
+    char command[200];
+    snprintf(command, sizeof command, "$RUGO check one.json %s", SWEPT);
+    assert_int_equal(run_shell(command), 0);
+    assert_true(contains("shell.out", "skewness  kurtosis\n"));
+    assert_true(contains("shell.out", " 0         3\n"));
+    assert_true(contains("shell.out", "-1.072    4.3904\n"));
+    assert_int_equal(run_shell("$RUGO check one.json"), 0);
+    assert_false(contains("shell.out", "skewness  "));
 }
 
 /* Its formatter, where there is one, finds nothing to warn of; a shell reads the completion. */
@@ -364,6 +382,7 @@ int main(void) {
         cmocka_unit_test(help_tells_of_a_parameter),
         cmocka_unit_test(theory_needs_no_surface),
         cmocka_unit_test(check_says_between_what_a_steep_study_lies),
+        cmocka_unit_test(check_knows_the_moments_of_gaussian_heights),
         cmocka_unit_test(the_manual_page_is_sound),
         cmocka_unit_test(a_run_goes_on_where_it_was),
         cmocka_unit_test(a_finished_run_only_prints),

@@ -51,6 +51,33 @@ static void a_piece_is_measured(void **state) {
     free(z);
 }
 
+/* Heights that were not measured are read where they are asked for alone, and can be measured on.
+ */
+static void a_map_with_holes_is_read(void **state) {
+    (void)state;
+    static const struct rugo_grid GRID = {4, 3, 2, 1.5};
+    const double z[12] = {0, 1, 0, NAN, 2, 0, 1, 0, 0, 0, 1, 0};
+    static const char *const NAMES[] = {"hole.npy", "hole.csv", "hole.xyz"};
+    for (size_t n = 0; n < 3; n++) {
+        struct rugo_map map = {.z = NULL};
+        struct rugo_error err = {0};
+        struct rugo_roughness roughness;
+        assert_int_equal(rugo_map_write(NAMES[n], &GRID, z, &err), 0);
+        assert_int_equal(rugo_map_read(&map, NAMES[n], 0.5, &err), RUGO_ERROR_INPUT);
+        assert_non_null(strstr(err.text, "hole"));
+        assert_null(map.z);
+        assert_int_equal(rugo_open_map_read(&map, NAMES[n], 0.5, &err), 0);
+        assert_true(map.grid.nx == 4 && map.grid.ny == 3 && map.grid.lx == 2);
+        for (size_t a = 0; a < 12; a++)
+            assert_true(isnan(z[a]) ? isnan(map.z[a]) : map.z[a] == z[a]);
+        assert_int_equal(rugo_open_roughness(&map.grid, map.z, &roughness, &err), 0);
+        check_close(roughness.mean, 5 / 11.0, 1e-12);
+        rugo_map_clear(&map);
+    }
+    struct rugo_map none = {.z = NULL};
+    assert_int_equal(rugo_open_map_read(&none, "absent.npy", 0, NULL), RUGO_ERROR_SYSTEM);
+}
+
 static void areal_parameters_and_density(void **state) {
     (void)state;
     double *z = piece_create();
@@ -128,9 +155,8 @@ static void open_map_is_pressed(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_piece_is_measured),
-        cmocka_unit_test(areal_parameters_and_density),
-        cmocka_unit_test(wrong_arguments_are_told),
+        cmocka_unit_test(a_piece_is_measured),          cmocka_unit_test(a_map_with_holes_is_read),
+        cmocka_unit_test(areal_parameters_and_density), cmocka_unit_test(wrong_arguments_are_told),
         cmocka_unit_test(open_map_is_pressed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

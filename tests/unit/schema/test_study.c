@@ -169,6 +169,15 @@ static void all_faults_are_told_at_once(void **state) {
     assert_string_equal(faults.faults[0].detail, "7 is not an object");
     assert_string_equal(faults.faults[1].pointer, "/box/width");
     fault_list_clear(&faults);
+    /* what cases need is there, though the study has no name */
+    assert_int_equal(read_text("{\"kind\":\"boxes\",\"box\":{\"width\":[0.5,1],\"count\":7}}",
+                               &study, &faults, &err),
+                     ERROR_INPUT);
+    assert_int_equal(faults.count, 2);
+    assert_string_equal(faults.faults[0].pointer, "/name");
+    assert_string_equal(faults.faults[1].pointer, "/box/count");
+    assert_null(study);
+    fault_list_clear(&faults);
 }
 
 /* A list of choices is one value; a measure may be swept, in any of its forms. */

@@ -177,6 +177,8 @@ static void what_there_is_not_is_told(void **state) {
         {"gap@0.1", NULL, "no quantity 'gap'"},
         {"area:full@0.1", NULL, "its words are halfspace, edges, 16, 8, nodes, layered"},
         {"area@x", NULL, "\"x\" is no number"},
+        {"area@0.1.foo", NULL,
+         "\"0.1.foo\" is no number behind @; allowed behind one: .theory, .grid, .law, "},
         {"area:edges", NULL, "neither a scalar nor QUANTITY@X"},
         {"kappa,", NULL, "is no name"},
         {NULL, "hurst", "\"hurst\" is not NAME=VALUE"},

@@ -657,6 +657,79 @@ static void levels_differ_by_dashes_that_are_free(void **state) {
     study_result_clear(&study);
 }
 
+/* Returns whether all lines of a class have dots among their dashes, or none has. */
+static bool has_dots(const char *text, const char *class, bool dots) {
+    static const char BEGIN[] = "stroke-dasharray=\"";
+    bool all = true;
+    for (const char *at = text; (at = strstr(at, class)) != NULL; at++) {
+        const char *end = strstr(at, "/>"), *dash = strstr(at, BEGIN);
+        bool dashed = dash != NULL && dash < end;
+        const char *dot = dashed ? strstr(dash, "1.5 ") : NULL;
+        bool has = dot != NULL && dot < strchr(dash + sizeof BEGIN, '"');
+        all = all && has == dots;
+    }
+    return all;
+}
+
+/* Theories have dots, and curves, of several models or levels, dashes alone. */
+static void theories_are_no_curves(void **state) {
+    (void)state;
+    struct study_result study = contact_of(2, 4);
+    for (int dash = 0; dash < 2; dash++) {
+        const struct plot_request request = {
+            .lines = {.quantity = "contact_area",
+                      .model = dash ? NULL : "layered",
+                      .series = "edges",
+                      .names = {[CHANNEL_DASH] = dash ? "model" : NULL}}};
+        char *text = picture_of(&study, &request);
+        assert_true(count_of(text, "class=\"theory\"") > 1);
+        assert_true(count_of(text, "stroke-dasharray") > 3);
+        assert_true(has_dots(text, "class=\"theory\"", true));
+        assert_true(has_dots(text, "class=\"curve\"", false));
+        free(text);
+    }
+    study_result_clear(&study);
+}
+
+/* Marks of the last load are drawn within the frame, on linear and on logarithmic axes. */
+static void marks_keep_away_from_the_frame(void **state) {
+    (void)state;
+    struct study_result study = contact_of(1, 1);
+    for (int logarithmic = 0; logarithmic < 2; logarithmic++) {
+        char *text = picture_of(
+            &study, &(struct plot_request){.lines = {.quantity = "contact_area"},
+                                           .axes = logarithmic ? AXES_XY : AXES_AUTOMATIC});
+        double most = 0, x;
+        for (const char *at = text; (at = strstr(at, "<path transform=\"translate(")) != NULL;
+             at++) {
+            assert_int_equal(sscanf(at, "<path transform=\"translate(%lf", &x), 1);
+            most = x < FRAME_RIGHT && x > most ? x : most;
+        }
+        assert_true(most < FRAME_RIGHT - 8 && most > FRAME_RIGHT - 40);
+        free(text);
+    }
+    study_result_clear(&study);
+}
+
+/* A series without a name is called as its quantity is. */
+static void what_is_shown_has_a_name(void **state) {
+    (void)state;
+    struct error err = {0};
+    struct study_result study = built_study("contact", "leaks", 13);
+    const struct lines_request request = {.quantity = "leak"};
+    struct plot_lines lines = {0};
+    for (size_t c = 0; c < 13; c++) {
+        built_parameter(&study.cases[c], "/surface/hurst", NULL, 0.05 * (double)(c + 1));
+        add_curve(&study.cases[c], "leak", "", NULL, 8, 0);
+        add_curve(&study.cases[c], "leak", "effective_medium", NULL, 8, 0);
+        add_curve(&study.cases[c], "leak", "", NULL, 4, 0);
+    }
+    assert_int_equal(plot_lines_choose(&lines, &study, &request, &err), 0);
+    assert_string_equal(lines.narrowed, "finest level, leak");
+    plot_lines_clear(&lines);
+    study_result_clear(&study);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lines_narrow_as_far_as_they_must),
@@ -679,6 +752,9 @@ int main(void) {
         cmocka_unit_test(numbers_are_set),
         cmocka_unit_test(totals_of_many_bands_are_left_out),
         cmocka_unit_test(levels_differ_by_dashes_that_are_free),
+        cmocka_unit_test(theories_are_no_curves),
+        cmocka_unit_test(marks_keep_away_from_the_frame),
+        cmocka_unit_test(what_is_shown_has_a_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -307,11 +307,84 @@ static void planes_have_their_middle(void **state) {
     }
 }
 
+/* Finds the sides of the first frame. */
+static void frame_of(const char *text, double *width, double *height) {
+    double x, y;
+    const char *at = strstr(text, "class=\"frame\"");
+    assert_non_null(at);
+    while (strncmp(at, "<rect", 5) != 0)
+        at--;
+    assert_int_equal(
+        sscanf(at, "<rect x=\"%lf\" y=\"%lf\" width=\"%lf\" height=\"%lf\"", &x, &y, width, height),
+        4);
+}
+
+/* A length of y is as long as one of x, to the pixel that frames end at; of sides beyond 1 to 8 it
+ * is not, which the legend says, as it does where a cell is a mean. */
+static void lengths_are_to_scale(void **state) {
+    (void)state;
+    const struct {
+        struct grid grid;
+        double width, height;
+        const char *stretched;
+        const char *joined;
+    } maps[] = {{{800, 100, 80, 10}, 620, 77.5, NULL, ">means of 2 × 2 points<"},
+                {{100, 800, 10, 80}, 57.5, 460, NULL, ">means of 2 × 2 points<"},
+                {{160, 40, 8, 4}, 620, 310, NULL, NULL},
+                {{160, 5, 80, 2}, 620, 77.5, ">not to scale: y stretched 5 times<", NULL},
+                {{5, 160, 2, 80}, 57.5, 460, ">not to scale: x stretched 5 times<", NULL}};
+    for (size_t m = 0; m < sizeof maps / sizeof *maps; m++) {
+        double *z = waves_of(&maps[m].grid, 2), width, height;
+        char *text = draw(&maps[m].grid, z);
+        frame_of(text, &width, &height);
+        assert_true(fabs(width - maps[m].width) <= 0.5);
+        assert_true(fabs(height - maps[m].height) <= 0.5);
+        assert_int_equal(count_of(text, "not to scale"), maps[m].stretched != NULL);
+        assert_int_equal(count_of(text, ">means of "), maps[m].joined != NULL);
+        if (maps[m].stretched != NULL)
+            assert_non_null(strstr(text, maps[m].stretched));
+        if (maps[m].joined != NULL)
+            assert_non_null(strstr(text, maps[m].joined));
+        free(text);
+        free(z);
+    }
+}
+
+/* Points that are one or the other have two colours and their names, also where they are joined. */
+static void classes_have_names(void **state) {
+    (void)state;
+    for (size_t side = 64; side <= 1280; side *= 20) {
+        const struct grid grid = {.nx = side, .ny = side, .lx = 1, .ly = 1};
+        double *z = waves_of(&grid, 2);
+        for (size_t n = 0; n < grid_points(&grid); n++)
+            z[n] = z[n] > 1;
+        const struct map_picture picture = {.name = "contact",
+                                            .subject = "",
+                                            .x_label = "x",
+                                            .y_label = "y",
+                                            .z_label = "contact (1) or none (0)",
+                                            .classes = {"no contact", "in contact"},
+                                            .grid = &grid,
+                                            .z = z,
+                                            .unmarked = true};
+        char *text = draw_picture(&picture);
+        assert_int_equal(count_of(text, "class=\"heat\""), 2);
+        assert_int_equal(count_of(text, ">in contact<"), 1);
+        assert_int_equal(count_of(text, ">no contact<"), 1);
+        assert_int_equal(count_of(text, " to "), 0);
+        assert_int_equal(count_of(text, ">majorities of 4 × 4 points<"), side > 64);
+        free(text);
+        free(z);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_trace_has_its_peaks),
         cmocka_unit_test(units_are_readable),
         cmocka_unit_test(planes_have_their_middle),
+        cmocka_unit_test(lengths_are_to_scale),
+        cmocka_unit_test(classes_have_names),
         cmocka_unit_test(a_row_is_drawn_below),
         cmocka_unit_test(a_surface_has_its_summits),
         cmocka_unit_test(extremes_of_long_traces_are_seen),

@@ -149,7 +149,14 @@ static void many_cases_have_a_row_each(void **state) {
     char *text = table_of(&study, NULL);
     check_shown(text, (const char *[]){
                           "\ncase  distribution  hurst  realisations  ",
-                          "area at 0.1     area at 0.2     area at 0.3  total %\n",
+                          "area at 0.1     area at 0.2     area at 0.3  total %  mesh %\n",
+                          /* of the lightest load, as in a table a case: it holds of all three */
+                          "0.400 +- 0.010  >20          10\n", NULL});
+    check_shown(text,
+                (const char *[]){"\narea: of layered by edges at 8 points a shortest wave; its "
+                                 "total, its errors: the largest at the loads of the row.\n",
+                                 NULL});
+    check_shown(text, (const char *[]){
                           "         kappa  total %  erf_kappa  ", "\nErrors not known: cell.\n",
                           "\n   4  weibull_min     0.2             4  0.200 +- ", NULL});
     check_shown(text, (const char *[]){

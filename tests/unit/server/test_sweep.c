@@ -197,6 +197,19 @@ static void colours_are_of_a_parameter(void **state) {
     study_result_clear(&study);
 }
 
+/* The theory of a scalar has the name that its kind gives it. */
+static void theories_of_scalars_have_names(void **state) {
+    (void)state;
+    struct study_result study = built_study("contact", "light", 2);
+    const struct request kappa = {"kappa", "hurst", NULL};
+    for (size_t c = 0; c < 2; c++) {
+        built_parameter(&study.cases[c], "/surface/hurst", NULL, 0.4 * (double)(c + 1));
+        built_scalar(&study.cases[c], "kappa", 2, 0.1, 1.5958);
+    }
+    check_count(&study, &kappa, ">theory: Persson<", 1);
+    study_result_clear(&study);
+}
+
 static void what_is_left_out_is_told(void **state) {
     (void)state;
     struct error err = {0};
@@ -208,7 +221,10 @@ static void what_is_left_out_is_told(void **state) {
     study_result_clear(&study);
     study = study_of(RATIOS);
     study.cases[3].scalars[0].value = NAN;
-    check_count(&study, &DENSITY, "without a value: 1 case<", 1);
+    check_count(&study, &DENSITY, "without a value: case 3<", 1);
+    for (size_t c = 0; c < 7; c++)
+        study.cases[c].scalars[0].value = NAN;
+    check_count(&study, &DENSITY, "without a value: cases 0, 1, 2, 3, 4, 5 and 1 more<", 1);
     study_result_clear(&study);
     study = built_study("statistics", "alone", 1);
     built_parameter(&study.cases[0], "/surface/hurst", NULL, 0.5);
@@ -227,6 +243,7 @@ int main(void) {
         cmocka_unit_test(points_rise_along_a_line),
         cmocka_unit_test(parameters_are_named),
         cmocka_unit_test(colours_are_of_a_parameter),
+        cmocka_unit_test(theories_of_scalars_have_names),
         cmocka_unit_test(what_is_left_out_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -50,14 +50,18 @@ static int write_map(const char *path, enum press_map which, const struct press_
     const char *const names[MAP_COUNT] = {units->modulus ? "pressure p" : "pressure p/(E* h')",
                                           "gap", "contact (1) or none (0)"};
     const char *const z_units[MAP_COUNT] = {units->modulus ? "Pa" : "", units->height, ""};
-    const struct map_picture labels = {.name = SUBJECTS[which],
-                                       .subject = "last load",
-                                       .x_label = "x",
-                                       .y_label = "y",
-                                       .z_label = names[which],
-                                       .xy_unit = units->length,
-                                       .z_unit = z_units[which],
-                                       .note = which == MAP_PRESSURE ? "blank: no contact" : NULL};
+    struct map_picture labels = {.name = SUBJECTS[which],
+                                 .subject = "last load",
+                                 .x_label = "x",
+                                 .y_label = "y",
+                                 .z_label = names[which],
+                                 .xy_unit = units->length,
+                                 .z_unit = z_units[which],
+                                 .note = which == MAP_PRESSURE ? "blank: no contact" : NULL};
+    if (which == MAP_CONTACT) {
+        labels.classes[0] = "no contact";
+        labels.classes[1] = "in contact";
+    }
     return map_output_is_picture(path) ? draw_values(path, which, &labels, grid, values, err)
                                        : map_output_write(path, &labels, grid, values, err);
 }
