@@ -297,29 +297,58 @@ static bool is_known(const struct reference *reference, const char *path) {
     return false;
 }
 
-static void see_path(struct near_name *near, const char *typed, const char *path) {
-    struct near_name last = {.typed = typed};
-    near_name_see(&last, strrchr(path, '/') + 1);
-    if (last.name == NULL || (near->name != NULL && near->distance <= last.distance))
+/* What was likely meant by a path that is none: of paths whose last names are as near, one in the
+ * object that was typed, then the shortest. */
+struct near_path {
+    const char *typed, *last; /* its last name */
+    char path[POINTER_SIZE];  /* "": none is near */
+    size_t distance;
+    bool same_object;
+};
+
+static void see_path(struct near_path *near, const char *path) {
+    struct near_name last = {.typed = near->last};
+    const char *name = strrchr(path, '/') + 1;
+    const size_t before = (size_t)(near->last - near->typed);
+    near_name_see(&last, name);
+    if (last.name == NULL)
         return;
-    near->name = path;
+    bool same = (size_t)(name - path) == before && strncmp(path, near->typed, before) == 0;
+    bool nearer = *near->path == '\0' || last.distance < near->distance;
+    bool tie = !nearer && last.distance == near->distance;
+    if (!nearer && !(tie && same > near->same_object) &&
+        !(tie && same == near->same_object && strlen(path) < strlen(near->path)))
+        return;
+    snprintf(near->path, sizeof near->path, "%s", path);
     near->distance = last.distance;
+    near->same_object = same;
 }
 
-/* Names the parameter whose last name is nearest. */
-static int refuse_path(const struct reference *reference, const char *path, struct error *err) {
-    const char *slash = strrchr(path, '/'), *dot = strrchr(path, '.');
-    const char *typed = slash != NULL ? slash + 1 : dot != NULL ? dot + 1 : path;
-    struct near_name near = {.typed = typed};
+/* Sees a parameter, and the objects that it is in. */
+static void see_paths(struct near_path *near, const char *path) {
+    char object[POINTER_SIZE];
+    snprintf(object, sizeof object, "%s", path);
+    for (char *slash = strchr(object + 1, '/'); slash != NULL; slash = strchr(slash + 1, '/')) {
+        *slash = '\0';
+        see_path(near, object);
+        *slash = '/';
+    }
+    see_path(near, path);
+}
+
+/* path: as path_read has it; given: as it was typed. */
+static int refuse_path(const struct reference *reference, const char *path, const char *given,
+                       struct error *err) {
+    struct near_path near = {.typed = path, .last = strrchr(path, '/') + 1};
     const struct parameter *row;
-    char hint[NEAR_HINT_SIZE];
     for (size_t p = 0; p < COMMON_PARAMETERS.count; p++)
-        see_path(&near, typed, COMMON_PARAMETERS.rows[p].path);
+        see_paths(&near, COMMON_PARAMETERS.rows[p].path);
     for (size_t k = 0; reference->kinds[k] != NULL; k++)
         for (size_t p = 0; (row = parameter_row(reference->kinds[k]->tables, p)) != NULL; p++)
-            see_path(&near, typed, row->path);
-    return error_set(err, ERROR_INPUT, "a study has no parameter \"%.100s\"%s", path,
-                     near_name_hint(&near, hint));
+            see_paths(&near, row->path);
+    return error_set(err, ERROR_INPUT, "a study has no parameter \"%.100s\"%s%.100s%s", given,
+                     *near.path != '\0' ? " (did you mean " : "", near.path,
+                     *near.path != '\0' ? "?)" : "");
 }
 
 int reference_print(FILE *file, const struct study_kind *const *kinds, const char *path,
@@ -334,7 +363,7 @@ int reference_print(FILE *file, const struct study_kind *const *kinds, const cha
     if (path == NULL || is_known(&reference, below))
         write_tables(file, &reference, below, print_table);
     else
-        status = refuse_path(&reference, path, err);
+        status = refuse_path(&reference, below, path, err);
     free(reference.names);
     return status;
 }

@@ -58,17 +58,42 @@ bool rising_numbers(const char *text, size_t most, double *out, size_t *count) {
     }
 }
 
-bool quantities_parse(const char *text, const char *unit, size_t most, double *out, size_t *count) {
+/* Says of one that could not be read whether it is no number, has no unit, or another one. */
+static int refuse_quantity(const char *text, size_t width, const char *unit, struct error *err) {
+    char copy[64], *end;
+    snprintf(copy, sizeof copy, "%.*s", (int)(width < sizeof copy ? width : sizeof copy), text);
+    double value = strtod(copy, &end);
+    end += strspn(end, " ");
+    if (end == copy || !(value > 0 && isfinite(value)))
+        return error_set(err, ERROR_INPUT, "\"%.40s\" is no number above 0 with a unit", copy);
+    if (*end == '\0')
+        return error_set(err, ERROR_INPUT, "%.40s has no unit, %s or one with a prefix from p to T",
+                         copy, unit);
+    return error_set(err, ERROR_INPUT,
+                     "\"%.20s\" is not the unit %s, which may have a prefix from p to T; capitals "
+                     "count",
+                     end, unit);
+}
+
+int quantities_parse(const char *text, const char *unit, size_t most, double *out, size_t *count,
+                     struct error *err) {
+    const char *before = text;
     *count = 0;
     for (;; text++) {
         size_t width = strcspn(text, ",");
-        if (*count == most || !quantity_parse(text, width, unit, &out[*count]) ||
-            (*count > 0 && !(out[*count] > out[*count - 1])))
-            return false;
+        if (*count == most)
+            return error_set(err, ERROR_INPUT, "more than %zu values", most);
+        if (!quantity_parse(text, width, unit, &out[*count]))
+            return refuse_quantity(text, width, unit, err);
+        if (*count > 0 && !(out[*count] > out[*count - 1]))
+            return error_set(err, ERROR_INPUT, "must rise; %.*s is not above %.*s",
+                             (int)(width < 40 ? width : 40), text, (int)strcspn(before, ","),
+                             before);
         ++*count;
+        before = text;
         text += width;
         if (*text == '\0')
-            return true;
+            return 0;
     }
 }
 

@@ -3,14 +3,17 @@
 #ifndef RUGO_SERVER_SHOW_QUANTITY_H
 #define RUGO_SERVER_SHOW_QUANTITY_H
 
+#include "core/error.h"
 #include <stdbool.h>
 #include <stddef.h>
 
 /* Reads a finite number above 0 with its unit ("Pa", "N", "N/m"), which may have a prefix from p to
  * T and blanks before it: "210GPa", "1 MPa". False where it is not that. */
 bool quantity_parse(const char *text, size_t size, const char *unit, double *out);
-/* Reads such quantities with commas between, rising, at most `most`. */
-bool quantities_parse(const char *text, const char *unit, size_t most, double *out, size_t *count);
+/* Reads such quantities with commas between, rising, at most `most`. Returns ERROR_INPUT with the
+ * first that is wrong, and why, for what is said of all of them to go before. */
+int quantities_parse(const char *text, const char *unit, size_t most, double *out, size_t *count,
+                     struct error *err);
 
 /* A text of numbers with commas between, rising and above 0; false where it is not that, or more
  * than `most`. */

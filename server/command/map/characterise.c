@@ -99,12 +99,12 @@ static int print(const struct characterise_options *options, const struct map_fi
 static int keep_groups(struct named_values *found, const char *groups, struct error *err) {
     const char *unknown;
     size_t length;
+    char known[400];
     if (groups == NULL || named_values_keep(found, groups, &unknown, &length))
         return 0;
-    return error_set(err, ERROR_INPUT,
-                     "--group %.60s: there is no group '%.*s'; without --group the last lines name "
-                     "those of the map",
-                     groups, length < 40 ? (int)length : 40, unknown);
+    named_values_groups(found, known, sizeof known);
+    return error_set(err, ERROR_INPUT, "--group %.60s: there is no group '%.*s'; the map has %s",
+                     groups, length < 40 ? (int)length : 40, unknown, known);
 }
 
 static int check_group(const struct characterise_options *options, struct error *err) {

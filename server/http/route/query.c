@@ -1,5 +1,6 @@
 /* The query of a request is checked for what it may hold, and numbers are read from it; its body is
  * read as JSON. */
+#include "schema/near_name.h"
 #include "server/http/route/route.h"
 #include <errno.h>
 #include <stdio.h>
@@ -12,6 +13,22 @@ struct query {
     struct fault_list faults;
 };
 
+/* Says which name was likely meant, or which there may be. */
+static void refuse_name(struct query *query, const char *pointer, const char *name) {
+    struct near_name near = {.typed = name};
+    char hint[NEAR_HINT_SIZE], allowed[400] = "";
+    for (size_t n = 0; n < QUERY_NAMES_MOST && query->names[n] != NULL; n++) {
+        size_t used = strlen(allowed);
+        snprintf(allowed + used, sizeof allowed - used, "%s%s",
+                 n > 0 ? ", " : "; allowed: ", query->names[n]);
+        near_name_see(&near, query->names[n]);
+    }
+    fault_add(&query->faults, pointer, "unknown name%s",
+              near.name != NULL  ? near_name_hint(&near, hint)
+              : *allowed != '\0' ? allowed
+                                 : "; none is allowed here");
+}
+
 static enum MHD_Result check_parameter(void *context, enum MHD_ValueKind kind, const char *name,
                                        const char *value) {
     struct query *query = context;
@@ -22,7 +39,7 @@ static enum MHD_Result check_parameter(void *context, enum MHD_ValueKind kind, c
     while (n < QUERY_NAMES_MOST && query->names[n] != NULL && strcmp(query->names[n], name) != 0)
         n++;
     if (n == QUERY_NAMES_MOST || query->names[n] == NULL)
-        fault_add(&query->faults, pointer, "unknown name");
+        refuse_name(query, pointer, name);
     else if (query->seen[n])
         fault_add(&query->faults, pointer, "given twice");
     else if (value == NULL)

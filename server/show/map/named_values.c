@@ -87,6 +87,23 @@ static bool has_group(const struct named_values *values, const char *name, size_
     return false;
 }
 
+static void append_group(char *text, size_t size, const char *group) {
+    size_t used = strlen(text);
+    bool known = false;
+    for (const char *at = text; (at = strstr(at, group)) != NULL && !known; at++)
+        known = (at == text || at[-1] == ' ') && strchr(", ", at[strlen(group)]) != NULL;
+    if (!known)
+        snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "", group);
+}
+
+void named_values_groups(const struct named_values *values, char *text, size_t size) {
+    *text = '\0';
+    for (size_t n = 0; n < values->count; n++)
+        append_group(text, size, values->list[n].group);
+    for (size_t c = 0; c < values->column_count; c++)
+        append_group(text, size, values->columns[c].group);
+}
+
 bool named_values_keep(struct named_values *values, const char *groups, const char **unknown,
                        size_t *length) {
     for (*unknown = groups;; *unknown += *length + 1) {

@@ -45,6 +45,8 @@ void named_values_add_text(struct named_values *out, const char *group, const ch
 double *named_values_column_length(struct named_values *out, const char *group, const char *name,
                                    size_t count, int power);
 
+/* Writes the names of the groups that there are, with commas between. */
+void named_values_groups(const struct named_values *values, char *text, size_t size);
 /* Leaves the groups of a list, "heights,areal", alone. On false, *unknown is the first name of the
  * list that is none, and its length. */
 bool named_values_keep(struct named_values *values, const char *groups, const char **unknown,

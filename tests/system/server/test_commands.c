@@ -40,6 +40,8 @@ static const struct {
     {"$RUGO generate --file x one.json", 2, "unknown option --file; see"},
     {"$RUGO press -q text.csv", 2, "unknown option -q"},
     {"$RUGO check --schema=1", 2, "--schema takes no value"},
+    {"$RUGO help study surface/heigths", 2, "(did you mean /surface/heights?)"},
+    {"$RUGO help study surface.like.heigths", 2, "(did you mean /surface/like/heights?)"},
     {"$RUGO run --workers -1 one.json", 2, "--workers -1 is not a whole number in [0, 4096]"},
     {"$RUGO run --workers many one.json", 2, "--workers many is not a whole number"},
     {"$RUGO serve --lease 0", 2, "--lease 0 is not a whole number in [1, 31536000]"},

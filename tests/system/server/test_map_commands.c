@@ -413,7 +413,8 @@ static void groups_are_printed(void **state) {
     assert_true(contains("shell.out", "{\"grid\":{\"nx\":"));
     assert_false(contains("shell.out", "heights"));
     assert_int_equal(run_shell("$RUGO characterise g.npy --group height"), 2);
-    assert_true(contains("shell.err", "--group height: there is no group 'height'"));
+    assert_true(contains("shell.err", "--group height: there is no group 'height'; the map has "));
+    assert_true(contains("shell.err", ", grid, heights, "));
     assert_int_equal(run_shell("$RUGO characterise g.npy --group grid --all"), 2);
     assert_int_equal(run_shell("$RUGO characterise g.npy --group grid --format svg"), 2);
     assert_true(contains("shell.err", "--group goes with --format text or json"));

@@ -30,14 +30,24 @@ static void quantities_are_read(void **state) {
         assert_int_equal(read, READ[n].value > 0);
         check_relative(value, READ[n].value, 1e-15);
     }
+    static const struct {
+        const char *text, *reason;
+    } WRONG[] = {{"1MPa,1kPa", "must rise; 1kPa is not above 1MPa"},
+                 {"100", "100 has no unit, Pa or one with a prefix"},
+                 {"100mpa", "\"mpa\" is not the unit Pa"},
+                 {"1Pa,", "\"\" is no number above 0 with a unit"},
+                 {"-1Pa", "\"-1Pa\" is no number above 0"},
+                 {"1Pa,2Pa,3Pa,4Pa", "more than 3 values"}};
     double list[3];
     size_t count;
-    assert_true(quantities_parse("1kPa,1MPa", "Pa", 3, list, &count));
+    struct error err = {0};
+    assert_int_equal(quantities_parse("1kPa,1MPa", "Pa", 3, list, &count, &err), 0);
     assert_int_equal(count, 2);
     check_close(list[1], 1e6, 1e-6);
-    assert_false(quantities_parse("1MPa,1kPa", "Pa", 3, list, &count));
-    assert_false(quantities_parse("1Pa,", "Pa", 3, list, &count));
-    assert_false(quantities_parse("1Pa,2Pa,3Pa,4Pa", "Pa", 3, list, &count));
+    for (size_t n = 0; n < sizeof WRONG / sizeof *WRONG; n++) {
+        assert_int_equal(quantities_parse(WRONG[n].text, "Pa", 3, list, &count, &err), ERROR_INPUT);
+        assert_non_null(strstr(err.text, WRONG[n].reason));
+    }
 }
 
 static void values_have_readable_prefixes(void **state) {
@@ -115,7 +125,8 @@ static void loads_are_refused(void **state) {
         {{.force = "1N"}, "--force needs the stiffness of the block"},
         {{.modulus = "210"}, "--modulus 210: allowed is a pressure above 0 with its unit"},
         {{.modulus = "1Pa", .effective_modulus = "1Pa"}, "one of the two tells the other"},
-        {{.pressure = "2MPa,1MPa", .modulus = "1GPa"}, "--pressure 2MPa,1MPa: not up to 1000"},
+        {{.pressure = "2MPa,1MPa", .modulus = "1GPa"},
+         "--pressure 2MPa,1MPa (up to 1000 rising ones, such as 1MPa,2MPa): must rise; 1MPa"},
         {{.loads = "0.2,0.1"}, "--loads 0.2,0.1: not up to 1000 rising numbers above 0"}};
     for (size_t n = 0; n < sizeof WRONG / sizeof *WRONG; n++) {
         struct press_loads loads;

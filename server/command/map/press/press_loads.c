@@ -94,12 +94,12 @@ static int parse_values(struct press_loads *out, const struct press_words *words
         return 0;
     }
     out->kind = LOADS_PRESSURE;
-    return quantities_parse(words->pressure, "Pa", PRESS_LOADS_MOST, out->value, &out->count)
+    int status =
+        quantities_parse(words->pressure, "Pa", PRESS_LOADS_MOST, out->value, &out->count, err);
+    return status == 0
                ? 0
-               : error_set(err, ERROR_INPUT,
-                           "--pressure %.40s: not up to %d rising pressures with units, such as "
-                           "1MPa,2MPa",
-                           words->pressure, PRESS_LOADS_MOST);
+               : error_context(err, "--pressure %.40s (up to %d rising ones, such as 1MPa,2MPa)",
+                               words->pressure, PRESS_LOADS_MOST);
 }
 
 int press_loads_parse(struct press_loads *out, const struct press_words *words, struct error *err) {
@@ -130,10 +130,11 @@ int press_loads_of_map(struct press_loads *loads, const struct height_map *map, 
                          "--unit and --z-unit");
     bool profile = grid_is_profile(&map->grid);
     const char *unit = profile ? "N/m" : "N";
-    if (!quantities_parse(loads->force, unit, PRESS_LOADS_MOST, loads->value, &loads->count))
-        return error_set(
-            err, ERROR_INPUT, "--force %.40s: not up to %d rising forces with units, such as %s",
-            loads->force, PRESS_LOADS_MOST, profile ? "10N/m, as a profile has them" : "10mN,20mN");
+    if (quantities_parse(loads->force, unit, PRESS_LOADS_MOST, loads->value, &loads->count, err) !=
+        0)
+        return error_context(err, "--force %.40s (up to %d rising ones, such as %s)", loads->force,
+                             PRESS_LOADS_MOST,
+                             profile ? "10N/m, as a profile has them" : "10mN,20mN");
     if (loads->slips)
         contact_loads_add(loads->value, &loads->count, loads->value[loads->count - 1]);
     return 0;
