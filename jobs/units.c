@@ -35,6 +35,7 @@ static const struct unit_row AXES[] = {
     {"peak p/(E* h'_rms)", 0, NOTHING, "peak p", "Pa", 1, 0, {{"rms_slope", 1}}, 0},
     {"mean gap/sqrt(m0)", 0, NOTHING, "mean gap", "m", 0, 1, HEIGHT, 0},
     {"mean gap/sqrt(m0) as the load falls", 0, NOTHING, "mean gap as the load falls", "m", 0, 1, HEIGHT, 0},
+    {"approach/sqrt(m0)", 0, NOTHING, "approach", "m", 0, 1, HEIGHT, 0},
     {"approach left/sqrt(m0)", 0, NOTHING, "approach left", "m", 0, 1, HEIGHT, 0},
     {"tangential displacement/sqrt(m0)", 0, NOTHING, "tangential displacement", "m", 0, 1, HEIGHT, 0},
     {"sliding/sqrt(m0)", 0, NOTHING, "sliding", "m", 0, 1, HEIGHT, 0},
@@ -194,6 +195,15 @@ static void set_curve(const struct scales *scales, struct curve *curve) {
                                                1 / (curve->x_unit.scale * curve->x2_unit.scale)};
 }
 
+static void set_all(const struct scales *scales, struct case_result *result) {
+    if (isnan(scales->length) && isnan(scales->modulus))
+        return;
+    for (size_t a = 0; a < result->curve_count; a++)
+        set_curve(scales, &result->curves[a]);
+    for (size_t s = 0; s < result->scalar_count; s++)
+        result->scalars[s].unit = UNIT_IN(scales, SCALARS, result->scalars[s].name);
+}
+
 void units_set(struct case_result *result) {
     struct scales scales = {
         .result = result,
@@ -202,10 +212,17 @@ void units_set(struct case_result *result) {
                         [CURRENT] = resistivity_of(result, "/contact/resistivity", 1),
                         [HEAT] = resistivity_of(result, "/contact/conductivity", -1)}};
     units_scales(result, &scales.length, &scales.modulus);
-    if (isnan(scales.length) && isnan(scales.modulus))
-        return;
-    for (size_t a = 0; a < result->curve_count; a++)
-        set_curve(&scales, &result->curves[a]);
-    for (size_t s = 0; s < result->scalar_count; s++)
-        result->scalars[s].unit = UNIT_IN(&scales, SCALARS, result->scalars[s].name);
+    set_all(&scales, result);
+}
+
+void units_set_of_map(struct case_result *result, const struct map_scales *known) {
+    const struct scales scales = {
+        .result = result,
+        .dimension = known->profile ? 1 : 2,
+        .length = known->metres,
+        .modulus = known->modulus,
+        .resistivity = {[NOTHING] = 1,
+                        [CURRENT] = known->heat ? (double)NAN : known->resistivity,
+                        [HEAT] = known->heat ? known->resistivity : (double)NAN}};
+    set_all(&scales, result);
 }

@@ -168,6 +168,14 @@ static int append_notes(const struct curve_maker *maker, struct error *err) {
     return notes_result(&notes, maker->out, err);
 }
 
+/* What curves are over, in the units of the map. */
+static int append_scales(const struct curve_maker *maker, struct error *err) {
+    const struct scalar height = scalar_named("rms_height", maker->press->height, NAN, NAN);
+    const struct scalar slope = scalar_named("rms_slope", maker->press->slope, NAN, NAN);
+    int status = result_add_scalar(maker->out, &height, err);
+    return status != 0 ? status : result_add_scalar(maker->out, &slope, err);
+}
+
 int map_press_result(struct case_result *out, const struct map_press *press, size_t count,
                      const struct press_series *series, size_t loads, struct error *err) {
     const struct curve_maker maker = {press, count, loads, series, out};
@@ -180,6 +188,8 @@ int map_press_result(struct case_result *out, const struct map_press *press, siz
             status = append_value(&maker, MEASURE_CURVES[a], err);
     for (size_t m = 0; m < count && status == 0; m++)
         status = append_own(&maker, m, err);
+    if (status == 0)
+        status = append_scales(&maker, err);
     return status == 0 ? append_notes(&maker, err) : status;
 }
 

@@ -1,7 +1,11 @@
 #include "server/show/map/press_print.h"
+#include "core/file/plain_text.h"
 #include "core/map/length_unit.h"
 #include "jobs/maps/press/map_press_curves.h"
+#include "jobs/units.h"
 #include "schema/json/json.h"
+#include "schema/result/csv.h"
+#include "schema/result/result_json.h"
 #include "server/show/map/press_slip.h"
 #include "server/show/quantity.h"
 #include "server/show/table/text_table.h"
@@ -525,4 +529,46 @@ cJSON *press_document(const struct press_report *report) {
         return document;
     cJSON_Delete(document);
     return NULL;
+}
+
+/* --- curves --- */
+
+/* Says in front of a table which map was pressed, and by which program. */
+static void print_origin(FILE *file, const struct preparation_record *record) {
+    static const char *const NOTES[][2] = {
+        {"# map: ", "file"}, {", SHA-256 ", "sha256"}, {"; by ", "program"}};
+    char steps[PREPARATION_STEPS_TEXT];
+    bool any = false;
+    for (size_t n = 0; n < sizeof NOTES / sizeof *NOTES; n++) {
+        const char *text = preparation_text(record, NOTES[n][1]);
+        if (text == NULL || (n > 0 && !any))
+            continue;
+        fputs(NOTES[n][0], file);
+        text_print_plain(file, text);
+        any = true;
+    }
+    preparation_steps_text(record, steps, sizeof steps);
+    if (any)
+        fputc('\n', file);
+    if (*steps == '\0')
+        return;
+    fputs("# prepared: ", file);
+    text_print_plain(file, steps);
+    fputc('\n', file);
+}
+
+bool press_print_curves(FILE *file, const struct press_report *report, bool csv) {
+    const struct study_result study = {.case_count = 1, .cases = report->result};
+    const struct map_scales known = {.profile = grid_is_profile(&report->press->map),
+                                     .metres = report->metres ? 1 : (double)NAN,
+                                     .modulus = report->modulus > 0 ? report->modulus : (double)NAN,
+                                     .resistivity = report->resistivity > 0 ? report->resistivity
+                                                                            : (double)NAN,
+                                     .heat = report->heat};
+    units_set_of_map(report->result, &known);
+    if (csv) {
+        print_origin(file, report->record);
+        return csv_print(file, &study);
+    }
+    return result_print(file, report->result) && fputc('\n', file) != EOF;
 }

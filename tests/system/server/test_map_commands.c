@@ -153,6 +153,14 @@ static void several_models_press_a_map(void **state) {
     free(text);
     assert_true(contains("models.csv", ",block_error,block_bound,model_error,model_bound,"));
     assert_true(contains("models.csv", "contact_area,edges,layered,"));
+    assert_true(contains("models.csv", "# map: wave.csv, SHA-256 "));
+    assert_false(contains("models.csv", "_physical"));
+    assert_int_equal(run_shell("$RUGO press wave.csv --dx 1um --z-unit nm --modulus 2GPa "
+                               "--pressure 1kPa --format csv"),
+                     0);
+    assert_true(contains("shell.out", "# prepared: "));
+    assert_true(contains("shell.out", ",x_physical,x_unit,"));
+    assert_true(contains("shell.out", ",Pa,"));
     assert_true(contains("models.txt", "errors by the height of the block"));
     assert_false(contains("bare.txt", "errors by"));
     assert_int_equal(run_shell("$RUGO press wave.csv --model layered,layered"), 2);

@@ -54,6 +54,38 @@ static void check_unit(const struct physical_unit *unit, const char *name, doubl
     check_relative(unit->scale, scale, 1e-14);
 }
 
+/* A map of 105 nm RMS height and slope 0.1 in metres, E* = 2 GPa, or what is known of that alone.
+ */
+static void maps_have_pressures_and_lengths(void **state) {
+    (void)state;
+    static const struct {
+        struct map_scales known;
+        double pressure, gap, stiffness, conductance;
+    } MAPS[] = {{{false, 1, 2e9, 1e-7, false}, 2e8, 105e-9, 2e8 / 105e-9, 0.2 / 105e-9 / 1e-7},
+                {{true, NAN, 2e9, NAN, false}, 2e8, 0, 0, 0},
+                {{false, 1, NAN, NAN, false}, 0, 105e-9, 0, 0},
+                {{false, NAN, NAN, NAN, false}, 0, 0, 0, 0}};
+    for (size_t m = 0; m < sizeof MAPS / sizeof *MAPS; m++) {
+        struct study_result study = built_study("contact", "map", 1);
+        struct case_result *one = &study.cases[0];
+        built_scalar(one, "rms_height", 105e-9, NAN, NAN);
+        built_scalar(one, "rms_slope", 0.1, NAN, NAN);
+        add_curve(one, "approach", "p/(E* h'_rms)", "approach/sqrt(m0)");
+        add_curve(one, "stiffness", "p/(E* h'_rms)", "K sqrt(m0)/(E* h'_rms)");
+        add_curve(one, "conductance", "p/(E* h'_rms)", "G (rho1 + rho2) sqrt(m0)/(2 h'_rms)");
+        units_set_of_map(one, &MAPS[m].known);
+        const double scales[] = {MAPS[m].gap, MAPS[m].stiffness, MAPS[m].conductance};
+        static const char *const UNITS[] = {"m", "Pa/m", "S/m^2"};
+        for (size_t c = 0; c < 3; c++) {
+            check_unit(&one->curves[c].x_unit, MAPS[m].pressure > 0 ? "Pa" : NULL,
+                       MAPS[m].pressure);
+            check_unit(&one->curves[c].y_unit, scales[c] > 0 ? UNITS[c] : NULL, scales[c]);
+        }
+        check_unit(&one->scalars[0].unit, MAPS[m].gap > 0 ? "m" : NULL, 1);
+        study_result_clear(&study);
+    }
+}
+
 static void contact_has_pressures_and_lengths(void **state) {
     (void)state;
     struct study_result study = contact_made(1);
@@ -238,6 +270,7 @@ static void differences_have_common_units(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(maps_have_pressures_and_lengths),
         cmocka_unit_test(contact_has_pressures_and_lengths),
         cmocka_unit_test(statistics_have_heights_and_curvatures),
         cmocka_unit_test(conductance_is_of_current_or_heat),

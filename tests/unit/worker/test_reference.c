@@ -59,7 +59,7 @@ static void a_path_narrows(void **state) {
     char *text = text_of("surface.heigths", &status, &err);
     assert_int_equal(status, ERROR_INPUT);
     assert_string_equal(err.text, "a study has no parameter \"surface.heigths\" (did you mean "
-                                  "/surface/like/heights?)");
+                                  "/surface/heights?)");
     assert_string_equal(text, "");
     free(text);
 }

@@ -4,8 +4,6 @@
 #include "jobs/maps/map_counter.h"
 #include "jobs/maps/press/map_press_curves.h"
 #include "jobs/maps/press/map_press_error.h"
-#include "schema/result/csv.h"
-#include "schema/result/result_json.h"
 #include "schema/study/parameter.h"
 #include "server/command/command.h"
 #include "server/command/map/map_file.h"
@@ -477,20 +475,12 @@ static int print_json(const struct press_report *report, struct error *err) {
     return status;
 }
 
-/* As those of a study with one case. Returns false when out of memory. */
-static bool print_curves(const struct press_report *report, int format) {
-    const struct study_result study = {.case_count = 1, .cases = report->result};
-    if (format == FORMAT_CSV)
-        return csv_print(stdout, &study);
-    return result_print(stdout, report->result) && putchar('\n') != EOF;
-}
-
 static int print(const struct press_report *report, int format, struct error *err) {
     if (format == FORMAT_JSON)
         return print_json(report, err);
     if (format == FORMAT_TEXT)
         press_print_table(stdout, report);
-    else if (!print_curves(report, format))
+    else if (!press_print_curves(stdout, report, format == FORMAT_CSV))
         return error_memory(err, sizeof *report->result, "the curves");
     return output_flush(err);
 }
