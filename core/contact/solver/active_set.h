@@ -5,12 +5,12 @@
  * nodes with negative pressures leave the set, and nodes that penetrate join it. The inverse
  * compliance is an M-matrix (nothing off its diagonal is positive), so that a set that is too large
  * shrinks to the solution without oscillating. A coating some times stiffer than the block bends as
- * a plate does, and its matrix is none; such contacts converged all the same. On a profile of 128 longest waves this takes 5 to 10
- * sets, on a surface 5 to 8, of one to three steps each. Steps that cut pressures at 0 take 40 to
- * 80, and more on longer cells. The proof assumes a given approach, and gaps that are not averaged
- * by a mesh. With a given load all random contacts on half-spaces, layers and meshes ended at their
- * solutions all the same: 3588 of profiles, 66 300 of surfaces of 16 to 1023 nodes a side under
- * loads of 0.001 to 0.9. */
+ * a plate does, and its matrix is none; such contacts converged all the same. On a profile of 128
+ * longest waves this takes 5 to 10 sets, on a surface 5 to 8, of one to three steps each. Steps
+ * that cut pressures at 0 take 40 to 80, and more on longer cells. The proof assumes a given
+ * approach, and gaps that are not averaged by a mesh. With a given load all random contacts on
+ * half-spaces, layers and meshes ended at their solutions all the same: 3588 of profiles, 66 300 of
+ * surfaces of 16 to 1023 nodes a side under loads of 0.001 to 0.9. */
 #ifndef RUGO_CORE_CONTACT_SOLVER_ACTIVE_SET_H
 #define RUGO_CORE_CONTACT_SOLVER_ACTIVE_SET_H
 

@@ -66,11 +66,8 @@ static int press(struct kept_writer *writer, struct random_key key, const double
                  const char *model, struct error *err) {
     const uint64_t realisation = key.realisation;
     const struct kept_order *order = writer->order;
-    const struct steps_order steps = {.z = z,
-                                      .key = key,
-                                      .model = model,
-                                      .kept = true,
-                                      .stop = is_stopped};
+    const struct steps_order steps = {
+        .z = z, .key = key, .model = model, .kept = true, .stop = is_stopped};
     struct step_folder folder = {0};
     const struct steps_sink sink = {put, &folder};
     int status = make_folders(writer, realisation, model, err);

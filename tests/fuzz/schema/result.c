@@ -4,9 +4,9 @@
 #include "core/file/memory_file.h"
 #include "schema/json/json.h"
 #include "schema/result/bytes/bytes.h"
-#include "schema/result/csv.h"
 #include "schema/result/bytes/curve_bytes.h"
 #include "schema/result/bytes/packed_bytes.h"
+#include "schema/result/csv.h"
 #include "schema/result/result_json.h"
 #include "tests/support/fuzz/fuzz.h"
 
