@@ -350,37 +350,39 @@ static int read_pdf(struct contact_case *out, struct values *values, struct erro
     return 0;
 }
 
-/* Reads the realisations whose nodes are written, and the loads of these files. */
-static int read_kept(struct contact_case *out, struct values *values, struct error *err) {
-    static const char realisations[] = "/contact/keep/realisations",
-                      loads[] = "/contact/keep/loads";
-    double *at = NULL;
-    int status = values_numbers(values, realisations, &out->kept, &out->kept_count, err);
-    if (status == 0)
-        status = values_numbers(values, loads, &at, &out->kept_load_count, err);
-    if (status == 0 && at != NULL) {
-        out->kept_loads = array_create(out->kept_load_count, sizeof *out->kept_loads);
-        if (out->kept_loads == NULL)
-            status = error_memory(err, out->kept_load_count * sizeof *out->kept_loads, "loads");
-    }
-    if (status != 0) {
-        free(at);
+/* Reads the loads of files that are kept. */
+static int read_kept_loads(struct contact_case *out, struct values *values, struct error *err) {
+    static const char path[] = "/contact/keep/loads";
+    double *at;
+    int status = values_numbers(values, path, &at, &out->kept_load_count, err);
+    if (status != 0 || at == NULL)
         return status;
-    }
-    check_rising(values, realisations, out->kept_count, out->kept);
-    check_rising(values, loads, out->kept_load_count, at);
-    for (size_t a = 0; a < out->kept_count; a++)
-        if (out->kept[a] != floor(out->kept[a]))
-            values_fault(values, realisations, "%g is no whole number", out->kept[a]);
-    for (size_t a = 0; a < out->kept_load_count && out->load_count > 0; a++) {
+    out->kept_loads = array_create(out->kept_load_count, sizeof *out->kept_loads);
+    if (out->kept_loads == NULL)
+        status = error_memory(err, out->kept_load_count * sizeof *out->kept_loads, "loads");
+    check_rising(values, path, out->kept_load_count, at);
+    for (size_t a = 0; status == 0 && a < out->kept_load_count && out->load_count > 0; a++) {
         out->kept_loads[a] = load_find(out, at[a]);
         if (out->kept_loads[a] == out->load_count)
-            values_fault(values, loads, "%g is none of the study's pressures", at[a]);
+            values_fault(values, path, "%g is none of the study's pressures", at[a]);
     }
+    if (out->kept_count == 0)
+        values_fault(values, path, "loads of no realisation: give /contact/keep/realisations");
     free(at);
-    if (out->kept_load_count > 0 && out->kept_count == 0)
-        values_fault(values, loads, "loads of no realisation: give /contact/keep/realisations");
-    return 0;
+    return status;
+}
+
+/* Reads the realisations whose nodes are written, and the loads of these files. */
+static int read_kept(struct contact_case *out, struct values *values, struct error *err) {
+    static const char path[] = "/contact/keep/realisations";
+    int status = values_numbers(values, path, &out->kept, &out->kept_count, err);
+    if (status != 0)
+        return status;
+    check_rising(values, path, out->kept_count, out->kept);
+    for (size_t a = 0; a < out->kept_count; a++)
+        if (out->kept[a] != floor(out->kept[a]))
+            values_fault(values, path, "%g is no whole number", out->kept[a]);
+    return read_kept_loads(out, values, err);
 }
 
 static const char COUNTER_YOUNG[] = "/counter_surface/young";
