@@ -296,8 +296,7 @@ static void settle_beat(struct dispatcher *dispatcher, struct lease *lease,
     if (!beats(lease))
         return;
     int64_t interval = lease_interval_ms(dispatcher, lease);
-    if (released && report->status == 0)
-        atomic_store(&lease->given_back, true);
+    atomic_store(&lease->given_back, released && report->status == 0);
     if (report->status == ERROR_STATE || (released && report->status == 0))
         lose(dispatcher, lease);
     else

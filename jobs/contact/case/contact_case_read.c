@@ -36,7 +36,6 @@ struct asked {
 };
 
 static const char FINE_HEIGHT[] = "/contact/block_fine_height";
-
 static const char COATING[] = "/contact/coating/thickness",
                   COATING_MODULUS[] = "/contact/coating/modulus",
                   COATING_POISSON[] = "/contact/coating/poisson";
@@ -314,67 +313,55 @@ static size_t load_find(const struct contact_case *one_case, double load) {
     return k;
 }
 
+/* Reads a list of loads out of the study's as their positions; *out stays NULL where there is none.
+ */
+static int read_listed(size_t **out, size_t *count, const struct contact_case *one_case,
+                       const char *path, struct values *values, struct error *err) {
+    double *at;
+    int status = values_numbers(values, path, &at, count, err);
+    if (status != 0 || at == NULL)
+        return status;
+    size_t *found = array_create(*count, sizeof *found);
+    if (found == NULL)
+        status = error_memory(err, *count * sizeof *found, "loads");
+    check_rising(values, path, *count, at);
+    for (size_t a = 0; found != NULL && a < *count && one_case->load_count > 0; a++) {
+        found[a] = load_find(one_case, at[a]);
+        if (found[a] == one_case->load_count)
+            values_fault(values, path, "%g is none of the study's pressures", at[a]);
+    }
+    *out = found;
+    free(at);
+    return status;
+}
+
 static int read_pdf(struct contact_case *out, struct values *values, struct error *err) {
     static const char path[] = "/contact/pressure_pdf/at";
-    double *at;
     values_bins(values, "/contact/pressure_pdf/bins", BINS_MOST, &out->pressure);
-    int status = values_numbers(values, path, &at, &out->pdf_count, err);
+    int status = read_listed(&out->pdf_loads, &out->pdf_count, out, path, values, err);
     if (status != 0)
         return status;
-    bool given = at != NULL;
-    if (given && out->hardness > 0)
+    if (out->pdf_loads != NULL && out->hardness > 0)
         values_fault(values, path,
                      "many pressures are the hardness, so that they have no density; plastic_area "
                      "and plastic_load say how many");
     out->pdf_pairs = values_choice(values, "/contact/pressure_pdf/pairs") == PAIRS_COUNTED;
-    if (!given)
-        out->pdf_count = out->hardness > 0 ? (size_t)0 : 1;
-    out->pdf_loads = array_create(out->pdf_count, sizeof *out->pdf_loads);
     if (out->pdf_loads == NULL) {
-        free(at);
-        return error_memory(err, out->pdf_count * sizeof *out->pdf_loads, "loads");
+        out->pdf_count = out->hardness > 0 ? (size_t)0 : 1;
+        out->pdf_loads = array_create(1, sizeof *out->pdf_loads);
+        if (out->pdf_loads == NULL)
+            return error_memory(err, sizeof *out->pdf_loads, "loads");
+        out->pdf_loads[0] = out->load_count > 0 ? out->load_count - 1 : 0;
     }
-    if (given)
-        check_rising(values, path, out->pdf_count, at);
-    else if (out->load_count > 0 && out->pdf_count > 0)
-        out->pdf_loads[0] = out->load_count - 1;
-    for (size_t a = 0; given && a < out->pdf_count && out->load_count > 0; a++) {
-        out->pdf_loads[a] = load_find(out, at[a]);
-        if (out->pdf_loads[a] == out->load_count)
-            values_fault(values, path, "%g is none of the study's pressures", at[a]);
-    }
-    free(at);
     if (out->pdf_count * (out->pressure.count + 2) > PRESSURE_CELLS_MOST)
         values_fault(values, path, "%zu loads of %zu bins are too many: at most %d in all",
                      out->pdf_count, out->pressure.count, PRESSURE_CELLS_MOST);
     return 0;
 }
 
-/* Reads the loads of files that are kept. */
-static int read_kept_loads(struct contact_case *out, struct values *values, struct error *err) {
-    static const char path[] = "/contact/keep/loads";
-    double *at;
-    int status = values_numbers(values, path, &at, &out->kept_load_count, err);
-    if (status != 0 || at == NULL)
-        return status;
-    out->kept_loads = array_create(out->kept_load_count, sizeof *out->kept_loads);
-    if (out->kept_loads == NULL)
-        status = error_memory(err, out->kept_load_count * sizeof *out->kept_loads, "loads");
-    check_rising(values, path, out->kept_load_count, at);
-    for (size_t a = 0; status == 0 && a < out->kept_load_count && out->load_count > 0; a++) {
-        out->kept_loads[a] = load_find(out, at[a]);
-        if (out->kept_loads[a] == out->load_count)
-            values_fault(values, path, "%g is none of the study's pressures", at[a]);
-    }
-    if (out->kept_count == 0)
-        values_fault(values, path, "loads of no realisation: give /contact/keep/realisations");
-    free(at);
-    return status;
-}
-
 /* Reads the realisations whose nodes are written, and the loads of these files. */
 static int read_kept(struct contact_case *out, struct values *values, struct error *err) {
-    static const char path[] = "/contact/keep/realisations";
+    static const char path[] = "/contact/keep/realisations", loads[] = "/contact/keep/loads";
     int status = values_numbers(values, path, &out->kept, &out->kept_count, err);
     if (status != 0)
         return status;
@@ -382,7 +369,10 @@ static int read_kept(struct contact_case *out, struct values *values, struct err
     for (size_t a = 0; a < out->kept_count; a++)
         if (out->kept[a] != floor(out->kept[a]))
             values_fault(values, path, "%g is no whole number", out->kept[a]);
-    return read_kept_loads(out, values, err);
+    status = read_listed(&out->kept_loads, &out->kept_load_count, out, loads, values, err);
+    if (out->kept_load_count > 0 && out->kept_count == 0)
+        values_fault(values, loads, "loads of no realisation: give /contact/keep/realisations");
+    return status;
 }
 
 static const char COUNTER_YOUNG[] = "/counter_surface/young";
