@@ -32,7 +32,7 @@ static struct bin_parts parts_of(const struct bins *bins, size_t b) {
     return (struct bin_parts){count, low + part / 2, part, part / width};
 }
 
-/* Return the number of nodes of a bin, the place of node n, and its weight: weights add up to twice
+/* Return the number of nodes of a bin, node n, and its weight: weights add up to twice
  * the share of the bin that has parts. */
 static size_t nodes_of(const struct bin_parts *parts) {
     return GAUSS_4 * parts->count;
