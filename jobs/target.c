@@ -32,9 +32,10 @@ static const struct parameter ROWS[] = {
      .later = true,
      .example_json = "0.01",
      .help =
-         "in place of realisations: the relative error of every point of the curve, all sources "
-         "together; what the study does not name (levels, length_ratio, block_height, "
-         "realisations) is chosen for it"},
+         "in place of realisations: a relative error. Of contact it is of every point of the "
+         "curve, all sources together, and what the study does not name (levels, length_ratio, "
+         "block_height, realisations) is chosen for it; of statistics it is the statistical error "
+         "alone, and realisations are chosen"},
     {.path = "/target/confidence",
      .type = PARAMETER_NUMBER,
      .minimum = 0.5,

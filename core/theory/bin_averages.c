@@ -11,8 +11,41 @@ static const double DENSITY_LEAST = 1e-200;
 
 enum { PERSSON_PANELS = 4 };
 
-static double node_in(const struct bins *bins, size_t b, int q) {
-    return bins_centre(bins, b) + bins_width(bins) / 2 * GAUSS_4_NODES[q];
+/* Parts of a bin, each of which has the 4-point rule. Wide bins are divided, and beyond REACH,
+ * where densities are below 1e-170 of their highest values, have none. */
+struct bin_parts {
+    size_t count;
+    double centre, width; /* of the first part, and of each */
+    double share;         /* of the bin in each part */
+};
+static const double PART_MOST = 0.25, REACH = 40;
+
+static struct bin_parts parts_of(const struct bins *bins, size_t b) {
+    double width = bins_width(bins), centre = bins_centre(bins, b);
+    if (width <= PART_MOST)
+        return (struct bin_parts){1, centre, width, 1};
+    double low = fmax(centre - width / 2, -REACH), high = fmin(centre + width / 2, REACH);
+    if (!(high > low))
+        return (struct bin_parts){0, centre, 0, 0};
+    size_t count = (size_t)ceil((high - low) / PART_MOST);
+    double part = (high - low) / (double)count;
+    return (struct bin_parts){count, low + part / 2, part, part / width};
+}
+
+/* Return the number of nodes of a bin, node n, and its weight: weights add up to twice
+ * the share of the bin that has parts. */
+static size_t nodes_of(const struct bin_parts *parts) {
+    return GAUSS_4 * parts->count;
+}
+
+static double node_at(const struct bin_parts *parts, size_t n) {
+    const size_t part = n / GAUSS_4;
+    return parts->centre + (double)part * parts->width +
+           parts->width / 2 * GAUSS_4_NODES[n % GAUSS_4];
+}
+
+static double weight_at(const struct bin_parts *parts, size_t n) {
+    return parts->share * GAUSS_4_WEIGHTS[n % GAUSS_4];
 }
 
 static double upper_edge(const struct bins *bins, size_t b) {
@@ -39,8 +72,9 @@ void bin_averages_summits(int dimension, double alpha, const struct bins *bins, 
     bool surface = dimension == 2;
     for (size_t b = 0; b < bins->count; b++) {
         double density = 0, moment = 0, edge = upper_edge(bins, b);
-        for (int q = 0; q < GAUSS_4; q++) {
-            double z = node_in(bins, b, q);
+        const struct bin_parts parts = parts_of(bins, b);
+        for (size_t n = 0; n < nodes_of(&parts); n++) {
+            double z = node_at(&parts, n), weight = weight_at(&parts, n);
             double p, kappa;
             if (surface) {
                 p = nayak_summit_pdf(z, alpha);
@@ -48,8 +82,8 @@ void bin_averages_summits(int dimension, double alpha, const struct bins *bins, 
             } else {
                 profile_peak(z, alpha, &p, &kappa);
             }
-            density += GAUSS_4_WEIGHTS[q] / 2 * p;
-            moment += GAUSS_4_WEIGHTS[q] / 2 * p * kappa;
+            density += weight / 2 * p;
+            moment += weight / 2 * p * kappa;
         }
         double centre = bins_centre(bins, b);
         pdf[b] = density;
@@ -74,21 +108,23 @@ static double curvature_pdf(int dimension, double t1) {
 
 void bin_averages_curvatures(int dimension, const struct bins *bins, double *pdf) {
     for (size_t b = 0; b < bins->count; b++) {
+        const struct bin_parts parts = parts_of(bins, b);
         pdf[b] = 0;
-        for (int q = 0; q < GAUSS_4; q++)
-            pdf[b] += GAUSS_4_WEIGHTS[q] / 2 * curvature_pdf(dimension, node_in(bins, b, q));
+        for (size_t n = 0; n < nodes_of(&parts); n++)
+            pdf[b] += weight_at(&parts, n) / 2 * curvature_pdf(dimension, node_at(&parts, n));
     }
 }
 
 static double joint_mean(int dimension, double alpha, const struct bins *height, size_t zb,
                          const struct bins *t1, size_t tb) {
+    const struct bin_parts heights = parts_of(height, zb), curvatures = parts_of(t1, tb);
     double density = 0;
-    for (int p = 0; p < GAUSS_4; p++)
-        for (int q = 0; q < GAUSS_4; q++) {
-            double z = node_in(height, zb, p), t = node_in(t1, tb, q);
+    for (size_t p = 0; p < nodes_of(&heights); p++)
+        for (size_t q = 0; q < nodes_of(&curvatures); q++) {
+            double z = node_at(&heights, p), t = node_at(&curvatures, q);
             double joint =
                 dimension == 2 ? nayak_joint_pdf(z, t, alpha) : profile_peak_joint_pdf(z, t, alpha);
-            density += GAUSS_4_WEIGHTS[p] * GAUSS_4_WEIGHTS[q] / 4 * joint;
+            density += weight_at(&heights, p) * weight_at(&curvatures, q) / 4 * joint;
         }
     return density;
 }

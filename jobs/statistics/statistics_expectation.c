@@ -178,15 +178,35 @@ static int add_stratified(struct expectation *e, struct error *err) {
     return add_scalars(e, sizeof list / sizeof *list, list, err);
 }
 
+/* What is known of the sum of a random part and grooves: its heights and slopes, as beside results;
+ * none of it on the grid. */
+static int add_grooved(struct expectation *e, struct error *err) {
+    static const enum statistics_scalar KNOWN[] = {SCALAR_M0, SCALAR_RMS_HEIGHT, SCALAR_RMS_SLOPE,
+                                                   SCALAR_SKEWNESS, SCALAR_KURTOSIS};
+    const struct surface_case *surface = &e->one_case.surface;
+    double theory[SCALAR_COUNT];
+    for (size_t a = 0; a < SCALAR_COUNT; a++)
+        theory[a] = NAN;
+    statistics_scalars_with_grooves(&e->one_case, &e->basis.moments, theory);
+    int status = add_scalar(
+        e, "hurst", surface->hurst_solved ? surface->spectrum.hurst : (double)NAN, NAN, err);
+    if (status == 0)
+        status = add_scalar(e, "wavelength_ratio", surface->wavelength_ratio, NAN, err);
+    for (size_t a = 0; a < sizeof KNOWN / sizeof *KNOWN && status == 0; a++)
+        status = add_scalar(e, statistics_scalar_name(KNOWN[a]), theory[KNOWN[a]], NAN, err);
+    return status;
+}
+
 static int add_moments(struct expectation *e, struct error *err) {
     const struct surface_case *surface = &e->one_case.surface;
     const struct moments *m = &e->basis.moments;
-    struct sampled_moments grid;
+    struct sampled_moments grid = {NAN, NAN, NAN, NAN, NAN, NAN, NAN};
     struct height_moments heights;
     int status = heights_moments(&surface->options.heights, &heights, err);
     if (status != 0)
         return status;
-    sampled_moments(e->modes, &grid);
+    if (statistics_grid_theory_moments(&e->one_case))
+        sampled_moments(e->modes, &grid);
     bool few_waves = surface->options.heights.type == HEIGHTS_GAUSSIAN &&
                      surface->options.amplitudes == AMPLITUDES_FIXED;
     const struct expected_scalar list[] = {
@@ -444,10 +464,11 @@ static int case_create(struct expectation *e, const cJSON *parameters, struct er
 
 /* Adds what is known of faces of one surface. */
 static int add_all(struct expectation *e, bool joint, struct error *err) {
-    int status = add_moments(e, err);
-    if (status == 0)
+    const bool grooved = e->one_case.surface.grooves != NULL;
+    int status = grooved ? add_grooved(e, err) : add_moments(e, err);
+    if (status == 0 && !grooved)
         status = add_alphas(e, err);
-    if (status == 0)
+    if (status == 0 && !grooved)
         status = add_fractal(e, err);
     if (status == 0)
         status = add_heights(e, err);
@@ -455,9 +476,9 @@ static int add_all(struct expectation *e, bool joint, struct error *err) {
         status = add_summits(e, joint, err);
     if (status == 0)
         status = spectra_prescribed(&e->one_case, e->modes, e->result, err);
-    if (status == 0)
+    if (status == 0 && !grooved)
         status = add_lengths(e, err);
-    return status == 0 ? add_alpha(e, err) : status;
+    return status == 0 && !grooved ? add_alpha(e, err) : status;
 }
 
 int statistics_expectation(const cJSON *parameters, bool joint, struct case_result *out,

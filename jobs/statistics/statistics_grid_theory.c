@@ -11,10 +11,20 @@ static bool is_gaussian(const struct statistics_case *one_case) {
     return surface_case_gaussian(&one_case->surface);
 }
 
+static bool keeps_heights(const struct surface_case *surface) {
+    return surface_is_iterated(&surface->options) && surface->options.keep == KEEP_HEIGHTS;
+}
+
 bool statistics_grid_theory_applies(const struct statistics_case *one_case) {
     return one_case->surface.grooves == NULL &&
            (is_gaussian(one_case) || surface_case_translated(&one_case->surface)) &&
            one_case->stencil != SUMMITS_REFINED;
+}
+
+bool statistics_grid_theory_moments(const struct statistics_case *one_case) {
+    const struct surface_case *surface = &one_case->surface, *counter = surface->counter;
+    return surface->plateau == NULL && surface->grooves == NULL && !keeps_heights(surface) &&
+           (counter == NULL || !keeps_heights(counter));
 }
 
 int statistics_grid_theory_summits(const struct statistics_case *one_case,
@@ -100,23 +110,34 @@ static int add_scalar(struct case_result *out, const char *name, double value, d
     return result_add_scalar(out, &scalar, err);
 }
 
-/* Adds scalars that depend on the spectrum alone: how isotropic its moments are (1: isotropic), and
- * the share of an exponential autocorrelation that no surface can have. */
+/* Returns whether a spectrum is isotropic; that of an exponential autocorrelation ends at the
+ * corners of the grid, which is square. */
+static bool is_isotropic(const struct spectrum *spectrum) {
+    return spectrum->type != SPECTRUM_EXPONENTIAL_ACF && !(spectrum->anisotropy > 1);
+}
+
+/* Adds scalars that depend on the spectrum alone: how isotropic its moments are (1: isotropic), of
+ * surfaces without grooves, and the share of an exponential autocorrelation that no surface can
+ * have. */
 static int add_spectrum(const struct statistics_case *one_case, const struct surface_basis *basis,
                         struct case_result *out, struct error *err) {
     struct sampled_moments grid;
     const struct moments *m = &basis->moments;
+    const struct surface_case *surface = &one_case->surface;
+    const struct surface_case *counter = surface->counter;
+    const bool isotropic =
+        is_isotropic(&surface->spectrum) && (counter == NULL || is_isotropic(&counter->spectrum));
     int status = 0;
     sampled_moments(basis->modes, &grid);
-    if (one_case->surface.dimension == 2)
-        status = add_scalar(out, "isotropy", 3 * m->m22 / m->m4, 1, grid.isotropy, err);
-    if (status == 0 && one_case->surface.spectrum.type == SPECTRUM_EXPONENTIAL_ACF)
+    if (surface->dimension == 2 && surface->grooves == NULL)
+        status =
+            add_scalar(out, "isotropy", 3 * m->m22 / m->m4, isotropic ? 1 : (double)NAN,
+                       statistics_grid_theory_moments(one_case) ? grid.isotropy : (double)NAN, err);
+    if (status == 0 && surface->spectrum.type == SPECTRUM_EXPONENTIAL_ACF)
         status = add_scalar(out, "spectrum_clipped", basis->modes->clipped, NAN, NAN, err);
     return status;
 }
 
-/* Moments by differences follow from the spectrum, whatever the heights; those of grooves do not.
- */
 static void set_moments(const struct statistics_case *one_case, const struct modes *modes,
                         struct case_result *out) {
     struct sampled_moments moments;
@@ -136,7 +157,7 @@ int statistics_grid_theory(const struct statistics_case *one_case,
     struct sampled_summits summits;
     if (one_case->surface.plateau != NULL)
         return 0; /* kinks change with the grid whatever differences see */
-    if (one_case->surface.grooves == NULL)
+    if (statistics_grid_theory_moments(one_case))
         set_moments(one_case, basis->modes, out);
     int status = add_spectrum(one_case, basis, out, err);
     if (!statistics_grid_theory_applies(one_case))

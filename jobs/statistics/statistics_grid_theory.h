@@ -1,8 +1,8 @@
 /* Theory of the grid in use (F8.4, F8.5) beside theory without a grid: the series "grid" of curves
- * of summits, and `grid` of scalars. Among these, `isotropy` (3 m22/m40) and `spectrum_clipped`
- * depend on the spectrum alone. Theory of summits exists for Gaussian surfaces and for
- * translated ones, of these but for densities of curvatures and for exact curvatures; refined
- * summits need none. */
+ * of summits, and `grid` of scalars. Among these, `isotropy` (3 m22/m4), which is 1 in theory where
+ * the spectrum is isotropic, and `spectrum_clipped` depend on the spectrum alone. Theory of summits
+ * exists for Gaussian surfaces and for translated ones, of these but for densities of curvatures
+ * and for exact curvatures; refined summits need none. */
 #ifndef RUGO_JOBS_STATISTICS_STATISTICS_GRID_THEORY_H
 #define RUGO_JOBS_STATISTICS_STATISTICS_GRID_THEORY_H
 
@@ -11,6 +11,9 @@
 
 extern const char STATISTICS_GRID_THEORY[]; /* "grid" */
 
+/* Returns whether moments by differences follow from the spectrum: not with grooves or kinks, nor
+ * where iterated heights are set point by point and so have waves outside of it. */
+bool statistics_grid_theory_moments(const struct statistics_case *one_case);
 /* Returns whether there is a theory of summits on the grid. */
 bool statistics_grid_theory_applies(const struct statistics_case *one_case);
 /* Computes it; pits: of the summits of the mirrored surface. bins as sampled_summits has them. */

@@ -572,6 +572,17 @@ static void set_exactly(struct case_result *out, size_t at, bool exact) {
         .applies = true, .known = exact && !isnan(error), .value = exact ? error : 0};
 }
 
+static bool has_exponential_acf(const struct surface_case *surface) {
+    return surface->spectrum.type == SPECTRUM_EXPONENTIAL_ACF;
+}
+
+/* Returns whether a finer grid would hold waves of the surface that this one does not: moments of
+ * the grid's spectrum then depend on the grid. */
+static bool waves_beyond_grid(const struct surface_case *surface) {
+    return !surface_case_band_limited(surface) || has_exponential_acf(surface) ||
+           (surface->counter != NULL && has_exponential_acf(surface->counter));
+}
+
 static void set_scalars(const struct statistics_levels *levels, struct case_result *out) {
     static const enum mean OF_SIDE[SIDE_SCALARS] = {MEAN_NUMBER,   MEAN_NUMBER,   MEAN_NUMBER,
                                                     MEAN_HEIGHT,   MEAN_VARIANCE, MEAN_SKEWNESS,
@@ -579,7 +590,9 @@ static void set_scalars(const struct statistics_levels *levels, struct case_resu
     static const size_t BY_DIFFERENCES[] = {SCALAR_RMS_SLOPE, SCALAR_RMS_CURVATURE,
                                             SCALAR_M2_DIFFERENCE, SCALAR_M4_DIFFERENCE,
                                             SCALAR_NAYAK_ALPHA_DIFFERENCE};
-    const struct statistics_case *one_case = levels->own.one_case;
+    static const size_t SPECTRAL[] = {SCALAR_M2, SCALAR_M4, SCALAR_NAYAK_ALPHA};
+    const struct surface_case *surface = &levels->own.one_case->surface;
+    const bool beyond = waves_beyond_grid(surface);
     for (size_t side = 0; side < levels->own.sides; side++)
         for (size_t a = 0; a < SIDE_SCALARS; a++)
             set_by_levels(levels, out, (side == SIDE_PITS ? SCALAR_PITS : SCALAR_SUMMITS) + a, side,
@@ -587,7 +600,9 @@ static void set_scalars(const struct statistics_levels *levels, struct case_resu
     set_by_levels(levels, out, SCALAR_LOWEST, 0, MEAN_LOWEST);
     set_by_levels(levels, out, SCALAR_HIGHEST, 0, MEAN_HIGHEST);
     for (size_t a = 0; a < sizeof BY_DIFFERENCES / sizeof *BY_DIFFERENCES; a++)
-        set_exactly(out, BY_DIFFERENCES[a], surface_case_exact(&one_case->surface));
+        set_exactly(out, BY_DIFFERENCES[a], surface_case_exact(surface) && !beyond);
+    for (size_t a = 0; a < sizeof SPECTRAL / sizeof *SPECTRAL && beyond; a++)
+        set_exactly(out, SPECTRAL[a], false);
 }
 
 int statistics_levels_errors(const struct statistics_levels *levels, struct case_result *out,

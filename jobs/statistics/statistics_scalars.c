@@ -240,10 +240,8 @@ static void theory_of_summits(const struct statistics_case *one_case,
     out[SCALAR_SUMMIT_CURVATURE_MEAN] = expected.curvature;
 }
 
-/* What is known of the sum of a random part and grooves, in place of the random part alone: their
- * waves are not counted, and those of summits are beside it. */
-static void theory_with_grooves(const struct statistics_case *one_case,
-                                const struct moments *moments, double out[SCALAR_COUNT]) {
+void statistics_scalars_with_grooves(const struct statistics_case *one_case,
+                                     const struct moments *moments, double out[SCALAR_COUNT]) {
     static const enum statistics_scalar UNKNOWN[] = {SCALAR_RMS_CURVATURE,
                                                      SCALAR_M2_DIFFERENCE,
                                                      SCALAR_M4_DIFFERENCE,
@@ -294,7 +292,7 @@ static void theory_of_scalars(const struct statistics_case *one_case, const stru
         out[SCALAR_NAYAK_ALPHA] = kinked * moments->nayak_alpha;
     }
     if (one_case->surface.grooves != NULL)
-        theory_with_grooves(one_case, moments, out);
+        statistics_scalars_with_grooves(one_case, moments, out);
     if (theories->count == 0)
         return;
     for (size_t side = 0; side < statistics_case_sides(one_case); side++)

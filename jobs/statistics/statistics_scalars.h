@@ -104,6 +104,12 @@ void statistics_scalars_measure(const struct statistics_case *one_case,
 void statistics_constants(const struct modes *modes, const struct moments *moments,
                           struct roughness *out);
 
+/* Fills in what is known of heights and slopes of the sum of a random part, which has these
+ * moments, and the grooves of the case; other spectral moments and those by differences are NaN,
+ * and what else is in out stays. */
+void statistics_scalars_with_grooves(const struct statistics_case *one_case,
+                                     const struct moments *moments, double out[SCALAR_COUNT]);
+
 /* Appends the scalars over the realisations to the result. Constants, which all surfaces of an
  * exact spectrum share, have the value of the spectrum and a standard error of 0, which no other
  * scalar has. */

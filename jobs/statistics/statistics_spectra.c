@@ -323,14 +323,16 @@ static int asked_create(const struct statistics_case *one_case, const struct mod
     return modes_create(asked, spectrum, &modes->grid, err);
 }
 
-/* Computes the prescribed density of the rings. */
+/* Computes the prescribed density of the rings, over the same waves as the measured one. */
 static int prescribed_density(const struct statistics_case *one_case, const struct modes *modes,
                               struct spectrum_columns *out, struct error *err) {
     struct spectrum spectrum;
     struct modes *asked;
     int status = asked_create(one_case, modes, &spectrum, &asked, err);
     if (status == 0)
-        status = psd_prescribed(&spectrum, asked != NULL ? asked : modes, out->x, out->theory, err);
+        status =
+            psd_prescribed(&spectrum, asked != NULL ? asked : modes,
+                           surface_case_band_limited(&one_case->surface), out->x, out->theory, err);
     modes_destroy(&asked);
     return status;
 }

@@ -30,12 +30,15 @@ static int exponential_density(const struct spectrum *spectrum, const struct mod
     return 0;
 }
 
-int psd_prescribed(const struct spectrum *spectrum, const struct modes *modes, double *wave_number,
-                   double *density, struct error *err) {
+int psd_prescribed(const struct spectrum *spectrum, const struct modes *modes, bool band,
+                   double *wave_number, double *density, struct error *err) {
     const struct grid *grid = &modes->grid;
     if (spectrum->type == SPECTRUM_EXPONENTIAL_ACF)
         return exponential_density(spectrum, modes, wave_number, density, err);
-    psd_of_modes(modes, wave_number, density);
+    if (band)
+        psd_of_band(modes, wave_number, density);
+    else
+        psd_of_modes(modes, wave_number, density);
     if (spectrum->anisotropy > 1)
         return 0; /* no density of the wave number alone: means over rings */
     /* Along the longer side waves are denser than rings, and some wave has a ring's own number. */

@@ -8,9 +8,10 @@
 
 /* modes are those of the spectrum. Isotropic densities are those at the wave number of a ring, with
  * the scale of the cell; that of an exponential autocorrelation is the mean of its endless
- * surface's over the ring. Arrays have radial_bins entries. */
-int psd_prescribed(const struct spectrum *spectrum, const struct modes *modes, double *wave_number,
-                   double *density, struct error *err);
+ * surface's over the ring. Anisotropic densities are means over a ring: with `band` over its waves
+ * of the band alone, else over all. Arrays have radial_bins entries. */
+int psd_prescribed(const struct spectrum *spectrum, const struct modes *modes, bool band,
+                   double *wave_number, double *density, struct error *err);
 /* The exponential autocorrelation as it stands; of others, known by their spectrum, that of modes.
  * Arrays have acf_lags entries. */
 int acf_prescribed(const struct spectrum *spectrum, const struct modes *modes, double *lag,

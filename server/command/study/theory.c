@@ -79,6 +79,16 @@ static int expect(const struct study *study, const char *quantity, struct study_
     return status;
 }
 
+/* Says where theories are not of the surface that is pressed, the sum of two faces. */
+static void tell_faces(const struct study *study) {
+    for (size_t c = 0; c < study->case_count; c++)
+        if (cJSON_GetObjectItemCaseSensitive(study->cases[c].parameters, "counter_surface") !=
+            NULL) {
+            fputs("rugo theory: theories are those of the first face alone, /surface\n", stderr);
+            return;
+        }
+}
+
 static int write_folder(const struct study *study, const struct study_result *result,
                         const struct result_folder *folder, struct error *err) {
     cJSON *document = NULL;
@@ -122,6 +132,8 @@ static int run(const void *values, const char *const *arguments) {
     int status = study_file_read(&study, file, options->sets, &faults, &err);
     if (status == 0)
         status = expect(study, options->quantity, &result, &err);
+    if (status == 0)
+        tell_faces(study);
     if (status == 0)
         status = options->folder.path != NULL ? write_folder(study, &result, &options->folder, &err)
                                               : show(&result, options, &err);

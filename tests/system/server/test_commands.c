@@ -357,6 +357,12 @@ static void theory_needs_no_surface(void **state) {
     assert_int_equal(
         run_shell("$RUGO theory --set surface/hurst=0.8 --set surface/wavelength_ratio=8"), 0);
     assert_true(contains("shell.out", "5.3368") && contains("shell.out", "summit_density"));
+    spit("faces.json", "{\"name\": \"f\", \"kind\": \"contact\", \"seed\": 1, \"realisations\": 1,"
+                       " \"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4},"
+                       " \"counter_surface\": {\"hurst\": 0.5, \"wavelength_ratio\": 4}}");
+    assert_int_equal(run_shell("$RUGO theory faces.json > faces.out 2> faces.err && "
+                               "grep -q 'first face alone' faces.err"),
+                     0);
     assert_int_equal(run_shell("$RUGO theory one.json --format json > theory.json && "
                                "$RUGO theory one.json --format csv > theory.csv && "
                                "$RUGO theory one.json --format svg > theory.svg && "

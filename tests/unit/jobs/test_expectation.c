@@ -370,6 +370,29 @@ static void anisotropic_surfaces_are_of_the_grid_alone(void **state) {
     result_clear(&out);
 }
 
+/* With grooves the expectation of heights and slopes is that beside a result, of the sum; what is
+ * known of the random part alone is not given as that of the surface, nor anything of the grid. */
+static void grooves_are_part_of_the_surface(void **state) {
+    (void)state;
+    static const char TEXT[] =
+        "{\"surface\": {\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 2, \"grooves\":"
+        " {\"period\": 4, \"depth\": 2, \"shape\": \"arcs\"}}}";
+    static const char *const KNOWN[] = {"m0", "rms_height", "rms_slope", "skewness", "kurtosis"};
+    static const char *const UNKNOWN[] = {
+        "m2", "m4", "nayak_alpha", "isotropy", "rms_curvature", "correlation_length"};
+    struct case_result expected = expect(TEXT, false), result = {0};
+    result_of(TEXT, &result);
+    for (size_t a = 0; a < sizeof KNOWN / sizeof *KNOWN; a++) {
+        const struct scalar *scalar = scalar_of(&expected, KNOWN[a]);
+        assert_true(scalar->value == scalar_of(&result, KNOWN[a])->theory);
+        assert_true(isnan(scalar->grid));
+    }
+    for (size_t a = 0; a < sizeof UNKNOWN / sizeof *UNKNOWN; a++)
+        assert_null(result_scalar(&expected, UNKNOWN[a]));
+    result_clear(&result);
+    result_clear(&expected);
+}
+
 static void faults_are_told(void **state) {
     (void)state;
     struct case_result out = {0};
@@ -392,6 +415,7 @@ int main(void) {
         cmocka_unit_test(heights_of_ones_own_have_their_density),
         cmocka_unit_test(theory_knows_its_limits),
         cmocka_unit_test(anisotropic_surfaces_are_of_the_grid_alone),
+        cmocka_unit_test(grooves_are_part_of_the_surface),
         cmocka_unit_test(faults_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -172,6 +172,41 @@ static void any_split_and_order(void **state) {
     }
 }
 
+/* Spectral moments of surfaces whose waves go beyond the grid depend on the grid, by how much is
+ * not known; those of a band do not, and have no such error. */
+static void moments_of_waves_beyond_the_grid(void **state) {
+    (void)state;
+    static const struct {
+        const char *more;
+        bool beyond;
+    } CASES[] = {
+        {"", false},
+        {", \"heights\": {\"distribution\": \"weibull_min\", \"shape\": 2}", false},
+        {", \"heights\": {\"distribution\": \"weibull_min\", \"shape\": 2, \"keep\": \"heights\"}",
+         true},
+        {", \"grooves\": {\"period\": 4, \"depth\": 2, \"shape\": \"saw\"}", true},
+        {", \"plateau\": {\"rms_ratio\": 0.25, \"material_ratio\": 0.8}", true},
+        {", \"spectrum\": {\"type\": \"exponential_acf\", \"length\": [2]}", true},
+    };
+    static const char *const SPECTRAL[] = {"m2", "m4", "nayak_alpha"};
+    for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
+        char text[400];
+        bool exponential = strstr(CASES[c].more, "exponential") != NULL;
+        snprintf(text, sizeof text,
+                 "{\"surface\": {%s\"wavelength_ratio\": 4, \"length_ratio\": 2,"
+                 " \"points_per_wavelength\": 4%s}}",
+                 exponential ? "" : "\"hurst\": 0.8, ", CASES[c].more);
+        struct case_result result = result_of(text, NULL);
+        for (size_t a = 0; a < sizeof SPECTRAL / sizeof *SPECTRAL; a++) {
+            const struct scalar_error *error = error_of(&result, SPECTRAL[a]);
+            assert_true(error->applies == CASES[c].beyond && !error->known);
+        }
+        const struct scalar_error *error = error_of(&result, "nayak_alpha_finite_difference");
+        assert_true(error->applies && error->known == !CASES[c].beyond);
+        result_clear(&result);
+    }
+}
+
 static void faults_are_told(void **state) {
     (void)state;
     static const struct {
@@ -198,6 +233,7 @@ int main(void) {
         cmocka_unit_test(a_level_is_a_study_on_its_grid),
         cmocka_unit_test(three_levels_show_the_order),
         cmocka_unit_test(any_split_and_order),
+        cmocka_unit_test(moments_of_waves_beyond_the_grid),
         cmocka_unit_test(faults_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -4,6 +4,7 @@
 #include "jobs/statistics/statistics_case.h"
 #include "jobs/statistics/statistics_expectation.h"
 #include "jobs/statistics/statistics_scalars.h"
+#include "tests/support/scalar_of.h"
 #include "tests/support/statistics_study.h"
 
 enum { DRAWN = 3 };
@@ -230,8 +231,54 @@ static void grooves_are_beside_the_random_part(void **state) {
                 grid = result.scalars[n].grid;
         assert_true(isnan(grid));
     }
+    assert_null(result_scalar(&result, "isotropy"));
     cJSON_Delete(parameters);
     result_clear(&result);
+}
+
+/* Density and theory of a surface with a lay are means over the same waves of a ring: with the
+ * prescribed spectrum in every surface they are the same. */
+static void a_lay_has_the_prescribed_density(void **state) {
+    (void)state;
+    cJSON *parameters;
+    struct case_result result = result_of("4, \"anisotropy\": 4", &parameters);
+    const struct curve *psd = result_curve(&result, "psd");
+    size_t compared = 0;
+    assert_int_equal(psd->theory_count, 1);
+    for (size_t a = 0; a < psd->n; a++) {
+        check_relative(psd->theories[0].y[a], psd->y[a], 1e-12);
+        compared += psd->y[a] > 0;
+    }
+    assert_true(compared > 10);
+    cJSON_Delete(parameters);
+    result_clear(&result);
+}
+
+/* Spectra of surfaces with a lay are not isotropic, nor is the square of an exponential
+ * autocorrelation's waves. Moments by differences of heights that are set point by point do not
+ * follow from the spectrum; of a spectrum that is kept they do. */
+static void theory_of_moments_where_it_holds(void **state) {
+    (void)state;
+#define WEIBULL "\"heights\": {\"distribution\": \"weibull_max\", \"shape\": 2"
+    static const struct {
+        const char *surface;
+        bool isotropic, differences;
+    } CASES[] = {
+        {"2", true, true},
+        {"2, \"anisotropy\": 2", false, true},
+        {"2, " WEIBULL "}", true, true},
+        {"2, " WEIBULL ", \"keep\": \"heights\"}", true, false},
+    };
+    for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
+        cJSON *parameters;
+        struct case_result result = result_of(CASES[c].surface, &parameters);
+        const struct scalar *isotropy = scalar_of(&result, "isotropy");
+        assert_true(CASES[c].isotropic ? isotropy->theory == 1 : isnan(isotropy->theory));
+        assert_true(isnan(isotropy->grid) == !CASES[c].differences);
+        assert_true(isnan(scalar_of(&result, "rms_slope")->grid) == !CASES[c].differences);
+        cJSON_Delete(parameters);
+        result_clear(&result);
+    }
 }
 
 int main(void) {
@@ -241,6 +288,8 @@ int main(void) {
         cmocka_unit_test(waves_beyond_the_grid_are_folded),
         cmocka_unit_test(drawn_spectra_are_as_measured),
         cmocka_unit_test(grooves_are_beside_the_random_part),
+        cmocka_unit_test(a_lay_has_the_prescribed_density),
+        cmocka_unit_test(theory_of_moments_where_it_holds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
