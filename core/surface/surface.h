@@ -46,7 +46,8 @@ double generator_sum_bytes(const struct grid *grid, size_t mode_x, size_t mode_y
 /* Fills z[grid_points] (from any aligned allocation). report may be NULL. Non-Gaussian generation
  * converges on the generator's grid; surface_resample gives the same realisation on a finer one.
  * ERROR_NUMERIC where the heights that were drawn are all equal or not finite; ERROR_STOPPED where
- * options.stop says so; ERROR_MEMORY. z is undefined after an error. */
+ * stop of the options, or of generator_set_stop, says so; ERROR_MEMORY. z is undefined after an
+ * error. */
 int generator_run(struct generator *generator, struct random_key key, double *z,
                   struct surface_report *report, struct error *err);
 
@@ -57,6 +58,10 @@ void generator_keep_gaussian(struct generator *generator, double *gaussian);
 
 /* Changes the tolerances and limits of the next runs; without effect where heights are Gaussian. */
 void generator_aim(struct generator *generator, const struct surface_aim *aim);
+
+/* Changes what the next runs ask before each iteration, in place of stop and stop_context of the
+ * options; NULL: nothing. The context is borrowed until the next call. */
+void generator_set_stop(struct generator *generator, int (*stop)(void *context), void *context);
 
 /* Samples the band-limited surface z on grid `from` exactly on grid `to` (same cell, any grid that
  * resolves the band mode_x, mode_y), by zero padding. */
