@@ -50,6 +50,17 @@ static void what_does_not_fit_is_refused(void **state) {
          "cross_amplitudes: the shape harmonics needs"},
         {GROOVES("\"period\": 4, \"cross_angle\": 0, \"cross_amplitudes\": [1]"),
          "belongs to the cross_shape harmonics"},
+        {GROOVES("\"period\": 4, \"phases\": [90]"),
+         "/surface/grooves/phases: belongs to the shape harmonics"},
+        {GROOVES("\"period\": 4, \"cross_angle\": 0, \"cross_phases\": [90]"),
+         "/surface/grooves/cross_phases: belongs to the cross_shape harmonics"},
+        /* 8 points a period */
+        {GROOVES("\"period\": 1, \"shape\": \"harmonics\", \"amplitudes\": [1, 0, 0, 0.1, 0]"),
+         "/surface/grooves/amplitudes: harmonic 4: the grid has 2 points a wave of it along a "
+         "side; allowed: above 2, harmonics up to 3"},
+        {GROOVES("\"period\": 4, \"shape\": \"harmonics\", \"amplitudes\": [0, 0, 0, 1], "
+                 "\"cross_period\": 1"),
+         "/surface/grooves/cross_period: harmonic 4"},
         {GROOVES("\"period\": 4, \"angle\": 0, \"cross_angle\": 50"),
          "/surface/grooves/cross_angle: period 4 at 50 degrees"},
         {GROOVES("\"period\": 0.25"), "the grid has 2 points a period; allowed: at least 4"},
@@ -79,6 +90,9 @@ static void allowed_values_are_read(void **state) {
     struct surface_case surface = read(GROOVES("\"period\": 5.333, \"angle\": 90"));
     check_close(surface.grooves->family[0].wave_x, 3. / 16, 1e-14);
     assert_true(surface.grooves->family[0].wave_y == 0);
+    surface_case_clear(&surface);
+    surface =
+        read(GROOVES("\"period\": 1, \"shape\": \"harmonics\", \"amplitudes\": [1, 0, 0.1, 0]"));
     surface_case_clear(&surface);
     surface = read(GROOVES("\"period\": 3.771236, \"angle\": 45, \"cross_angle\": -45"));
     assert_int_equal(surface.grooves->families, 2);
