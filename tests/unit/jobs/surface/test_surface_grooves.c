@@ -192,6 +192,31 @@ static void moments_add_up(void **state) {
     surface_case_clear(&surface);
 }
 
+/* Parallel families of a fixed phase lie beside each other alike in every realisation: their
+ * heights are not independent, and have no theory. */
+static void locked_families_have_no_moments(void **state) {
+    (void)state;
+    static const struct {
+        const char *surface;
+        bool known;
+    } ROWS[] = {
+        {GROOVES("\"period\": 8, \"cross_period\": 4, \"phase\": 0"), false},
+        {GROOVES("\"period\": 8, \"cross_period\": 4, \"phase\": 0.3") ", \"dimension\": 1", false},
+        {GROOVES("\"period\": 8, \"cross_period\": 4"), true},
+        {GROOVES("\"period\": 8, \"cross_angle\": 0, \"phase\": 0"), true},
+        {GROOVES("\"period\": 8, \"phase\": 0"), true},
+    };
+    for (size_t r = 0; r < sizeof ROWS / sizeof *ROWS; r++) {
+        struct surface_case surface = read(ROWS[r].surface);
+        struct height_moments heights;
+        bool known;
+        assert_int_equal(surface_case_heights(&surface, &heights, &known, NULL), 0);
+        assert_true(known == ROWS[r].known);
+        assert_true(isnan(grooves_cumulants(surface.grooves).second) == !known);
+        surface_case_clear(&surface);
+    }
+}
+
 /* Grooves a million times as deep as the random part are Westergaard's wave. Loads are over E* h'
  * of the random part, one wave of RMS slope 2 pi. */
 static void deep_sines_are_westergaards(void **state) {
@@ -248,6 +273,7 @@ int main(void) {
         cmocka_unit_test(the_second_family_has_its_own),
         cmocka_unit_test(meshes_have_the_same_grooves),
         cmocka_unit_test(moments_add_up),
+        cmocka_unit_test(locked_families_have_no_moments),
         cmocka_unit_test(deep_sines_are_westergaards),
         cmocka_unit_test(contact_has_no_theory),
     };
