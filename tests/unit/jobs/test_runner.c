@@ -72,7 +72,7 @@ static int stop_at_last(void *context, double done) {
     return last;
 }
 
-/* Runs two realisations that are asked `polls` times before they are told to stop. */
+/* Runs two realisations that are asked `polls` times before the answer is to stop. */
 static int run_for(const char *study, size_t polls, struct block_result *result) {
     const struct job_control control = {.poll = stop_at_last, .context = &polls};
     struct job_runner *runner = NULL;
