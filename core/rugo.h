@@ -151,9 +151,10 @@ RUGO_API int rugo_generator_create(struct rugo_generator **out,
 RUGO_API void rugo_generator_destroy(struct rugo_generator **generator);
 /* Fills z, nx*ny heights. The surface depends on (seed, sequence, realisation) alone, by counted
  * random words (Salmon et al. 2011), with uniform phases (Wu 2000). A Gaussian surface is the same
- * on every grid that resolves it. All cases of a study have sequence 0; those of an independent
- * study have their number. report: NULL where not wanted. z is filled in place, and undefined after
- * a failure. NUMERIC where the heights that were drawn are all equal or not finite; MEMORY. */
+ * on every grid with more than two points a wave. All cases of a study have sequence 0; those of an
+ * independent study have their number. report: NULL where not wanted. z is filled in place, and
+ * undefined after a failure. NUMERIC where the heights that were drawn are all equal or not finite;
+ * MEMORY. */
 RUGO_API int rugo_generator_run(struct rugo_generator *generator, uint64_t seed, uint64_t sequence,
                                 uint64_t realisation, double *z, struct rugo_surface_report *report,
                                 struct rugo_error *err);

@@ -173,8 +173,9 @@ struct job_kind {
     int (*tally_create)(void *tally, const void *study, const struct surface_basis *basis,
                         struct error *err);
     void (*tally_clear)(void *tally);
-    /* realise may stop within a realisation, and leave a part of it in its tally. A runner then
-     * passes a tally for each realisation, and merges those that end. */
+    /* A realisation may take long enough to be stopped within it, when a part of it is in its
+     * tally. A runner then passes a tally for each realisation, and merges those that end. A block
+     * of another kind that is stopped in realise has no result. */
     bool stops_half_way;
     /* Adds a realisation, and fills as many scalars as the kind has; NaN: none. */
     int (*realise)(void *workspace, const struct realisation *realisation, void *tally,

@@ -174,7 +174,8 @@ int runner_create(struct job_runner **out, const struct job_kind *kind, const cJ
 struct progress {
     const struct job_control *control; /* may be NULL */
     uint64_t done;
-    double share; /* of the realisation at work, below 1 */
+    double share;  /* of the realisation at work, below 1 */
+    bool measured; /* that realisation has been passed to the kind, with the tally */
 };
 
 static void take_share(void *context, double share) {
@@ -202,12 +203,14 @@ static int surface_measure(const struct job_runner *runner, struct realisation *
     return 0;
 }
 
+/* Iterations towards heights may take long: they may be stopped, as the kind may. */
 static int surface_generate(struct job_runner *runner, struct realisation *realisation,
                             struct error *err) {
     realisation->z = runner->z;
     realisation->gaussian = runner->gaussian;
     struct extend_result done;
     realisation->report = (struct surface_report){.end = END_DIRECT};
+    generator_set_stop(runner->generator, realisation->stop, realisation->stop_context);
     int status =
         runner->extension != NULL
             ? extension_draw(runner->extension, runner->key, runner->z, &done, err)
@@ -228,6 +231,7 @@ static int realise(struct job_runner *runner, uint64_t number, struct progress *
                                       .stop_context = progress,
                                       .progress = take_share};
     int status = runner->surface != NULL ? surface_generate(runner, &realisation, err) : 0;
+    progress->measured = status == 0;
     if (status == 0)
         status = runner->kind->realise(runner->workspace, &realisation, tally, scalars, err);
     return status != 0 ? error_context(err, "realisation %llu", (unsigned long long)number) : 0;
@@ -270,7 +274,7 @@ static int realise_all(struct job_runner *runner, const struct job_control *cont
         } else {
             status = realise_into(runner, result->first + r, &progress, tally,
                                   scalars + r * result->scalar_count, err);
-            whole = status == 0 || runner->kind->stops_half_way;
+            whole = status == 0 || !progress.measured || runner->kind->stops_half_way;
         }
         progress.done += status == 0;
     }

@@ -35,7 +35,8 @@ int runner_set_team(struct job_runner *runner, struct team *team, struct error *
 void runner_destroy(struct job_runner **runner);
 /* Runs realisations first .. first + count - 1 into out (untouched on failure), which the caller
  * clears. control may be NULL. A block that is stopped has the realisations that were done, fewer
- * than count; ERROR_STOPPED where none was. */
+ * than count; ERROR_STOPPED where none was, or where a part of the next one is in the tally
+ * (job_kind, stops_half_way). */
 int runner_run(struct job_runner *runner, uint64_t first, uint64_t count,
                const struct job_control *control, struct block_result *out, struct error *err);
 

@@ -81,5 +81,10 @@ static inline double modes_power(const struct modes *modes, size_t mx, long my) 
 static inline unsigned modes_weight(const struct grid *grid, size_t mx) {
     return mx == 0 || 2 * mx == grid->nx ? 1 : 2;
 }
+/* Returns whether a mode is in the Nyquist column or row of an even grid. It is then its mirror
+ * image, too, so that odd powers of either component of its wave vector are 0 in the mean. */
+static inline bool modes_twin(const struct grid *grid, size_t mx, long my) {
+    return 2 * mx == grid->nx || 2 * (size_t)(my < 0 ? -my : my) == grid->ny;
+}
 
 #endif

@@ -216,7 +216,7 @@ static double mode_density(const struct grid *grid, const struct spectrum *s, si
     const bool profile = grid_is_profile(grid);
     double kx = 2 * M_PI * (double)mx / grid->lx;
     double ky = profile ? 0 : 2 * M_PI * (double)my / grid->ly;
-    bool twice = 2 * mx == grid->nx || 2 * (size_t)labs(my) == grid->ny;
+    bool twice = modes_twin(grid, mx, my);
     double own = density(s, profile, kx, ky);
     return twice && s->lay_angle != 0 ? (own + density(s, profile, kx, -ky)) / 2 : own;
 }
@@ -443,10 +443,12 @@ void modes_gaussian_moments(const struct modes *modes, struct moments *out) {
             double weighted = *power * modes_weight(grid, mx);
             double kx = 2 * M_PI * (double)mx / grid->lx;
             double ky = profile ? 0 : 2 * M_PI * (double)my / grid->ly;
+            bool twin = modes_twin(grid, mx, my);
             double x[5] = {1, kx, kx * kx, kx * kx * kx, kx * kx * kx * kx};
             double y[5] = {1, ky, ky * ky, ky * ky * ky, ky * ky * ky * ky};
             for (size_t s = 0; s < MOMENTS; s++)
-                sum_add(&sums[s], weighted * x[POWERS[s][0]] * y[POWERS[s][1]]);
+                if (!twin || POWERS[s][0] % 2 == 0)
+                    sum_add(&sums[s], weighted * x[POWERS[s][0]] * y[POWERS[s][1]]);
         }
     double m[MOMENTS];
     for (size_t s = 0; s < MOMENTS; s++)

@@ -368,6 +368,13 @@ void generator_aim(struct generator *g, const struct surface_aim *aim) {
         generator_aim(g->sum->counter, aim);
 }
 
+void generator_set_stop(struct generator *g, int (*stop)(void *context), void *context) {
+    if (g->nongaussian != NULL)
+        nongaussian_set_stop(g->nongaussian, stop, context);
+    if (g->sum != NULL)
+        generator_set_stop(g->sum->counter, stop, context);
+}
+
 /* Computes heights from the spectrum, those of a translated surface strip by strip in cache. */
 static void heights_fill(struct generator *g, double *z) {
     const struct grid *grid = &g->modes->grid;

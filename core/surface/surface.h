@@ -2,10 +2,10 @@
  *
  * A generator is made once a case and used for every realisation of it, by one thread at a time.
  * Phases belong to wave numbers in units of 2 pi/L, not to points. So the same realisation on a
- * finer grid is the same surface; with another H or scale it has the same phases; with shorter
- * waves added it keeps the phases of the longer ones. Random amplitudes, over the prescribed ones,
- * behave alike. Target heights are quantiles of the same uniform numbers, as many as the grid has
- * points. */
+ * finer grid is the same surface where the coarser one has more than two points a wave; with
+ * another H or scale it has the same phases; with shorter waves added it keeps the phases of the
+ * longer ones. Random amplitudes, over the prescribed ones, behave alike. Target heights are
+ * quantiles of the same uniform numbers, as many as the grid has points. */
 #ifndef RUGO_CORE_SURFACE_SURFACE_H
 #define RUGO_CORE_SURFACE_SURFACE_H
 
@@ -46,7 +46,8 @@ double generator_sum_bytes(const struct grid *grid, size_t mode_x, size_t mode_y
 /* Fills z[grid_points] (from any aligned allocation). report may be NULL. Non-Gaussian generation
  * converges on the generator's grid; surface_resample gives the same realisation on a finer one.
  * ERROR_NUMERIC where the heights that were drawn are all equal or not finite; ERROR_STOPPED where
- * options.stop says so; ERROR_MEMORY. z is undefined after an error. */
+ * stop of the options, or of generator_set_stop, says so; ERROR_MEMORY. z is undefined after an
+ * error. */
 int generator_run(struct generator *generator, struct random_key key, double *z,
                   struct surface_report *report, struct error *err);
 
@@ -58,8 +59,12 @@ void generator_keep_gaussian(struct generator *generator, double *gaussian);
 /* Changes the tolerances and limits of the next runs; without effect where heights are Gaussian. */
 void generator_aim(struct generator *generator, const struct surface_aim *aim);
 
-/* Samples the band-limited surface z on grid `from` exactly on grid `to` (same cell, any grid that
- * resolves the band mode_x, mode_y), by zero padding. */
+/* Changes what the next runs ask before each iteration, in place of stop and stop_context of the
+ * options; NULL: nothing. The context is borrowed until the next call. */
+void generator_set_stop(struct generator *generator, int (*stop)(void *context), void *context);
+
+/* Samples the band-limited surface z on grid `from` exactly on grid `to` (same cell, any grid with
+ * two points a wave of the band mode_x, mode_y, or more), by zero padding. */
 int surface_resample(const struct grid *from, const double *z, const struct grid *to, double *out,
                      size_t mode_x, size_t mode_y, struct error *err);
 

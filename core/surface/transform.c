@@ -147,7 +147,7 @@ static bool parts_create(struct transform *t) {
 }
 
 size_t transform_fast_count(size_t n) {
-    for (size_t candidate = n + n % 2;; candidate += 2) {
+    for (size_t candidate = n > 0 ? n + n % 2 : 2;; candidate += 2) {
         size_t rest = candidate;
         for (size_t factor = 2; factor <= 5; factor++)
             while (rest % factor == 0)
@@ -440,10 +440,21 @@ static void column_pad(const double complex *from, size_t from_ny, double comple
     memset(to, 0, to_ny * sizeof *to);
     for (size_t my = 0; my <= mode_y; my++) {
         bool split = my > 0 && 2 * my == from_ny && 2 * my < to_ny;
+        bool joined = my > 0 && 2 * my == to_ny && 2 * my < from_ny;
         double part = split ? factor / 2 : factor;
-        to[my] = part * from[my];
+        to[my] = joined ? part * (from[my] + from[from_ny - my]) : part * from[my];
         if (my > 0 && 2 * my != to_ny)
             to[to_ny - my] = part * from[from_ny - my];
+    }
+}
+
+/* Adds the mirror images of the waves of a Nyquist column, which are the same at its points. */
+static void column_join(double complex *column, size_t ny) {
+    for (size_t row = 0; 2 * row <= ny; row++) {
+        const size_t mirror = row > 0 ? ny - row : 0;
+        const double complex sum = column[row] + conj(column[mirror]);
+        column[row] = sum;
+        column[mirror] = conj(sum);
     }
 }
 
@@ -452,6 +463,8 @@ void transform_pad(struct transform *from, struct transform *to) {
         bool split = mx > 0 && 2 * mx == from->nx && 2 * mx < to->nx;
         column_pad(from->spectrum + mx * from->ny, from->ny, to->spectrum + mx * to->ny, to->ny,
                    from->mode_y, split ? 0.5 : 1);
+        if (mx > 0 && 2 * mx == to->nx && 2 * mx < from->nx)
+            column_join(to->spectrum + mx * to->ny, to->ny);
     }
 }
 

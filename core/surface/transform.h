@@ -28,8 +28,8 @@ static inline double transform_wave_number(const struct grid *grid, size_t mx, s
     return 2 * M_PI * hypot(qx, qy);
 }
 
-/* Returns the least even number of 2, 3 and 5 alone that is n or more: transforms of so many points
- * are fast. */
+/* Returns the least even number of 2, 3 and 5 alone, above 0, that is n or more: transforms of so
+ * many points are fast. */
 size_t transform_fast_count(size_t n);
 
 /* Makes a plan for the band |mx| <= mode_x <= nx/2, |my| <= mode_y <= ny/2. Memory: about one band
@@ -66,7 +66,7 @@ void transform_inverse_each(struct transform *transform, transform_row *row, voi
 void transform_forward_each(struct transform *transform, transform_row *row, void *context);
 /* Copies the spectrum of `from` into that of `to`, which has the same band and another grid: zero
  * padding. A Nyquist mode of an even grid stands for two modes of a finer one, each of half its
- * amplitude. */
+ * amplitude, and for the sum of two of them. */
 void transform_pad(struct transform *from, struct transform *to);
 /* Computes the plan's spectrum (all rows, columns up to mode_x) from z, which it keeps. */
 void transform_forward(struct transform *transform, const double *z);

@@ -36,6 +36,9 @@ struct like_draw {
     struct translation *translation;
     struct generator *generator;
     struct grooves grooves;
+    /* asked while surfaces are made; may be NULL */
+    int (*stop)(void *context);
+    void *stop_context; /* borrowed */
 };
 
 /* Frees what the last draw made. */
@@ -347,11 +350,22 @@ static int keep_gaussian(struct like_draw *draw, struct error *err) {
     return 0;
 }
 
+void like_draw_set_stop(struct like_draw *draw, int (*stop)(void *context), void *context) {
+    draw->stop = stop;
+    draw->stop_context = context;
+    if (draw->whole != NULL)
+        generator_set_stop(draw->whole, stop, context);
+    for (size_t m = 0; m < draw->like->map_count; m++)
+        generator_set_stop(draw->maps[m].whole, stop, context);
+}
+
 int like_draw_make(struct like_draw *draw, struct random_key key, bool gaussian,
                    struct like_drawn *out, struct error *err) {
     struct surface_case *surface = &draw->surface;
     draw_clear(draw);
     *surface = *draw->base;
+    surface->options.stop = draw->stop;
+    surface->options.stop_context = draw->stop_context;
     *out = (struct like_drawn){.surface = surface, .z = draw->z};
     int status = estimate_draw(draw, key, err);
     if (status != 0)

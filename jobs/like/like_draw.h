@@ -37,9 +37,11 @@ struct like_drawn {
     const double *z, *gaussian;         /* the latter where it is wanted and there is one */
     struct surface_report report;
 };
+/* Changes what the next draws ask while a surface is made, as generator_set_stop. */
+void like_draw_set_stop(struct like_draw *draw, int (*stop)(void *context), void *context);
 /* Makes the surface from the random numbers of this key. gaussian: whether the field behind a
  * translated one is wanted. ERROR_INPUT or ERROR_NUMERIC where the sub-map has no fit, or what it
- * gives no surfaces. */
+ * gives no surfaces; ERROR_STOPPED. */
 int like_draw_make(struct like_draw *draw, struct random_key key, bool gaussian,
                    struct like_drawn *out, struct error *err);
 

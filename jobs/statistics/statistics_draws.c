@@ -120,6 +120,7 @@ int statistics_draws_measure(struct statistics_draws *draws, const struct realis
     if (draws == NULL || !subset_has(&due, key.realisation))
         return 0;
     const struct statistics_case *one_case = draws->one_case;
+    like_draw_set_stop(draws->draw, realisation->stop, realisation->stop_context);
     int status =
         like_draw_make(draws->draw, key, statistics_case_wants_gaussian(one_case), &drawn, &reason);
     if (status == ERROR_INPUT || status == ERROR_NUMERIC)

@@ -127,6 +127,7 @@ int statistics_law_measure(struct statistics_law *law, const struct realisation 
                                       .summits = &law->summits[SIDE_SUMMITS],
                                       .pits = &law->summits[SIDE_PITS]};
     const double *z;
+    other_law_set_stop(law->law, realisation->stop, realisation->stop_context);
     int status = other_law_make(law->law, key, &z, &report, err);
     if (status == 0)
         status = surface_pass_run(&pass, grid, z, err);

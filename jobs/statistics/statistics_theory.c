@@ -4,7 +4,7 @@
 const char STATISTICS_TRANSLATION[] = "translation", STATISTICS_REST[] = "random_part";
 
 /* Heights of the random part at each height of the profile, all equally frequent: of two families
- * at each pair of heights, since the grooves cross. */
+ * at each pair of heights, since these are independent; NaN where they are not. */
 static int grooved_heights(const struct statistics_case *one_case, double *pdf, double *cdf,
                            struct error *err) {
     enum { POINTS = 128 };
@@ -17,6 +17,10 @@ static int grooved_heights(const struct statistics_case *one_case, double *pdf, 
     int status = heights_moments(&surface->options.heights, &moments, err);
     if (status != 0)
         return status;
+    for (size_t b = 0; b < bins->count && !grooves_independent(grooves); b++)
+        pdf[b] = cdf[b] = NAN;
+    if (!grooves_independent(grooves))
+        return 0;
     for (size_t f = 0; f < grooves->families; f++)
         for (size_t a = 0; a < POINTS; a++)
             height[f][a] =

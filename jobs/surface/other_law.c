@@ -98,6 +98,10 @@ const struct moments *other_law_moments(const struct other_law *law) {
     return &law->moments;
 }
 
+void other_law_set_stop(struct other_law *law, int (*stop)(void *context), void *context) {
+    generator_set_stop(law->generator, stop, context);
+}
+
 int other_law_make(struct other_law *law, struct random_key key, const double **z,
                    struct surface_report *report, struct error *err) {
     *z = law->z;

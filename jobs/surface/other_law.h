@@ -32,6 +32,8 @@ const struct moments *other_law_moments(const struct other_law *law);
 /* From now on keeps the Gaussian field of which translated surfaces are a function. gaussian: where
  * it will be, on the grid of the case; valid as long as the law. */
 int other_law_keep_gaussian(struct other_law *law, const double **gaussian, struct error *err);
+/* Changes what the next calls ask while a surface is made, as generator_set_stop. */
+void other_law_set_stop(struct other_law *law, int (*stop)(void *context), void *context);
 /* Makes the surface of this key. *z are its heights on the grid of the case, valid until the next
  * call. */
 int other_law_make(struct other_law *law, struct random_key key, const double **z,

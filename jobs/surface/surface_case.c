@@ -750,7 +750,8 @@ int surface_case_heights(const struct surface_case *surface, struct height_momen
         return 0;
     }
     *known = heights_moments(&surface->options.heights, &own, NULL) == 0 &&
-             (counter == NULL || heights_moments(&counter->options.heights, &other, NULL) == 0);
+             (counter == NULL || heights_moments(&counter->options.heights, &other, NULL) == 0) &&
+             (surface->grooves == NULL || grooves_independent(surface->grooves));
     if (*known && surface_case_gaussian(surface))
         counter = NULL;
     if (*known && counter == NULL)

@@ -64,7 +64,7 @@
      .unit = "any",
      .example_json = "[1, 0.3]",
      .help = "of the shape harmonics: of the first, second, ... cosine of the period; the sum has "
-             "the depth above"},
+             "the depth above. The grid must have more than 2 points a wave of each along a side"},
     {.path = "/surface/grooves/phases",
      .later = true,
      .type = PARAMETER_NUMBERS,

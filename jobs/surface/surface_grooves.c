@@ -75,13 +75,20 @@ static int read_harmonics(struct values *values, const char *const *names,
     return status;
 }
 
+/* What belongs to the shape harmonics alone is refused with another. */
+static void refuse_harmonics(struct values *values, const char *const *names, const char *reason) {
+    static const int ALONE[] = {AMPLITUDES, PHASES};
+    for (size_t n = 0; n < sizeof ALONE / sizeof *ALONE; n++)
+        if (values_is_given(values, names[ALONE[n]]))
+            values_fault(values, names[ALONE[n]], "%s", reason);
+}
+
 static int read_profile(struct values *values, const char *const *names, struct groove_profile *out,
                         struct error *err) {
     out->shape = (enum groove_shape)values_choice(values, names[SHAPE]);
     if (out->shape == GROOVE_HARMONICS)
         return read_harmonics(values, names, out, err);
-    if (values_is_given(values, names[AMPLITUDES]))
-        values_fault(values, names[AMPLITUDES], "belongs to the shape harmonics");
+    refuse_harmonics(values, names, "belongs to the shape harmonics");
     return 0;
 }
 
@@ -134,6 +141,24 @@ static void check_period(const struct grid *grid, struct values *values, const c
                      period, period / dx, POINTS_LEAST, POINTS_LEAST * dx);
 }
 
+/* A cosine with as many waves along a side as half of its points, or more, is another wave there.
+ */
+static void check_harmonics(const struct grid *grid, struct values *values, const char *path,
+                            const struct groove_family *family) {
+    const struct groove_profile *profile = &family->profile;
+    const double along_x = fabs(family->wave_x) * grid->lx;
+    const double along_y = grid_is_profile(grid) ? 0 : fabs(family->wave_y) * grid->ly;
+    const double shortest = fmax(along_x / (double)grid->nx, along_y / (double)grid->ny);
+    size_t most = profile->shape == GROOVE_HARMONICS ? profile->count : 0;
+    while (most > 0 && cabs(profile->coefficient[most - 1]) == 0)
+        most--;
+    if (2 * (double)most * shortest > 1 - 1e-9)
+        values_fault(values, path,
+                     "harmonic %zu: the grid has %g points a wave of it along a side; allowed: "
+                     "above 2, harmonics up to %.0f",
+                     most, 1 / ((double)most * shortest), ceil((1 - 1e-9) / (2 * shortest)) - 1);
+}
+
 /* Reads the first family. */
 static int read_first(struct grooves *out, const struct grid *grid, struct values *values,
                       struct error *err) {
@@ -143,7 +168,10 @@ static int read_first(struct grooves *out, const struct grid *grid, struct value
     check_period(grid, values, FIRST[PERIOD], period);
     read_waves(grid, values, FIRST[PERIOD], period,
                or_else(values_number(values, FIRST[ANGLE]), 90), &out->family[0]);
-    return read_profile(values, FIRST, &out->family[0].profile, err);
+    int status = read_profile(values, FIRST, &out->family[0].profile, err);
+    if (status == 0)
+        check_harmonics(grid, values, FIRST[AMPLITUDES], &out->family[0]);
+    return status;
 }
 
 /* Reads the second one: what it does not give is that of the first. */
@@ -166,11 +194,12 @@ static int read_cross(struct grooves *out, const struct grid *grid, struct value
     check_period(grid, values, path, period);
     read_waves(grid, values, path, period, cross, second);
     const bool shaped = values_is_given(values, CROSS[SHAPE]);
-    if (shaped)
-        return read_profile(values, CROSS, &second->profile, err);
-    if (values_is_given(values, CROSS[AMPLITUDES]))
-        values_fault(values, CROSS[AMPLITUDES], "belongs to the cross_shape harmonics");
-    return 0;
+    int status = shaped ? read_profile(values, CROSS, &second->profile, err) : 0;
+    if (!shaped)
+        refuse_harmonics(values, CROSS, "belongs to the cross_shape harmonics");
+    if (status == 0)
+        check_harmonics(grid, values, shaped ? CROSS[AMPLITUDES] : path, second);
+    return status;
 }
 
 int surface_grooves_read(struct grooves **out, const struct grid *grid, bool translated,

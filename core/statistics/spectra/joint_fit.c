@@ -32,6 +32,7 @@ struct joint {
     double between;                         /* at the law that was evaluated last */
     int held;                               /* a parameter that stays, or PARAMETERS */
     double held_at;
+    bool starved; /* a minimisation had no memory */
 };
 
 double joint_fit_density(const struct joint_fit *fit, bool profile, double wave_number) {
@@ -228,6 +229,7 @@ static double minimise(struct joint *joint, double p[PARAMETERS]) {
     gsl_multimin_fminimizer *simplex =
         gsl_multimin_fminimizer_alloc(gsl_multimin_fminimizer_nmsimplex2, n);
     double least = (double)NAN;
+    joint->starved = joint->starved || x == NULL || step == NULL || simplex == NULL;
     if (x != NULL && step != NULL && simplex != NULL) {
         size_t next = 0;
         for (int a = 0; a < PARAMETERS; a++)
@@ -329,13 +331,18 @@ static void fill_patches(struct joint *joint, struct joint_fit *out) {
     out->p_value = gsl_cdf_chisq_Q(square, (double)joint->count - 1);
 }
 
-static int measure(struct joint *joint, struct joint_fit *out) {
+static int measure(struct joint *joint, struct joint_fit *out, struct error *err) {
     double best[PARAMETERS] = {0};
     const struct band *first = &joint->bands[0];
     best[AMPLITUDE] = log(first->patch->spectrum->density[first->leakage->first]);
     double least = search(joint, best);
+    if (joint->starved)
+        return error_memory(err, sizeof *joint, "a joint fit");
     if (!isfinite(least))
-        return ERROR_MEMORY;
+        return error_set(err, ERROR_NUMERIC,
+                         "a joint fit of %zu maps: the deviance of their spectra from a law is %g "
+                         "wherever it was tried; allowed: finite",
+                         joint->count, least);
     least = evaluate(joint, best);
     fill_patches(joint, out);
     out->deviance_limit = 1 + 2 * sqrt(2 * joint->inflation / out->freedom);
@@ -382,9 +389,7 @@ int joint_fit_measure(size_t count, struct joint_patch *patches, struct joint_fi
                            joint.count, count);
     if (status == 0) {
         joint_fill(&joint, out);
-        status = measure(&joint, out);
-        if (status != 0)
-            error_memory(err, sizeof joint, "a joint fit");
+        status = measure(&joint, out, err);
     }
     joint_clear(&joint);
     return status;

@@ -31,7 +31,7 @@ struct joint_fit {
  * out, by their standard errors (F18.51); LAY_NONE where none has. */
 struct lay joint_fit_lay(size_t count, const struct lay *lays);
 /* All patches are surfaces, or all profiles. ERROR_INPUT where fewer than two have trusted waves;
- * ERROR_MEMORY. */
+ * ERROR_NUMERIC where no law has a finite deviance; ERROR_MEMORY. */
 int joint_fit_measure(size_t count, struct joint_patch *patches, struct joint_fit *out,
                       struct error *err);
 /* Returns the density of the law at a wave number, without ends. */

@@ -13,6 +13,7 @@ struct spectral_band {
     /* Wave numbers, and mean squares of differences between neighbours over the spacing for a power
      * of 1, (2 sin(phase/2)/dx)^2: of column mx, of row my + mode_y. */
     double *wave_x, *wave_y, *slope_x, *slope_y;
+    double *odd_y; /* wave_y for odd powers: 0 where the row is also that of -wave_y */
 
     uint32_t *mode_ring; /* [row*(mode_x + 1) + mx] */
     double *mode_count;  /* of each ring of the grid, modes in the full plane */
@@ -79,6 +80,7 @@ static void modes_fill(struct spectral_band *band) {
     for (long my = -mode_y; my <= mode_y; my++) {
         double difference = 2 * sin(M_PI * (double)my / (double)grid->ny) / dy;
         band->wave_y[my + mode_y] = profile ? 0 : 2 * M_PI * (double)my / grid->ly;
+        band->odd_y[my + mode_y] = modes_twin(grid, 0, my) ? 0 : band->wave_y[my + mode_y];
         band->slope_y[my + mode_y] = profile ? 0 : difference * difference;
         for (size_t mx = 0; mx <= band->mode_x; mx++)
             *ring++ = (uint32_t)radial_bin(grid, mx, my);
@@ -96,6 +98,7 @@ static bool arrays_create(struct spectral_band *band) {
     size_t columns = band->mode_x + 1, width = grid->nx / 2 + 1;
     band->wave_x = array_create(columns, sizeof(double));
     band->wave_y = array_create(band->rows, sizeof(double));
+    band->odd_y = array_create(band->rows, sizeof(double));
     band->slope_x = array_create(columns, sizeof(double));
     band->slope_y = array_create(band->rows, sizeof(double));
     band->mode_ring = array_create(columns * band->rows, sizeof(uint32_t));
@@ -104,10 +107,10 @@ static bool arrays_create(struct spectral_band *band) {
     band->lag_ring = array_create(band->field_rows * width, sizeof(uint32_t));
     band->lag_count = array_create(acf_lags(grid), sizeof(double));
     band->even = array_create(columns * (band->mode_y + 1), sizeof(double));
-    return band->wave_x != NULL && band->wave_y != NULL && band->slope_x != NULL &&
-           band->slope_y != NULL && band->mode_ring != NULL && band->mode_count != NULL &&
-           band->row_end != NULL && band->lag_ring != NULL && band->lag_count != NULL &&
-           band->even != NULL;
+    return band->wave_x != NULL && band->wave_y != NULL && band->odd_y != NULL &&
+           band->slope_x != NULL && band->slope_y != NULL && band->mode_ring != NULL &&
+           band->mode_count != NULL && band->row_end != NULL && band->lag_ring != NULL &&
+           band->lag_count != NULL && band->even != NULL;
 }
 
 double spectral_band_bytes(const struct grid *grid, size_t mode_x, size_t mode_y) {
@@ -116,7 +119,7 @@ double spectral_band_bytes(const struct grid *grid, size_t mode_x, size_t mode_y
     double field = (double)rows_within(grid, grid_is_square(grid, mode_x, mode_y));
     double lines = (double)TRANSFORM_ROWS * (double)grid->nx;
     return sizeof(double) *
-               (2 * (columns + rows) + columns * rows / 2 + (double)radial_bins(grid)) +
+               (2 * columns + 3 * rows + columns * rows / 2 + (double)radial_bins(grid)) +
            sizeof(uint32_t) * (columns * rows + field * (double)width) +
            sizeof(double) * (field + (double)acf_lags(grid)) +
            sizeof(double complex) * (columns / 2 + 1) * (double)grid->ny +
@@ -160,6 +163,7 @@ void spectral_band_destroy(struct spectral_band **band) {
     transform_destroy(&gone->lines);
     free(gone->wave_x);
     free(gone->wave_y);
+    free(gone->odd_y);
     free(gone->slope_x);
     free(gone->slope_y);
     free(gone->mode_ring);
@@ -182,25 +186,27 @@ struct column_lanes {
 };
 
 static inline void mode_add(struct column_lanes *lanes, size_t l, double power, double k,
-                            double slope) {
+                            double odd, double slope) {
     lanes->of[SUM_POWER][l] += power;
-    lanes->of[SUM_K][l] += power * k;
+    lanes->of[SUM_K][l] += power * odd;
     lanes->of[SUM_K2][l] += power * k * k;
-    lanes->of[SUM_K3][l] += power * k * k * k;
+    lanes->of[SUM_K3][l] += power * odd * k * k;
     lanes->of[SUM_K4][l] += power * k * k * k * k;
     lanes->of[SUM_SLOPE][l] += power * slope;
     lanes->of[SUM_BEND][l] += power * slope * slope;
 }
 
-WIDE_VECTORS static void column_sum(const double *power, const double *k, const double *slope,
-                                    size_t rows, struct column_lanes *out) {
+WIDE_VECTORS static void column_sum(const struct spectral_band *band, const double *power,
+                                    struct column_lanes *out) {
+    const double *k = band->wave_y, *odd = band->odd_y, *slope = band->slope_y;
+    const size_t rows = band->rows;
     struct column_lanes lanes = {.of = {{0}}};
     size_t row = 0;
     for (; row + LANES <= rows; row += LANES)
         for (size_t l = 0; l < LANES; l++)
-            mode_add(&lanes, l, power[row + l], k[row + l], slope[row + l]);
+            mode_add(&lanes, l, power[row + l], k[row + l], odd[row + l], slope[row + l]);
     for (; row < rows; row++)
-        mode_add(&lanes, 0, power[row], k[row], slope[row]);
+        mode_add(&lanes, 0, power[row], k[row], odd[row], slope[row]);
     *out = lanes;
 }
 
@@ -211,7 +217,7 @@ struct band_totals {
 };
 
 static void totals_add(struct band_totals *totals, const struct column_lanes *lanes, double weight,
-                       double k, double slope) {
+                       double k, double odd, double slope) {
     double of[SUMS];
     for (size_t s = 0; s < SUMS; s++)
         of[s] =
@@ -222,9 +228,9 @@ static void totals_add(struct band_totals *totals, const struct column_lanes *la
     sum_add(&totals->m02, of[SUM_K2]);
     sum_add(&totals->m04, of[SUM_K4]);
     sum_add(&totals->m22, k * k * of[SUM_K2]);
-    sum_add(&totals->m11, k * of[SUM_K]);
-    sum_add(&totals->m31, k * k * k * of[SUM_K]);
-    sum_add(&totals->m13, k * of[SUM_K3]);
+    sum_add(&totals->m11, odd * of[SUM_K]);
+    sum_add(&totals->m31, odd * k * k * of[SUM_K]);
+    sum_add(&totals->m13, odd * of[SUM_K3]);
     sum_add(&totals->slope_x, slope * of[SUM_POWER]);
     sum_add(&totals->bend_x, slope * slope * of[SUM_POWER]);
     sum_add(&totals->slope_y, of[SUM_SLOPE]);
@@ -269,9 +275,9 @@ void spectral_band_moments(const struct spectral_band *band, const struct modes 
     struct band_totals totals = {.m00 = {0}};
     for (size_t mx = 0; mx <= band->mode_x; mx++) {
         struct column_lanes lanes;
-        column_sum(modes->power + mx * band->rows, band->wave_y, band->slope_y, band->rows, &lanes);
-        totals_add(&totals, &lanes, modes_weight(&band->grid, mx), band->wave_x[mx],
-                   band->slope_x[mx]);
+        const double k = band->wave_x[mx], odd = modes_twin(&band->grid, mx, 0) ? 0 : k;
+        column_sum(band, modes->power + mx * band->rows, &lanes);
+        totals_add(&totals, &lanes, modes_weight(&band->grid, mx), k, odd, band->slope_x[mx]);
     }
     moments_take(&totals, profile, moments);
     differences_take(&totals, profile, roughness);

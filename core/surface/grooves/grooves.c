@@ -42,8 +42,19 @@ void grooves_add(const struct grooves *grooves, const struct grid *grid, struct 
     }
 }
 
+bool grooves_independent(const struct grooves *grooves) {
+    static const double ROUNDING = 1e-9;
+    const struct groove_family *one = &grooves->family[0], *other = &grooves->family[1];
+    const double waves = hypot(one->wave_x, one->wave_y) * hypot(other->wave_x, other->wave_y);
+    const double across = one->wave_x * other->wave_y - one->wave_y * other->wave_x;
+    return grooves->families < 2 || isnan(grooves->phase) || fabs(across) > ROUNDING * waves;
+}
+
 struct groove_moments grooves_cumulants(const struct grooves *grooves) {
+    const double none = (double)NAN;
     struct groove_moments out = {0};
+    if (!grooves_independent(grooves))
+        return (struct groove_moments){none, none, none, none};
     for (size_t f = 0; f < grooves->families; f++) {
         const struct groove_family *family = &grooves->family[f];
         const struct groove_moments one = groove_profile_moments(&family->profile);

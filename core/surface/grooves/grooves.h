@@ -33,8 +33,13 @@ bool grooves_fit(const struct grooves *grooves, double lx, double ly);
 void grooves_add(const struct grooves *grooves, const struct grid *grid, struct random_key key,
                  double height, double *z);
 
-/* Returns the moments of all families together, in units of the RMS height of the random part: mean
- * square, third and fourth cumulant of heights, and the mean square slope by the unit length. */
+/* Returns whether heights of the families are independent: at random phases, or where they cross.
+ * Parallel families of a fixed phase have the same heights beside each other in every realisation.
+ */
+bool grooves_independent(const struct grooves *grooves);
+/* Returns the moments of all families together where they are independent, else NaN, in units of
+ * the RMS height of the random part: mean square, third and fourth cumulant of heights, and the
+ * mean square slope by the unit length. */
 struct groove_moments grooves_cumulants(const struct grooves *grooves);
 
 #endif

@@ -581,6 +581,11 @@ void nongaussian_aim(struct nongaussian *g, const struct surface_aim *aim) {
     g->options.max_iterations = aim->max_iterations;
 }
 
+void nongaussian_set_stop(struct nongaussian *g, int (*stop)(void *context), void *context) {
+    g->options.stop = stop;
+    g->options.stop_context = context;
+}
+
 int nongaussian_run(struct nongaussian *g, struct transform *transform, struct random_key key,
                     double *z, struct surface_report *report, struct error *err) {
     const struct surface_options *options = &g->options;

@@ -20,6 +20,8 @@ void nongaussian_destroy(struct nongaussian **nongaussian);
 
 /* Changes the tolerances and limits of the next runs. */
 void nongaussian_aim(struct nongaussian *g, const struct surface_aim *aim);
+/* Changes what the next runs ask whether to stop, as stop and stop_context of their options. */
+void nongaussian_set_stop(struct nongaussian *g, int (*stop)(void *context), void *context);
 
 /* On entry z[ny*nx] is the Gaussian start, on return the surface. transform belongs to the grid and
  * band of modes; its spectrum is overwritten. report may be NULL. ERROR_NUMERIC where the heights

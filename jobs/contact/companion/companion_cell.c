@@ -267,6 +267,7 @@ static int cell_solve(void *workspace, const struct contact_surface *surface,
     const struct companion_plan *plan = cell->plan;
     const struct random_key key = key_of(plan, surface->key, out->draw);
     double *series = companion_series(tally->one_case, out, 0);
+    generator_set_stop(cell->generator, stopper->stop, stopper->context);
     int status = generator_run(cell->generator, key, cell->own, NULL, err);
     if (status == 0)
         status = contact_level_sample(&plan->level, &plan->surface,

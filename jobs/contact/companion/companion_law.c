@@ -86,6 +86,7 @@ static int press_other(struct law *law, const struct contact_surface *surface, d
                        const struct contact_stopper *stopper, struct error *err) {
     struct surface_report report;
     const double *z;
+    other_law_set_stop(law->law, stopper->stop, stopper->context);
     int status = other_law_make(law->law, surface->key, &z, &report, err);
     if (status == 0)
         status = contact_level_sample(

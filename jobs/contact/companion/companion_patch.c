@@ -77,6 +77,7 @@ static int press_drawn(struct patch *patch, const struct contact_surface *surfac
     const struct contact_level *level = &patch->plan->level;
     struct error reason = {0};
     struct like_drawn drawn;
+    like_draw_set_stop(patch->draw, stopper->stop, stopper->context);
     int status = like_draw_make(patch->draw, surface->key, false, &drawn, &reason);
     if (status == ERROR_INPUT || status == ERROR_NUMERIC)
         return 0;

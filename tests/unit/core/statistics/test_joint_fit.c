@@ -6,8 +6,10 @@
 #include "core/surface/surface.h"
 #include "tests/support/check.h"
 #include "tests/support/effort.h"
+#include <gsl/gsl_errno.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { CELL = 640, FINE = 128, COARSE = 128, STRIDE = 4, PATCHES = 3 };
 static const double HURST = 0.7, ROLLOFF = 80, SHORTEST = 4;
@@ -154,9 +156,31 @@ static void lays_are_one(void **state) {
     assert_true(lay_is_plain(&(struct lay){joint_fit_lay(1, lays + 1).ratio, 0, 0, 0}));
 }
 
+/* Spectra that no law has: the failure says so, and is not one of memory. */
+static void spectra_without_a_law_are_refused(void **state) {
+    (void)state;
+    double *z = surface_of(1);
+    struct cut cuts[2] = {cut_of(z, 0, FINE, 1, 1), cut_of(z, 300, FINE, 1, 1)};
+    struct joint_patch patches[2];
+    struct joint_fit out;
+    struct error err = {0};
+    for (size_t n = 0; n < 2; n++) {
+        patches[n] = (struct joint_patch){.spectrum = cuts[n].spectrum, .fit = &cuts[n].fit};
+        for (size_t r = 0; r < cuts[n].spectrum->bins; r++)
+            cuts[n].spectrum->density[r] = NAN;
+    }
+    assert_int_equal(joint_fit_measure(2, patches, &out, &err), ERROR_NUMERIC);
+    assert_non_null(strstr(err.text, "a joint fit of 2 maps: the deviance"));
+    cut_clear(&cuts[0]);
+    cut_clear(&cuts[1]);
+    free(z);
+}
+
 int main(void) {
+    gsl_set_error_handler_off(); /* as the program does */
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(holds_the_law), cmocka_unit_test(lays_are_one),
-        cmocka_unit_test(finds_patches_that_differ), cmocka_unit_test(refuses_one)};
+        cmocka_unit_test(finds_patches_that_differ), cmocka_unit_test(refuses_one),
+        cmocka_unit_test(spectra_without_a_law_are_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

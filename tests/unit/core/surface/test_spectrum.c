@@ -367,6 +367,18 @@ static void anisotropic_spectrum(void **state) {
     modes_destroy(&isotropic);
 }
 
+/* Waves of two points along y are their own mirror images: odd moments of isotropic surfaces are 0
+ * with them, too. */
+static void odd_moments_of_the_shortest_waves(void **state) {
+    (void)state;
+    const struct grid grid = {64, 32, 32, 16};
+    const struct spectrum spectrum = self_affine(0.7, 8);
+    struct moments moments;
+    assert_int_equal(spectrum_moments(&spectrum, &grid, &moments, NULL), 0);
+    assert_true(fabs(moments.m11) < 1e-13 * moments.m20);
+    assert_true(fabs(moments.m31) + fabs(moments.m13) < 1e-13 * moments.m40);
+}
+
 /* Turned by a right angle the powers are those of swapped waves, turned back those of a mirror;
  * slopes are steepest across the lay, as a cell of eight of the longest waves along it has it.
  * Waves as short as two points are their own mirror images, of one power. */
@@ -501,6 +513,7 @@ int main(void) {
         cmocka_unit_test(exponential_spectrum),
         cmocka_unit_test(short_cells_are_clipped),
         cmocka_unit_test(anisotropic_spectrum),
+        cmocka_unit_test(odd_moments_of_the_shortest_waves),
         cmocka_unit_test(oblique_spectrum),
         cmocka_unit_test(table_spectrum),
         cmocka_unit_test(scale_by_slope),

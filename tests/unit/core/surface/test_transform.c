@@ -163,6 +163,40 @@ static void padding_keeps_the_surface(void **state) {
     transform_destroy(&to);
 }
 
+/* Waves of as many as half the points of the coarser grid, along one side and along both: the
+ * finer grid, without all other waves, has the same values at every second point. */
+static void coarser_points_sample_the_shortest_waves(void **state) {
+    (void)state;
+    const struct grid fine = {16, 12, 1, 1}, coarse = {8, 6, 1, 1};
+    struct transform *from = NULL, *to = NULL;
+    double z[192], sampled[48];
+    uint64_t seed = seed_or(11);
+    for (size_t p = 0; p < 192; p++)
+        z[p] = noise(&seed);
+    assert_int_equal(transform_create(&from, &fine, 4, 3, NULL), 0);
+    assert_int_equal(transform_create(&to, &coarse, 4, 3, NULL), 0);
+    transform_forward(from, z);
+    double complex *mode = transform_spectrum(from);
+    for (size_t mx = 0; mx <= 4; mx++)
+        for (size_t row = 4; row < 9; row++)
+            mode[mx * 12 + row] = 0;
+    transform_pad(from, to);
+    transform_inverse(from, z);
+    transform_inverse(to, sampled);
+    for (size_t j = 0; j < 6; j++)
+        for (size_t i = 0; i < 8; i++)
+            check_close(sampled[j * 8 + i], z[2 * j * 16 + 2 * i], 1e-14);
+    transform_destroy(&from);
+    transform_destroy(&to);
+}
+
+static void fast_counts_are_even_and_above_zero(void **state) {
+    (void)state;
+    static const size_t COUNTS[][2] = {{0, 2}, {1, 2}, {2, 2}, {7, 8}, {8, 8}, {13, 16}};
+    for (size_t c = 0; c < sizeof COUNTS / sizeof *COUNTS; c++)
+        assert_int_equal(transform_fast_count(COUNTS[c][0]), COUNTS[c][1]);
+}
+
 static void bands_beyond_the_grid_are_refused(void **state) {
     (void)state;
     struct transform *transform = NULL;
@@ -216,6 +250,8 @@ int main(void) {
         cmocka_unit_test(rows_one_by_one_are_the_whole),
         cmocka_unit_test(what_stays_in_cache_is_the_same),
         cmocka_unit_test(padding_keeps_the_surface),
+        cmocka_unit_test(coarser_points_sample_the_shortest_waves),
+        cmocka_unit_test(fast_counts_are_even_and_above_zero),
         cmocka_unit_test(bands_beyond_the_grid_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

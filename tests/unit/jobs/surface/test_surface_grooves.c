@@ -50,6 +50,17 @@ static void what_does_not_fit_is_refused(void **state) {
          "cross_amplitudes: the shape harmonics needs"},
         {GROOVES("\"period\": 4, \"cross_angle\": 0, \"cross_amplitudes\": [1]"),
          "belongs to the cross_shape harmonics"},
+        {GROOVES("\"period\": 4, \"phases\": [90]"),
+         "/surface/grooves/phases: belongs to the shape harmonics"},
+        {GROOVES("\"period\": 4, \"cross_angle\": 0, \"cross_phases\": [90]"),
+         "/surface/grooves/cross_phases: belongs to the cross_shape harmonics"},
+        /* 8 points a period */
+        {GROOVES("\"period\": 1, \"shape\": \"harmonics\", \"amplitudes\": [1, 0, 0, 0.1, 0]"),
+         "/surface/grooves/amplitudes: harmonic 4: the grid has 2 points a wave of it along a "
+         "side; allowed: above 2, harmonics up to 3"},
+        {GROOVES("\"period\": 4, \"shape\": \"harmonics\", \"amplitudes\": [0, 0, 0, 1], "
+                 "\"cross_period\": 1"),
+         "/surface/grooves/cross_period: harmonic 4"},
         {GROOVES("\"period\": 4, \"angle\": 0, \"cross_angle\": 50"),
          "/surface/grooves/cross_angle: period 4 at 50 degrees"},
         {GROOVES("\"period\": 0.25"), "the grid has 2 points a period; allowed: at least 4"},
@@ -79,6 +90,9 @@ static void allowed_values_are_read(void **state) {
     struct surface_case surface = read(GROOVES("\"period\": 5.333, \"angle\": 90"));
     check_close(surface.grooves->family[0].wave_x, 3. / 16, 1e-14);
     assert_true(surface.grooves->family[0].wave_y == 0);
+    surface_case_clear(&surface);
+    surface =
+        read(GROOVES("\"period\": 1, \"shape\": \"harmonics\", \"amplitudes\": [1, 0, 0.1, 0]"));
     surface_case_clear(&surface);
     surface = read(GROOVES("\"period\": 3.771236, \"angle\": 45, \"cross_angle\": -45"));
     assert_int_equal(surface.grooves->families, 2);
@@ -178,6 +192,31 @@ static void moments_add_up(void **state) {
     surface_case_clear(&surface);
 }
 
+/* Parallel families of a fixed phase lie beside each other alike in every realisation: their
+ * heights are not independent, and have no theory. */
+static void locked_families_have_no_moments(void **state) {
+    (void)state;
+    static const struct {
+        const char *surface;
+        bool known;
+    } ROWS[] = {
+        {GROOVES("\"period\": 8, \"cross_period\": 4, \"phase\": 0"), false},
+        {GROOVES("\"period\": 8, \"cross_period\": 4, \"phase\": 0.3") ", \"dimension\": 1", false},
+        {GROOVES("\"period\": 8, \"cross_period\": 4"), true},
+        {GROOVES("\"period\": 8, \"cross_angle\": 0, \"phase\": 0"), true},
+        {GROOVES("\"period\": 8, \"phase\": 0"), true},
+    };
+    for (size_t r = 0; r < sizeof ROWS / sizeof *ROWS; r++) {
+        struct surface_case surface = read(ROWS[r].surface);
+        struct height_moments heights;
+        bool known;
+        assert_int_equal(surface_case_heights(&surface, &heights, &known, NULL), 0);
+        assert_true(known == ROWS[r].known);
+        assert_true(isnan(grooves_cumulants(surface.grooves).second) == !known);
+        surface_case_clear(&surface);
+    }
+}
+
 /* Grooves a million times as deep as the random part are Westergaard's wave. Loads are over E* h'
  * of the random part, one wave of RMS slope 2 pi. */
 static void deep_sines_are_westergaards(void **state) {
@@ -234,6 +273,7 @@ int main(void) {
         cmocka_unit_test(the_second_family_has_its_own),
         cmocka_unit_test(meshes_have_the_same_grooves),
         cmocka_unit_test(moments_add_up),
+        cmocka_unit_test(locked_families_have_no_moments),
         cmocka_unit_test(deep_sines_are_westergaards),
         cmocka_unit_test(contact_has_no_theory),
     };
