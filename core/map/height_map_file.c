@@ -18,6 +18,7 @@ struct table {
     double *numbers; /* owned */
     size_t count, capacity;
     size_t rows, columns; /* columns: numbers of the first row */
+    size_t ended;         /* rows whose last field is empty */
     size_t line;
 };
 
@@ -47,7 +48,7 @@ static bool is_hole(const char *at) {
     return strncasecmp(at, "nan", 3) == 0 && strchr(",; \t\r\n", at[3]) != NULL;
 }
 
-static const char ALLOWED[] = "allowed: numbers as -1.5e-6, and nan for holes";
+static const char ALLOWED[] = "allowed: numbers as -1.5e-6, and nan or nothing for holes";
 
 /* Reports a fault of the number in this column of the present row. */
 static int refuse_number(const struct table *table, size_t column, const char *at, const char *what,
@@ -58,14 +59,20 @@ static int refuse_number(const struct table *table, size_t column, const char *a
                      ALLOWED);
 }
 
-/* Reads one number in plain decimal, or nan; *at moves behind it. */
+static bool is_separator(const char *at, const char *end) {
+    return at < end && (*at == ',' || *at == ';');
+}
+
+/* Reads one number in plain decimal, or a hole: nan, or nothing before a separator or the end; *at
+ * moves behind it. */
 static int read_number(const struct table *table, size_t column, const char **at, const char *end,
                        double *number, struct error *err) {
     size_t length = strspn(*at, "+-.0123456789eE");
     char *stop;
-    if (is_hole(*at)) {
+    const bool empty = *at == end || is_separator(*at, end);
+    if (empty || is_hole(*at)) {
         *number = NAN;
-        *at += 3;
+        *at += empty ? 0 : 3;
         return 0;
     }
     *number = strtod(*at, &stop);
@@ -77,21 +84,22 @@ static int read_number(const struct table *table, size_t column, const char **at
     return 0;
 }
 
+/* Spreadsheets write points that are missing as nothing between separators. */
 static int read_row(struct table *table, const char *at, const char *end, struct error *err) {
     size_t before = table->count;
-    while ((at = skip_blank(at, end)) < end) {
+    bool more = true;
+    while (more) {
         double number;
+        at = skip_blank(at, end);
+        table->ended += at == end ? 1 : 0;
         int status = read_number(table, table->count - before + 1, &at, end, &number, err);
         if (status == 0)
             status = table_append(table, number, err);
         if (status != 0)
             return status;
         at = skip_blank(at, end);
-        if (at < end && (*at == ',' || *at == ';') && skip_blank(++at, end) == end)
-            return error_set(err, ERROR_INPUT,
-                             "row %zu (line %zu) ends with a separator; allowed: one between two "
-                             "numbers",
-                             table->rows + 1, table->line);
+        more = at < end;
+        at += is_separator(at, end) ? 1 : 0;
     }
     if (table->rows++ == 0)
         table->columns = table->count;
@@ -124,6 +132,10 @@ static int read_table(struct table *table, const char *text, size_t size, struct
     }
     if (table->rows == 0)
         return error_set(err, ERROR_INPUT, "the file holds no number");
+    if (table->ended == table->rows)
+        return error_set(err, ERROR_INPUT,
+                         "every row ends with a separator; allowed: one between two numbers, and "
+                         "nothing after the last of a row that is a hole");
     return 0;
 }
 

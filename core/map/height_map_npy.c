@@ -175,15 +175,25 @@ static int read_heights(struct height_map *map, const char *data, const struct w
     return 0;
 }
 
+/* Returns how much of a header the name of the type is, with its quotes; of a type of several
+ * fields the beginning. */
+static int type_length(const char *type) {
+    enum { MOST = 20 };
+    if (type == NULL || (*type != '\'' && *type != '"'))
+        return MOST;
+    const char *end = strchr(type + 1, *type);
+    return end != NULL && end - type < MOST ? (int)(end - type) + 1 : MOST;
+}
+
 static int check_type(const char *type, const char *order, struct word *word, bool *fortran,
                       struct error *err) {
     static const struct word NONE = {0};
     *word = NONE;
     if (type == NULL || !read_type(type, word))
         return error_set(err, ERROR_INPUT,
-                         "the npy type %.20s is not read; allowed: f2, f4, f8, and i and u of 1, "
+                         "the npy type %.*s is not read; allowed: f2, f4, f8, and i and u of 1, "
                          "2, 4 or 8 bytes, as '<f8'",
-                         type != NULL ? type : "is absent, which");
+                         type_length(type), type != NULL ? type : "is absent, which");
     *fortran = order != NULL && strncmp(order, "True", 4) == 0;
     if (!*fortran && (order == NULL || strncmp(order, "False", 5) != 0))
         return error_set(err, ERROR_INPUT, "the npy header must say fortran_order, True or False");

@@ -16,6 +16,7 @@ int map_noise_measure(struct map_noise *out, const struct measured_map *map, str
         return status;
     map_roughness_measure(map, &roughness);
     const double share = spectrum_fit_noise_share(&fit, map->grid, roughness.rms_curvature);
-    *out = (struct map_noise){share > NOISE_SHARE_MOST, roughness.rms_slope, fit.rms_slope.value};
+    *out = (struct map_noise){share > NOISE_SHARE_MOST && fit.rms_slope.value < roughness.rms_slope,
+                              roughness.rms_slope, fit.rms_slope.value};
     return 0;
 }

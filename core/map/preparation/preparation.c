@@ -106,6 +106,11 @@ int height_map_check_units(const struct height_map *map, struct error *err) {
             "--z-unit nm (or another; z_unit in studies and requests) says what they "
             "are in",
             *map->z_unit != '\0' ? "in " : "without a unit", map->z_unit);
+    if (*map->xy_unit == '\0')
+        return error_set(err, ERROR_INPUT,
+                         "heights are in %s and x and y have no unit, so that slopes have no "
+                         "meaning; --unit um, --dx 0.4um (or others) say what x and y are in",
+                         map->z_unit);
     return error_set(err, ERROR_INPUT,
                      "the unit of heights is '%s' and that of x and y '%s', so that slopes have no "
                      "meaning; --unit um (or another) and --z-unit say what they are",

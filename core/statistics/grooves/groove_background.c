@@ -204,6 +204,70 @@ static double rings_near(const struct groove_background *b, double mx, double my
     return most;
 }
 
+/* --- waves across the lines of the map, in which offsets of whole lines are --- */
+
+/* What the waves have that are `own` periods along one axis and any number along the other, beyond
+ * those 3 to 5 periods beside them, and how many waves it is known by. */
+struct axis_excess {
+    double power, freedom;
+};
+
+static double wave_power(const struct groove_background *b, bool along_y, long own, long at) {
+    const long mx = along_y ? own : at, my = along_y ? at : own;
+    return modes_power(b->modes, (size_t)labs(mx), mx < 0 ? -my : my);
+}
+
+/* Returns the excess about wave m by shorter ones, of which the surface has least, without the
+ * harmonics of a wave of `base` periods. Offsets of lines may fall with the wave number, as where
+ * an instrument drifts. */
+static struct axis_excess axis_excess(const struct groove_background *b, bool along_y, long own,
+                                      double m, double base) {
+    enum { WAVES = 40, LAST = 5, BESIDE = 2 * (LAST - NEAREST + 1) };
+    static const double BY_MEDIAN = 0.25, FEW = 5;
+    static const double LINE = 1.7; /* as far as the window takes any of it */
+    const long last = (long)(along_y ? b->modes->mode_y : b->modes->mode_x), from = lround(m);
+    const long first = last - WAVES - NEAREST < from ? last - WAVES - NEAREST : from;
+    double on[WAVES], beside[WAVES * BESIDE];
+    size_t n = 0, others = 0;
+    for (long at = first > 1 ? first : 1; at <= last && n < WAVES; at++) {
+        const double fall = (double)at / m;
+        if (fabs(remainder((double)at, base)) < LINE)
+            continue;
+        on[n++] = fall * wave_power(b, along_y, own, at);
+        for (int d = NEAREST; d <= LAST; d++) {
+            beside[others++] = fall * wave_power(b, along_y, own - d, at);
+            beside[others++] = fall * wave_power(b, along_y, own + d, at);
+        }
+    }
+    if (n == 0)
+        return (struct axis_excess){0};
+    return (struct axis_excess){
+        fmax((gsl_stats_median(on, 1, n) - gsl_stats_median(beside, 1, others)) / MEDIAN, 0),
+        fmax(BY_MEDIAN * (double)n, FEW)};
+}
+
+/* Returns the excess where a wave is of an axis, or beside it as far as the window takes some
+ * there; {0} for others. Waves may be any of the first harmonics of grooves, whose base leaves
+ * least.
+ */
+static struct axis_excess axis_excess_at(const struct groove_background *b, double mx, double my) {
+    enum { SIDE_LEAST = 8, HARMONICS = 6, MAP_PERIODS = 4 };
+    static const double BESIDE = 1.5;
+    struct axis_excess most = {0};
+    for (int along_y = 0; along_y < 2 && !b->profile; along_y++) {
+        const double own = fabs(along_y ? mx : my), m = fabs(along_y ? my : mx);
+        if (own >= BESIDE || m < 1 || (along_y ? b->modes->mode_x : b->modes->mode_y) < SIDE_LEAST)
+            continue;
+        struct axis_excess least = axis_excess(b, along_y != 0, lround(own), m, m);
+        for (int h = 2; h <= HARMONICS && m / h >= MAP_PERIODS; h++) {
+            const struct axis_excess one = axis_excess(b, along_y != 0, lround(own), m, m / h);
+            least = one.power < least.power ? one : least;
+        }
+        most = least.power > most.power ? least : most;
+    }
+    return most;
+}
+
 static double power_at(const struct groove_background *b, double mx, double my) {
     if (b->profile)
         return both_sides(b, (size_t)fmax(round(fabs(mx)), 1));
@@ -246,15 +310,15 @@ static double ratio_near(const struct groove_background *b, double mx, double my
 
 double groove_background_near(const struct groove_background *b, double mx, double my) {
     const double ring = power_at(b, mx, my);
-    return b->profile ? ring : ring * ratio_near(b, mx, my);
+    return b->profile ? ring : ring * ratio_near(b, mx, my) + axis_excess_at(b, mx, my).power;
 }
 
 double groove_background_power(const struct groove_background *b, double mx, double my) {
-    return fmax(power_at(b, mx, my), b->least);
+    return fmax(power_at(b, mx, my) + axis_excess_at(b, mx, my).power, b->least);
 }
 
 double groove_background_p_value(const struct groove_background *b, double mx, double my,
-                                 double power, bool alone) {
+                                 double power, enum groove_test test) {
     double expected = 0, count = 0;
     if (b->profile) {
         const size_t m = (size_t)fmax(round(fabs(mx)), 1);
@@ -262,10 +326,18 @@ double groove_background_p_value(const struct groove_background *b, double mx, d
         count = FARTHEST;
     } else {
         const size_t ring = (size_t)fmax(round(ring_of(b, mx, my)), 1);
-        expected = fmax(neighbours(b, mx, my, alone), rings_near(b, mx, my));
+        expected = fmax(neighbours(b, mx, my, test == GROOVE_ALONE), rings_near(b, mx, my));
         count = ring < b->rings ? b->count[ring] : 0;
     }
-    const double freedom = fmax(INDEPENDENT * count, 1);
+    double freedom = fmax(INDEPENDENT * count, 1);
     expected = fmax(expected, b->least);
-    return expected > 0 ? exp(-freedom * log1p(power / expected / freedom)) : 1;
+    if (!(expected > 0))
+        return 1;
+    const struct axis_excess axis =
+        test == GROOVE_SOUGHT ? (struct axis_excess){0} : axis_excess_at(b, mx, my);
+    const double all = expected + axis.power;
+    if (axis.power > 0)
+        freedom =
+            all * all / (expected * expected / freedom + axis.power * axis.power / axis.freedom);
+    return exp(-freedom * log1p(power / all / freedom));
 }

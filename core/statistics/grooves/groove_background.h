@@ -16,11 +16,17 @@ double groove_background_power(const struct groove_background *background, doubl
 /* Returns the same where lines have been taken out, by the waves around that one: their median over
  * what their rings have, times that of its ring. Nothing is taken for granted. */
 double groove_background_near(const struct groove_background *background, double mx, double my);
+/* What a wave is tested as. */
+enum groove_test {
+    GROOVE_SOUGHT,   /* one of all waves of the map, at whole numbers of periods */
+    GROOVE_HARMONIC, /* at its wave vector. Offsets of lines have waves, too, with nothing
+                        along them, and it must stand out of those */
+    GROOVE_ALONE     /* all that is left of grooves: out of its neighbours on each side, too */
+};
 /* Returns the probability of such a power or more in a wave of the random part. It compares with
  * the largest of what rings and neighbours on either side have, so that a sharp end of a spectrum
- * makes no line. alone: the wave is all that is left of grooves, so that it must stand out of its
- * neighbours on each side, too. */
+ * makes no line. */
 double groove_background_p_value(const struct groove_background *background, double mx, double my,
-                                 double power, bool alone);
+                                 double power, enum groove_test test);
 
 #endif

@@ -55,8 +55,8 @@ static int search_create(struct search *search, const struct measured_map *map, 
 /* Returns the probability of such a wave anywhere among all: two are tested for each, as lines lie
  * between them. */
 static double p_value_at(const struct search *search, double mx, double my, double power,
-                         bool alone) {
-    const double one = groove_background_p_value(search->background, mx, my, power, alone);
+                         enum groove_test test) {
+    const double one = groove_background_p_value(search->background, mx, my, power, test);
     return fmin(2 * search->waves * one, 1);
 }
 
@@ -112,7 +112,7 @@ static struct candidate find_candidate(const struct search *search,
             if (!(power > 4 * expected)) /* of no interest, and soon seen */
                 continue;
             const double p =
-                fmax(p_value_at(search, (double)mx, (double)my, power, false), CERTAIN);
+                fmax(p_value_at(search, (double)mx, (double)my, power, GROOVE_SOUGHT), CERTAIN);
             if (p < 1 && is_left(search, grooves, (double)mx, (double)my, power))
                 continue;
             if (p < best.p_value || (p == best.p_value && p < 1 && power > best.power))
@@ -144,10 +144,10 @@ static size_t divisor_of(const struct search *search, const struct groove_map *m
                 (!grid_is_profile(grid) && fabs(y) >= (double)grid->ny / 2 - 1))
                 continue;
             const double power = groove_power(map, x, y);
-            if (power > least &&
-                2 * MOST * MOST *
-                        groove_background_p_value(search->background, x, y, power, false) <
-                    SURE)
+            if (power > least && 2 * MOST * MOST *
+                                         groove_background_p_value(search->background, x, y, power,
+                                                                   GROOVE_HARMONIC) <
+                                     SURE)
                 return n;
         }
     }
@@ -218,8 +218,8 @@ static bool family_stands(struct map_groove *family, const struct search *search
     family->p_value = 1;
     for (size_t h = 1; h <= family->lines.count; h++) {
         const double mx = (double)h * family->lines.mx, my = (double)h * family->lines.my;
-        family->p_value =
-            fmin(family->p_value, p_value_at(search, mx, my, groove_power(map, mx, my), true));
+        family->p_value = fmin(family->p_value,
+                               p_value_at(search, mx, my, groove_power(map, mx, my), GROOVE_ALONE));
     }
     return family->p_value < MAP_GROOVES_LEVEL;
 }

@@ -11,7 +11,11 @@ int map_chance_create(struct map_chance **out, const struct measured_map *map, s
         bool enough = chance->lengths >= LENGTHS_INSIDE_LEAST;
         chance->told =
             low_modes_fill(map, enough ? chance->correlation : NULL, &chance->modes) && enough;
-        chance->reason = chance->told ? "standard" : "none: too few correlation lengths";
+        chance->reason = chance->told ? "standard"
+                         : chance->lengths > 0
+                             ? "none: too few correlation lengths"
+                             : "none: along some direction heights stay correlated all over the "
+                               "map, as along grooves";
         status = cell_heights_create(&chance->heights, map, &chance->modes, err);
     }
     if (status == 0)

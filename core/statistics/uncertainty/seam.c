@@ -1,5 +1,6 @@
 #include "core/statistics/uncertainty/seam.h"
 #include "core/vectors.h"
+#include <gsl/gsl_statistics_double.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,13 +15,14 @@ static const double WEIGHT[ORDERS][ORDER_MOST + 1] = {{-1, 1}, {1, -2, 1}, {1, -
 enum { LANES = 64 };
 
 struct room {
+    double limit;           /* of the square of a difference */
     double *square, *count; /* a value a point of the longer side */
     double *row;            /* nx + ORDER_MOST: a row, and its first points again */
 };
 
-/* Adds the squares of n differences of points at[k][i], k = 0 .. ORDER[d], and counts those that
- * are there. */
-WIDE_VECTORS static void squares_add(size_t n, size_t d, const double *const *at,
+/* Adds the squares of n differences of points at[k][i], k = 0 .. ORDER[d], up to a limit each, and
+ * counts those that are there. */
+WIDE_VECTORS static void squares_add(size_t n, size_t d, const double *const *at, double limit,
                                      double *restrict square, double *restrict count) {
     double difference[LANES];
     for (size_t i = 0; i < n; i++)
@@ -30,7 +32,8 @@ WIDE_VECTORS static void squares_add(size_t n, size_t d, const double *const *at
             difference[i] += WEIGHT[d][k] * at[k][i];
     for (size_t i = 0; i < n; i++) {
         bool there = difference[i] == difference[i];
-        square[i] += there ? difference[i] * difference[i] : 0;
+        double one = difference[i] * difference[i];
+        square[i] += there ? (one < limit ? one : limit) : 0;
         count[i] += there ? 1 : 0;
     }
 }
@@ -50,7 +53,8 @@ static void squares_along_x(const struct grid *grid, const double *z, size_t d,
             const double *at[ORDER_MOST + 1];
             for (size_t k = 0; k <= ORDER[d]; k++)
                 at[k] = room->row + p + k;
-            squares_add(nx - p < LANES ? nx - p : LANES, d, at, room->square + p, room->count + p);
+            squares_add(nx - p < LANES ? nx - p : LANES, d, at, room->limit, room->square + p,
+                        room->count + p);
         }
     }
     for (size_t p = 0; p < nx; p++)
@@ -66,7 +70,7 @@ static void squares_along_y(const struct grid *grid, const double *z, size_t d,
             const double *at[ORDER_MOST + 1];
             for (size_t k = 0; k <= ORDER[d]; k++)
                 at[k] = z + (p + k) % ny * nx + i;
-            squares_add(nx - i < LANES ? nx - i : LANES, d, at, square, count);
+            squares_add(nx - i < LANES ? nx - i : LANES, d, at, room->limit, square, count);
         }
         for (size_t l = 1; l < LANES; l++) {
             square[0] += square[l];
@@ -93,13 +97,40 @@ static double seam_over_inside(const double *square, size_t n, size_t order) {
     return isnan(seam) || most == 0 ? (double)INFINITY : sqrt(seam / most);
 }
 
-static double lines_seam(const struct grid *grid, const double *z, int axis,
-                         const struct room *room) {
+/* Returns the most that the square of a difference counts: a single spike would make all positions
+ * that it is in the roughest ones. It is beyond what differences have that are distributed as a
+ * Gaussian, by the median of every so many inside. A profile has one line, whose differences are
+ * all there is to compare with. */
+static double square_limit(const struct grid *grid, const double *z, size_t d, int axis) {
+    enum { MOST = 4096, STRIDE = 7919 };                 /* a prime, as lines may be alike */
+    static const double DEVIATIONS = 6, MEDIAN = 0.6745; /* of |x| of a Gaussian, in deviations */
+    const size_t points = grid_points(grid), order = ORDER[d], stride = axis == 0 ? 1 : grid->nx;
+    const size_t n = axis == 0 ? grid->nx : grid->ny;
+    double size[MOST];
+    size_t count = 0;
+    if (grid_is_profile(grid))
+        return (double)INFINITY;
+    for (size_t s = 0, p = 0; s < points && count < MOST; s++, p = (p + STRIDE) % points) {
+        const size_t at = axis == 0 ? p % n : p / grid->nx;
+        double difference = 0;
+        if (at + order >= n)
+            continue;
+        for (size_t k = 0; k <= order; k++)
+            difference += WEIGHT[d][k] * z[p + k * stride];
+        if (!isnan(difference))
+            size[count++] = fabs(difference);
+    }
+    const double middle = count > 0 ? gsl_stats_median(size, 1, count) : 0;
+    return middle > 0 ? pow(DEVIATIONS / MEDIAN * middle, 2) : (double)INFINITY;
+}
+
+static double lines_seam(const struct grid *grid, const double *z, int axis, struct room *room) {
     size_t n = axis == 0 ? grid->nx : grid->ny;
     double largest = 0;
     if (n < SEAM_POINTS)
         return (double)INFINITY;
     for (size_t d = 0; d < ORDERS; d++) {
+        room->limit = square_limit(grid, z, d, axis);
         if (axis == 0)
             squares_along_x(grid, z, d, room);
         else
@@ -115,7 +146,7 @@ int seam_measure(const struct grid *grid, const double *z, struct seam *out, str
     double *values = array_create(count, sizeof *values);
     if (values == NULL)
         return error_memory(err, count * sizeof *values, "differences of heights");
-    const struct room room = {values, values + most, values + 2 * most};
+    struct room room = {(double)INFINITY, values, values + most, values + 2 * most};
     out->x = lines_seam(grid, z, 0, &room);
     out->y = grid_is_profile(grid) ? 0 : lines_seam(grid, z, 1, &room);
     free(values);

@@ -67,7 +67,8 @@ static void put(char *out, size_t size, double value, double error) {
 
 void groove_sentence(const struct map_groove *groove, const struct groove_units *units, char *out,
                      size_t size) {
-    char period[60], angle[60], depth[60], shape[80];
+    static const double LEAST = 1e-20;
+    char period[60], angle[60], depth[60], shape[80], p_value[40];
     put(period, sizeof period, groove->period / units->x, groove->period_error / units->x);
     put(angle, sizeof angle, groove->angle / DEGREE, groove->angle_error / DEGREE);
     put(depth, sizeof depth, groove->fit.depth / units->z, groove->fit.depth_error / units->z);
@@ -78,9 +79,11 @@ void groove_sentence(const struct map_groove *groove, const struct groove_units 
         snprintf(shape, sizeof shape, "a shape of %zu harmonics", groove->fit.standing);
     else
         snprintf(shape, sizeof shape, "a %s", GROOVE_SHAPE_NAMES[groove->fit.shape]);
-    snprintf(out, size, "every %s%s%s%s%s%s, %s%s%s deep, %s (p-value %.2g)", period,
+    snprintf(p_value, sizeof p_value, groove->p_value < LEAST ? "below %.0e" : "%.2g",
+             fmax(groove->p_value, LEAST));
+    snprintf(out, size, "every %s%s%s%s%s%s, %s%s%s deep, %s (p-value %s)", period,
              *units->x_name != '\0' ? " " : "", units->x_name,
              isfinite(groove->angle) ? ", at " : "", isfinite(groove->angle) ? angle : "",
              isfinite(groove->angle) ? " degrees from x" : "", depth,
-             *units->z_name != '\0' ? " " : "", units->z_name, shape, groove->p_value);
+             *units->z_name != '\0' ? " " : "", units->z_name, shape, p_value);
 }

@@ -133,7 +133,9 @@ static bool write_value(const struct list *list, const struct table_row *row,
 }
 
 bool main_values_have_noise(const struct named_values *found) {
-    return named_number(found, NOISELESS, "noise_share") > NOISE_SHARE_MOST;
+    return named_number(found, NOISELESS, "noise_share") > NOISE_SHARE_MOST &&
+           named_number(found, NOISELESS, "rms_slope") <
+               named_number(found, "finite_difference", "rms_slope");
 }
 
 /* What is measured by short waves holds what the instrument left; so does what follows from the

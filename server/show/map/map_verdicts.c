@@ -61,22 +61,23 @@ static void judge_law(struct verdicts *verdicts, const struct named_values *foun
             deviance);
 }
 
-static void judge_noise(struct verdicts *verdicts, const struct named_values *found,
-                        const struct map_artefacts *artefacts) {
+static void judge_noise(struct verdicts *verdicts, const struct map_figure *figure) {
+    const struct named_values *found = figure->found;
+    const char *holes = figure->record->holes > 0 ? "; holes look like noise, too" : "";
     const double measured = named_number(found, "finite_difference", "rms_slope");
     const double trusted = named_number(found, "trusted", "rms_slope");
     if (!main_values_have_noise(found))
         return;
-    if (map_artefacts_count(artefacts)) /* there is more to be said */
+    if (map_artefacts_count(&figure->record->artefacts)) /* there is more to be said */
         say(verdicts,
-            "Noise: the RMS slope is %.3g with it and %.3g without, by the law of the spectrum.",
-            measured, trusted);
+            "Noise: the RMS slope is %.3g with it and %.3g without, by the law of the spectrum%s.",
+            measured, trusted, holes);
     else
         say(verdicts,
-            "Noise: the RMS slope is %.3g with it and %.3g without. Values without noise are of "
+            "Noise: the RMS slope is %.3g with it and %.3g without%s. Values without noise are of "
             "the "
             "law of the spectrum, for Gaussian heights; --denoise takes it out of the map.",
-            measured, trusted);
+            measured, trusted, holes);
 }
 
 /* Skewed heights make short waves fall off that their normal scores have, up to a sharp end; true
@@ -113,8 +114,8 @@ static void judge_short_waves(struct verdicts *verdicts, const struct map_figure
              !judge_scores(verdicts, figure, length))
         say(verdicts,
             "Short waves: below %.3g%s%s they fall off as in an instrument that does not transmit "
-            "them; slopes, curvatures and summits lack them.",
-            length, gap, units.x_name);
+            "them%s; slopes, curvatures and summits lack them.",
+            length, gap, units.x_name, figure->record->holes > 0 ? ", or as holes make them" : "");
     else if (strcmp(by, SPECTRUM_END_NAMES[SPECTRUM_END_CUTOFF]) == 0)
         say(verdicts, "Short waves: the spectrum ends at %.3g%s%s.", length, gap, units.x_name);
 }
@@ -245,7 +246,7 @@ size_t map_verdicts_list(char out[VERDICTS_MOST][VERDICT_SIZE], const struct map
     judge_grooves(&verdicts, figure);
     judge_law(&verdicts, figure->found);
     judge_short_waves(&verdicts, figure);
-    judge_noise(&verdicts, figure->found, &figure->record->artefacts);
+    judge_noise(&verdicts, figure);
     judge_artefacts(&verdicts, figure);
     judge_heights(&verdicts, figure);
     judge_strata(&verdicts, figure->found);

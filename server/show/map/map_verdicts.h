@@ -6,7 +6,7 @@
 
 #include "server/show/map/figure/map_figure.h"
 
-enum { VERDICTS_MOST = 18, VERDICT_SIZE = 240 };
+enum { VERDICTS_MOST = 18, VERDICT_SIZE = 320 };
 
 /* Writes those that the values allow, and returns their number. */
 size_t map_verdicts_list(char out[VERDICTS_MOST][VERDICT_SIZE], const struct map_figure *figure);

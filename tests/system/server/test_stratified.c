@@ -88,6 +88,7 @@ static void map_of_a_face(void **state) {
         "\"$RUGO\" characterise face.npy --dx 1 --boundary periodic >face.txt && "
         "\"$RUGO\" characterise face.npy --dx 1 --boundary periodic --format json >face.out");
     assert_true(contains("face.txt", "two laws fit better than one"));
+    assert_true(contains("face.txt", "spectra.\n")); /* the end of a long sentence */
     assert_true(contains("face.txt", "\"plateau\": {\"rms_ratio\":"));
     static const struct {
         const char *name, *error;

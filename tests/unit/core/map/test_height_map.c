@@ -167,7 +167,8 @@ static void refused_npy(void **state) {
     static const struct {
         const char *header, *words;
     } cases[] = {
-        {"{'descr': '<c16', 'fortran_order': False, 'shape': (2, 3), }", "'<c16'"},
+        {"{'descr': '<c16', 'fortran_order': False, 'shape': (2, 3), }",
+         "the npy type '<c16' is not read"},
         {"{'descr': '<f16', 'fortran_order': False, 'shape': (2, 3), }", "allowed: f2, f4, f8"},
         {"{'descr': '<i3', 'fortran_order': False, 'shape': (2, 3), }", "'<i3'"},
         {"{'descr': 'f8', 'fortran_order': False, 'shape': (2, 3), }", "'f8'"},
@@ -217,6 +218,23 @@ static void csv_separators(void **state) {
     height_map_clear(&map);
 }
 
+/* Spreadsheets write points that are missing as empty cells. */
+static void empty_fields_are_holes(void **state) {
+    (void)state;
+    static const char *const TEXTS[] = {"1,2,3\n,5,\n7,8,9\n", "1;2;3\n; 5 ;\r\n7;8;9",
+                                        "1 2 3\nnan 5 nan\n7 8 9\n"};
+    for (size_t t = 0; t < sizeof TEXTS / sizeof *TEXTS; t++) {
+        struct height_map map = parse(HEIGHT_MAP_CSV, TEXTS[t], strlen(TEXTS[t]), 1);
+        assert_true(map.grid.nx == 3 && map.grid.ny == 3);
+        for (size_t n = 0; n < 9; n++)
+            assert_true(n == 3 || n == 5 ? isnan(map.z[n]) : map.z[n] == (double)n + 1);
+        height_map_clear(&map);
+    }
+    struct height_map first = parse(HEIGHT_MAP_CSV, "1,\n,4\n", 6, 1);
+    assert_true(isnan(first.z[1]) && isnan(first.z[2]) && first.z[3] == 4);
+    height_map_clear(&first);
+}
+
 static void refused_text(void **state) {
     (void)state;
     static const struct {
@@ -232,8 +250,9 @@ static void refused_text(void **state) {
         {HEIGHT_MAP_CSV, "1,inf\n", "'inf' is not a number"},
         {HEIGHT_MAP_CSV, "1,0x10\n", "is not a number"},
         {HEIGHT_MAP_CSV, "# x\n1,1e999\n", "row 1, column 2 (line 2): '1e999' is too large"},
-        {HEIGHT_MAP_CSV, "1,2,\n", "ends with a separator"},
-        {HEIGHT_MAP_CSV, "1,,2\n", "is not a number"},
+        {HEIGHT_MAP_CSV, "1,2,\n", "every row ends with a separator"},
+        {HEIGHT_MAP_CSV, "1,2,\n3,4,\n", "every row ends with a separator"},
+        {HEIGHT_MAP_CSV, "1,2\n3,4,\n", "row 2 (line 2) has 3 numbers, the first row 2"},
         {HEIGHT_MAP_CSV, "1\n", "at least 2"},
         {HEIGHT_MAP_XYZ, "0 0\n1 0\n", "3 numbers"},
         {HEIGHT_MAP_XYZ, "0 0 1\n1 0 1\n0 1 1\n", "regular grid"},
@@ -344,12 +363,13 @@ static void formats_by_name(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(round_trip),     cmocka_unit_test(failing_write),
-        cmocka_unit_test(numpy_headers),  cmocka_unit_test(every_type_and_order),
-        cmocka_unit_test(half_precision), cmocka_unit_test(refused_npy),
-        cmocka_unit_test(csv_separators), cmocka_unit_test(refused_text),
-        cmocka_unit_test(holes),          cmocka_unit_test(xyz_coordinates),
-        cmocka_unit_test(random_bytes),   cmocka_unit_test(formats_by_name),
+        cmocka_unit_test(round_trip),      cmocka_unit_test(failing_write),
+        cmocka_unit_test(numpy_headers),   cmocka_unit_test(every_type_and_order),
+        cmocka_unit_test(half_precision),  cmocka_unit_test(refused_npy),
+        cmocka_unit_test(csv_separators),  cmocka_unit_test(empty_fields_are_holes),
+        cmocka_unit_test(refused_text),    cmocka_unit_test(holes),
+        cmocka_unit_test(xyz_coordinates), cmocka_unit_test(random_bytes),
+        cmocka_unit_test(formats_by_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -483,6 +483,7 @@ static void turns_are_stated_or_refused(void **state) {
         {{.rotate = "30", .boundary = ASK_BOUNDARY_PERIODIC}, "allowed with --boundary periodic"},
         {{.tip = "tip=1um"}, "--deconvolve has a unit"},
         {{.tip = "tip=1", .unit = "um"}, "so that slopes have no meaning"},
+        {{.tip = "tip=1", .z_unit = "um"}, "heights are in m and x and y have no unit"},
     };
     struct height_map map;
     struct preparation_record record;

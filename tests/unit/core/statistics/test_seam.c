@@ -1,4 +1,6 @@
-/* Protects: the seam distinguishes maps that repeat from sub-maps cut out of them. */
+/* Protects: the seam distinguishes maps that repeat from sub-maps cut out of them, with spikes,
+ * too.
+ */
 #include "core/statistics/uncertainty/seam.h"
 #include "tests/support/check.h"
 #include "tests/support/cut.h"
@@ -47,6 +49,30 @@ static void pieces_have_one(void **state) {
     }
 }
 
+/* One spike in each third column, 15 times the RMS height, leaves the seam of a sub-map as rough as
+ * it was, and that of a map that repeats as smooth. */
+static void spikes_hide_no_seam(void **state) {
+    (void)state;
+    const struct grid grid = {128, 128, 128, 128};
+    for (size_t r = 0; r < 10; r++) {
+        struct grid piece;
+        double *z = whole_surface(&grid, 0.8, r);
+        double *part = cut(&grid, z, 3, 0, 100, 90, &piece);
+        double square = 0;
+        for (size_t n = 0; n < 128 * 128; n++)
+            square += z[n] * z[n] / (128 * 128);
+        for (size_t n = 0; n < 30; n++) {
+            part[n * 3 * 101 % 9000] += 15 * sqrt(square);
+            z[n * 3 * 131 % (128 * 128)] += 15 * sqrt(square);
+        }
+        struct seam open = seam_of(&piece, part), whole = seam_of(&grid, z);
+        assert_true(open.x > 1.5 && open.y > 1.5);
+        assert_false(seam_is_rough(&whole));
+        free(z);
+        free(part);
+    }
+}
+
 /* First differences detect a step: at the seam it is 10, inside 1. */
 static void a_tilt_is_a_step(void **state) {
     (void)state;
@@ -76,6 +102,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(periodic_maps_have_none),
         cmocka_unit_test(pieces_have_one),
+        cmocka_unit_test(spikes_hide_no_seam),
         cmocka_unit_test(a_tilt_is_a_step),
         cmocka_unit_test(odd_maps),
     };

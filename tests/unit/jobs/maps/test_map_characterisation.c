@@ -97,7 +97,9 @@ static void too_few_lengths_have_no_errors(void **state) {
         z[point] = cos(2 * M_PI * (double)(point % SIDE) / SIDE);
     assert_int_equal(characterise(&found, z, false, 1, &trusted, NULL), 0);
     assert_false(found.certainty.has_errors || found.hills_have_errors);
-    assert_string_equal(found.certainty.reason, "none: too few correlation lengths");
+    assert_string_equal(
+        found.certainty.reason,
+        "none: along some direction heights stay correlated all over the map, as along grooves");
     assert_true(isnan(found.certainty.freedom) && isnan(found.stationarity_p_value));
     assert_false(found.parameters.summits[SUMMITS_NINE_POINT].has_errors);
     assert_true(isnan(found.height_fits.list[found.height_fits.best].p_value));
