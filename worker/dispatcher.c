@@ -292,13 +292,12 @@ static void lose(struct dispatcher *dispatcher, struct lease *lease) {
  * own. */
 static void settle_beat(struct dispatcher *dispatcher, struct lease *lease,
                         const struct report *report) {
-    bool released = report->verb == REPORT_RELEASE;
+    bool released = report->verb == REPORT_RELEASE && report->status == 0;
     if (!beats(lease))
         return;
     int64_t interval = lease_interval_ms(dispatcher, lease);
-    if (released && report->status == 0)
-        atomic_store(&lease->given_back, true);
-    if (report->status == ERROR_STATE || (released && report->status == 0))
+    atomic_store(&lease->given_back, released);
+    if (report->status == ERROR_STATE || released)
         lose(dispatcher, lease);
     else
         lease->due_ms = clock_ms() + (report->status != 0 ? interval / RETRY_PART + 1 : interval);
