@@ -138,20 +138,27 @@ bool main_values_have_noise(const struct named_values *found) {
                named_number(found, "finite_difference", "rms_slope");
 }
 
-/* What is measured by short waves holds what the instrument left; so does what follows from the
- * spectrum, unless it is noise there. */
+static bool is_one_of(const char *name, const char *const *names) {
+    for (; *names != NULL; names++)
+        if (strcmp(*names, name) == 0)
+            return true;
+    return false;
+}
+
+/* What is measured by short waves holds what the instrument left, and what is measured by single
+ * high points its spikes; so does what follows from the spectrum, unless it is noise there. */
 static bool is_untrusted(const struct table_row *row, const struct map_artefacts *artefacts,
                          bool has_noise) {
-    static const char *const SHORT_WAVES[] = {"rms_slope", "rms_curvature", "nayak_alpha", "Sdr",
-                                              "density"};
-    static const char *const OF_SPECTRUM[] = {"hurst", "rolloff_wavelength", "short_wavelength"};
+    static const char *const SHORT_WAVES[] = {"rms_slope", "rms_curvature", "nayak_alpha",
+                                              "Sdr",       "density",       NULL};
+    static const char *const HIGH_POINTS[] = {"Sq", "rms", "Sz", "skewness", "kurtosis", NULL};
+    static const char *const OF_SPECTRUM[] = {"hurst", "rolloff_wavelength", "short_wavelength",
+                                              NULL};
     const bool noiseless = strcmp(row->group, NOISELESS) == 0;
-    bool measured = false, follows = noiseless;
-    for (size_t n = 0; n < sizeof SHORT_WAVES / sizeof *SHORT_WAVES && !noiseless; n++)
-        measured = measured || strcmp(row->name, SHORT_WAVES[n]) == 0;
-    for (size_t n = 0; n < sizeof OF_SPECTRUM / sizeof *OF_SPECTRUM; n++)
-        follows = follows || strcmp(row->name, OF_SPECTRUM[n]) == 0;
+    const bool measured = !noiseless && is_one_of(row->name, SHORT_WAVES);
+    const bool follows = noiseless || is_one_of(row->name, OF_SPECTRUM);
     return (measured && map_artefacts_count(artefacts)) ||
+           (is_one_of(row->name, HIGH_POINTS) && map_spikes_count(artefacts)) ||
            (follows && map_artefacts_bend(artefacts, has_noise));
 }
 
