@@ -32,5 +32,9 @@ static inline double grid_widest_spacing(const struct grid *grid) {
     const double dx = grid_dx(grid), dy = grid_dy(grid);
     return grid_is_profile(grid) || dx > dy ? dx : dy;
 }
+/* Returns the longer side, of a profile its length. */
+static inline double grid_longest_side(const struct grid *grid) {
+    return grid_is_profile(grid) || grid->lx > grid->ly ? grid->lx : grid->ly;
+}
 
 #endif

@@ -184,6 +184,13 @@ static int press_load(struct steps_press *press, double load, struct error *err)
     return status;
 }
 
+/* Returns how many loads lead to the kept ones: a state of `full` is the one that its loads led to.
+ */
+static size_t loads_to_kept(const struct contact_case *one_case) {
+    return one_case->kept_loads != NULL ? one_case->kept_loads[one_case->kept_load_count - 1] + 1
+                                        : one_case->load_count;
+}
+
 int contact_press_steps(const void *of, const struct steps_order *order,
                         const struct steps_sink *sink, struct error *err) {
     const struct contact_case *one_case = of;
@@ -193,9 +200,8 @@ int contact_press_steps(const void *of, const struct steps_order *order,
     const double *loads = order->load_count > 0 ? order->loads : one_case->loads;
     const size_t *kept = order->kept ? one_case->kept_loads : NULL;
     if (kept != NULL) {
-        /* A state of `full` is the one that its loads led to. */
         given = one_case->kept_load_count;
-        count = kept[given - 1] + 1;
+        count = loads_to_kept(one_case);
     }
     int status = find_model(one_case, order, &m, err);
     if (status == 0)
@@ -248,11 +254,8 @@ struct study_kept contact_kept_cost(const struct contact_case *one_case, double 
     if (kept.count == 0)
         return (struct study_kept){.path = NULL};
     out.past = (uint64_t)kept.realisations[kept.count - 1] + 1;
-    const size_t pressed = one_case->kept_loads != NULL
-                               ? one_case->kept_loads[one_case->kept_load_count - 1] + 1
-                               : one_case->load_count;
+    const double share = (double)loads_to_kept(one_case) / (double)one_case->load_count;
     for (size_t m = 0; m < one_case->model_count; m++) {
-        double share = (double)pressed / (double)one_case->load_count;
         out.seconds += generation + share * one_case->models[m]->seconds(one_case, m, grid);
         out.bytes += (double)kept.load_count * step_bytes(one_case, m, grid);
     }

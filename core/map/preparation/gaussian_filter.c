@@ -337,7 +337,7 @@ int gaussian_filter_run(const struct grid *grid, double *z, enum boundary bounda
                         const struct gaussian_filter *filter, struct gaussian_filter_result *out,
                         struct error *err) {
     struct work work;
-    const double longest = grid_is_profile(grid) ? grid->lx : fmax(grid->lx, grid->ly);
+    const double longest = grid_longest_side(grid);
     *out = (struct gaussian_filter_result){0};
     if (!(filter->cut_off > 0 && filter->cut_off <= longest))
         return error_set(err, ERROR_INPUT,

@@ -292,7 +292,7 @@ static void fill_rolloff(struct fitted *fitted, struct spectrum_fit *out) {
 static void fill_ends(const struct fitted *fitted, const struct spectrum_range *range,
                       struct spectrum_fit *out) {
     const struct grid *grid = &fitted->problem->spectrum->modes.grid;
-    double longer = out->profile ? grid->lx : fmax(grid->lx, grid->ly);
+    double longer = grid_longest_side(grid);
     out->short_wavelength = (struct interval){NONE, NONE, out->trusted_to};
     if (range->edge > 0)
         out->short_wavelength = wavelength(fitted, LAW_SHORT, true);

@@ -1,5 +1,6 @@
 #include "server/show/map/main_values.h"
 #include "core/statistics/spectra/spectrum_fit.h"
+#include "schema/result/view.h"
 #include <math.h>
 #include <string.h>
 
@@ -138,13 +139,6 @@ bool main_values_have_noise(const struct named_values *found) {
                named_number(found, "finite_difference", "rms_slope");
 }
 
-static bool is_one_of(const char *name, const char *const *names) {
-    for (; *names != NULL; names++)
-        if (strcmp(*names, name) == 0)
-            return true;
-    return false;
-}
-
 /* What is measured by short waves holds what the instrument left, and what is measured by single
  * high points its spikes; so does what follows from the spectrum, unless it is noise there. */
 static bool is_untrusted(const struct table_row *row, const struct map_artefacts *artefacts,
@@ -155,10 +149,10 @@ static bool is_untrusted(const struct table_row *row, const struct map_artefacts
     static const char *const OF_SPECTRUM[] = {"hurst", "rolloff_wavelength", "short_wavelength",
                                               NULL};
     const bool noiseless = strcmp(row->group, NOISELESS) == 0;
-    const bool measured = !noiseless && is_one_of(row->name, SHORT_WAVES);
-    const bool follows = noiseless || is_one_of(row->name, OF_SPECTRUM);
+    const bool measured = !noiseless && view_lists(SHORT_WAVES, row->name);
+    const bool follows = noiseless || view_lists(OF_SPECTRUM, row->name);
     return (measured && map_artefacts_count(artefacts)) ||
-           (is_one_of(row->name, HIGH_POINTS) && map_spikes_count(artefacts)) ||
+           (view_lists(HIGH_POINTS, row->name) && map_spikes_count(artefacts)) ||
            (follows && map_artefacts_bend(artefacts, has_noise));
 }
 
