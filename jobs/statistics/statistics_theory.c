@@ -17,10 +17,11 @@ static int grooved_heights(const struct statistics_case *one_case, double *pdf, 
     int status = heights_moments(&surface->options.heights, &moments, err);
     if (status != 0)
         return status;
-    for (size_t b = 0; b < bins->count && !grooves_independent(grooves); b++)
-        pdf[b] = cdf[b] = NAN;
-    if (!grooves_independent(grooves))
+    if (!grooves_independent(grooves)) {
+        for (size_t b = 0; b < bins->count; b++)
+            pdf[b] = cdf[b] = NAN;
         return 0;
+    }
     for (size_t f = 0; f < grooves->families; f++)
         for (size_t a = 0; a < POINTS; a++)
             height[f][a] =

@@ -12,6 +12,7 @@ enum { LANES = CONJUGATE_GRADIENT_LANES };
 
 /* Padding nodes lie so deep that they never come into contact. */
 static const double FAR = 1e30;
+
 static size_t padded(size_t n) {
     return (n + LANES - 1) / LANES * LANES;
 }

@@ -47,10 +47,8 @@ static const struct look LOOKS[] = {
      "study s ON s.id = study_id WHERE " ALIVE},
     {FLAW_CASE, "documents of studies",
      "SELECT s.public, NULL, 0, 0, 0, iif(o.seal <> seal_of(source) OR NOT json_valid(source), "
-     "'its "
-     "document does not match its checksum', NULL), NULL FROM study_source o JOIN study s ON s.id "
-     "= "
-     "study_id WHERE " ALIVE},
+     "'its document does not match its checksum', NULL), NULL FROM study_source o JOIN study s ON "
+     "s.id = study_id WHERE " ALIVE},
     {FLAW_BLOCK, "results",
      "SELECT s.public, case_number, first, count, job.id, CASE WHEN result.job_id IS NULL THEN "
      "iif(job.state = 'done', 'they are done and have no result', NULL) WHEN job.state <> 'done' "

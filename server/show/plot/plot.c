@@ -506,8 +506,10 @@ static double shared_load(const struct plot_lines *lines) {
 /* Returns whether the picture is of one case of several. */
 static bool is_one_of(const struct study_result *study) {
     struct swept swept;
+    if (study->case_count != 1 || study->cases[0].difference)
+        return false;
     swept_find(study, &swept);
-    return study->case_count == 1 && !study->cases[0].difference && swept.count > 0;
+    return swept.count > 0;
 }
 
 /* Names the quantity, the series that was asked for, the load where all have one, and the case

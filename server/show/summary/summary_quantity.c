@@ -374,15 +374,18 @@ static void total_size_cell(struct text_table *table, const struct finest_curves
 /* Finds the sources that are known in some case: of size, or small in all of them. */
 static void find_known(const struct quantity_table *words, const struct shown_cases *shown,
                        bool known[ERROR_SOURCES], bool small[ERROR_SOURCES]) {
+    double largest[ERROR_SOURCES];
+    for (size_t s = 0; s < ERROR_SOURCES; s++)
+        largest[s] = NAN;
+    for (size_t c = 0; c < shown->count; c++) {
+        struct finest_curves finest;
+        find_finest(&finest, words, shown->list[c]);
+        for (size_t s = 0; s < ERROR_SOURCES; s++)
+            largest[s] = fmax(largest[s], largest_sampled(&finest, (enum error_source)s));
+    }
     for (size_t s = 0; s < ERROR_SOURCES; s++) {
-        double largest = NAN;
-        for (size_t c = 0; c < shown->count; c++) {
-            struct finest_curves finest;
-            find_finest(&finest, words, shown->list[c]);
-            largest = fmax(largest, largest_sampled(&finest, (enum error_source)s));
-        }
-        known[s] = largest >= error_shown(s);
-        small[s] = largest < error_shown(s);
+        known[s] = largest[s] >= error_shown(s);
+        small[s] = largest[s] < error_shown(s);
     }
 }
 
