@@ -138,10 +138,13 @@ struct common {
     const struct map_chance *chance;
     struct map_spectrum *spectrum;   /* owned; NULL for a profile under a window */
     struct cell_differences nearest; /* at a lag of one point */
+    bool spiky;                      /* spikes of the map count (map_artefacts.h) */
     enum map_extent extent;
 };
 
-/* Heights that a law fits at this level are taken to have its tails. */
+/* Heights that a law fits at this level are taken to have its tails. Those of a map whose
+ * spikes count are not: a law has no spikes, so that its influences over those of the map would
+ * make errors small. */
 static const double LAW_LEVEL = 0.001;
 
 static int heights_by_law(struct map_characterisation *out, const struct common *common,
@@ -153,9 +156,9 @@ static int heights_by_law(struct map_characterisation *out, const struct common 
     struct map_height_law law;
     if (!clearly && !map_height_law_find(&law, out))
         return 0;
-    if (clearly)
+    if (clearly && !common->spiky)
         scalar_errors_by_strata(&out->errors, common->map, &out->functional.plateau);
-    else if (best->p_value >= LAW_LEVEL)
+    else if (!clearly && !common->spiky && best->p_value >= LAW_LEVEL)
         scalar_errors_by_law(&out->errors, common->map, &law.heights, &law.moments);
     for (int s = 0; s < MAP_STENCILS; s++)
         out->parameters.summits[s].errors.height_deviation *= out->errors.sq / before;
@@ -288,18 +291,25 @@ static int measure_profile(struct map_characterisation *out, const struct measur
                                : map_functional_measure_strata(&out->functional, map, err);
 }
 
+static bool is_under_window(const struct preparation_record *record) {
+    return record->window_power < 1;
+}
+
 static int measure(struct map_characterisation *out, const struct measured_map *map,
-                   const struct map_chance *chance, bool under_window,
+                   const struct map_chance *chance, const struct preparation_record *record,
                    const struct spectrum_fit_request *trusted, enum map_extent extent,
                    struct error *err) {
-    struct common common = {.map = map, .chance = chance, .extent = extent};
+    struct common common = {.map = map,
+                            .chance = chance,
+                            .spiky = map_spikes_count(&record->artefacts),
+                            .extent = extent};
     int status = map_parameters_measure(&out->parameters, map, map->grid->nx / 2, map->grid->ny / 2,
                                         chance, extent, err);
     if (status == 0)
         status = grid_is_profile(map->grid) ? measure_profile(out, map, chance, extent, err)
                                             : measure_areal(out, map, chance, extent, err);
     if (status == 0)
-        status = measure_common(out, &common, under_window, trusted, err);
+        status = measure_common(out, &common, is_under_window(record), trusted, err);
     map_spectrum_destroy(&common.spectrum);
     return status == 0 ? measure_correlation(&out->correlation, chance->correlation, extent, err)
                        : status;
@@ -310,14 +320,13 @@ int map_characterise(struct map_characterisation *out, const struct height_map *
                      const struct spectrum_fit_request *trusted, enum map_extent extent,
                      struct error *err) {
     const struct measured_map measured = {&map->grid, map->z, record->boundary};
-    const bool under_window = record->window_power < 1;
     struct map_chance *chance = NULL;
     int status = map_chance_create(&chance, &measured, err);
     if (status != 0)
         return status;
-    if (under_window)
+    if (is_under_window(record))
         map_chance_forgo(chance, "none: the map is under a window");
-    status = measure(out, &measured, chance, under_window, trusted, extent, err);
+    status = measure(out, &measured, chance, record, trusted, extent, err);
     if (status == 0 && out->certainty.has_errors)
         status = map_remedies_add(&(struct map_remedied){.areal = &out->areal,
                                                          .errors = &out->errors,

@@ -139,20 +139,23 @@ bool main_values_have_noise(const struct named_values *found) {
                named_number(found, "finite_difference", "rms_slope");
 }
 
-/* What is measured by short waves holds what the instrument left, and what is measured by single
- * high points its spikes; so does what follows from the spectrum, unless it is noise there. */
+/* What is measured by short waves holds what the instrument left, and what rests on heights and
+ * their mean square its spikes; so does what follows from the spectrum, unless it is noise there.
+ */
 static bool is_untrusted(const struct table_row *row, const struct map_artefacts *artefacts,
                          bool has_noise) {
     static const char *const SHORT_WAVES[] = {"rms_slope", "rms_curvature", "nayak_alpha",
                                               "Sdr",       "density",       NULL};
-    static const char *const HIGH_POINTS[] = {"Sq", "rms", "Sz", "skewness", "kurtosis", NULL};
+    static const char *const OF_HEIGHTS[] = {"Sq",           "rms",      "Sa",  "Sz",
+                                             "skewness",     "kurtosis", "Sal", "Str",
+                                             "distribution", "shape",    NULL};
     static const char *const OF_SPECTRUM[] = {"hurst", "rolloff_wavelength", "short_wavelength",
                                               NULL};
     const bool noiseless = strcmp(row->group, NOISELESS) == 0;
     const bool measured = !noiseless && view_lists(SHORT_WAVES, row->name);
     const bool follows = noiseless || view_lists(OF_SPECTRUM, row->name);
     return (measured && map_artefacts_count(artefacts)) ||
-           (view_lists(HIGH_POINTS, row->name) && map_spikes_count(artefacts)) ||
+           (view_lists(OF_HEIGHTS, row->name) && map_spikes_count(artefacts)) ||
            (follows && map_artefacts_bend(artefacts, has_noise));
 }
 

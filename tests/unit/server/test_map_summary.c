@@ -196,13 +196,13 @@ static void what_instruments_left_is_named(void **state) {
         check_screen(text);
         if (columns == 0)
             expect(text,
-                   (const char *const[]){"\n* RMS height Sq ", "\n  mean height Sa ",
-                                         "\n* skewness ", "\n* kurtosis ", "\n* RMS slope ",
-                                         "\n    without artefacts, about ", "\n* Hurst exponent H ",
-                                         "\nSteps: heights are multiples of 8 nm, which ",
-                                         "--denoise takes", "\nSpikes: 20, up to ",
-                                         "--despike --fill.", "\nLines: along x, offsets ",
-                                         "--lines median.", "\nRows marked * hold these", NULL});
+                   (const char *const[]){
+                       "\n* RMS height Sq ", "\n* mean height Sa ", "\n* skewness ",
+                       "\n* kurtosis ", "\n* RMS slope ", "\n    without artefacts, about ",
+                       "\n* correlation length Sal ", "\n* Hurst exponent H ",
+                       "\nSteps: heights are multiples of 8 nm, which ", "--denoise takes",
+                       "\nSpikes: 20, up to ", "--despike --fill.", "\nLines: along x, offsets ",
+                       "--lines median.", "\nRows marked * hold these", NULL});
         else
             expect(text,
                    (const char *const[]){"\n* RMS slope ", "Columns: 127 of 256 are on a line ",

@@ -1,6 +1,6 @@
-/* Protects: what is measured of a map: heights, summits, their errors and distribution, isotropy,
- * stationarity, scales, spectra and histogram as typed values; that a map too small for errors has
- * none; that a window takes bands and law away; and what is refused. */
+/* Protects: what is measured of a map: heights, summits, their errors, of spiked maps too, and
+ * distribution, isotropy, stationarity, scales, spectra and histogram as typed values; that a map
+ * too small for errors has none; that a window takes bands and law away; and what is refused. */
 #include "jobs/maps/map_characterisation.h"
 #include "tests/support/check.h"
 #include "tests/support/noise.h"
@@ -83,6 +83,47 @@ static void steps_are_in_errors_of_volumes(void **state) {
     assert_true(found[KNOWN].functional.errors.found.xp > found[DRAWN].functional.errors.found.xp);
     check_close(found[KNOWN].functional.errors.found.line.k,
                 found[DRAWN].functional.errors.found.line.k, 0);
+    for (int n = PLAIN; n < CASES; n++)
+        map_characterisation_clear(&found[n]);
+}
+
+/* Fills a map that repeats with skewed heights whose waves are a few points long: the exponential
+ * of means of noise over squares. */
+static void fill_skewed(uint64_t *seed, double *z) {
+    enum { REACH = 4 };
+    static double noise[POINTS];
+    noise_fill(seed, POINTS, noise);
+    for (size_t point = 0; point < POINTS; point++) {
+        double sum = 0;
+        for (size_t n = 0; n < REACH * REACH; n++)
+            sum +=
+                noise[(point / SIDE + n / REACH) % SIDE * SIDE + (point % SIDE + n % REACH) % SIDE];
+        z[point] = exp(0.3 * sum / REACH);
+    }
+}
+
+/* Spikes are in no law of the heights: one that fits all others must not make errors smaller than
+ * they are without spikes. */
+static void spikes_leave_errors_of_heights(void **state) {
+    (void)state;
+    enum { PLAIN, SPIKED, CASES };
+    static struct map_characterisation found[CASES];
+    static double z[POINTS];
+    const struct spectrum_fit_request trusted = {0};
+    const struct height_map map = {.grid = {SIDE, SIDE, 32, 32}, .z = z};
+    struct preparation_record record = {.boundary = BOUNDARY_OPEN, .window_power = 1};
+    uint64_t seed = seed_or(17);
+    fill_skewed(&seed, z);
+    for (int n = PLAIN; n < CASES; n++) {
+        for (size_t point = 100; point < POINTS && n == SPIKED; point += 1500)
+            z[point] += 8;
+        assert_int_equal(map_artefacts_find_left(&map.grid, z, &record.artefacts, NULL), 0);
+        assert_true(map_spikes_count(&record.artefacts) == (n == SPIKED));
+        assert_int_equal(map_characterise(&found[n], &map, &record, &trusted, MAP_WHOLE, NULL), 0);
+        const struct height_fits *fits = &found[n].height_fits;
+        assert_true(fits->best != HEIGHTS_GAUSSIAN && fits->list[fits->best].p_value > 0.001);
+    }
+    assert_true(found[SPIKED].errors.sq > 0.9 * found[PLAIN].errors.sq);
     for (int n = PLAIN; n < CASES; n++)
         map_characterisation_clear(&found[n]);
 }
@@ -175,6 +216,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(noise_is_alike_everywhere),
         cmocka_unit_test(steps_are_in_errors_of_volumes),
+        cmocka_unit_test(spikes_leave_errors_of_heights),
         cmocka_unit_test(too_few_lengths_have_no_errors),
         cmocka_unit_test(skewed_heights_have_a_law),
         cmocka_unit_test(profiles_have_no_areal_parameters),
