@@ -13,7 +13,7 @@ enum { INSTRUMENT_DONE = 160 };
 /* The caller's request. */
 struct instrument_request {
     const char *layer; /* borrowed: name of a layer (channel), or its number from 1; NULL: the first
-                          that holds heights */
+                          that holds heights, of an NPZ archive the only one */
     enum instrument_columns columns;
     char *done; /* borrowed, NULL or INSTRUMENT_DONE bytes: gets what was made of plain columns, ""
                    where they are a map */

@@ -10,7 +10,7 @@ struct map_source {
     const char *name; /* its ending gives the format where its first bytes do not */
     const char *data; /* followed by 0 */
     size_t size;
-    const char *layer; /* NULL: the first with heights */
+    const char *layer; /* NULL: the first with heights, of NPZ the only one */
     enum instrument_columns columns;
     const char *content; /* what is read in place of the bytes, followed by 0; NULL: these */
     size_t content_size;

@@ -22,21 +22,28 @@ static bool npz_owns(const char *data, size_t size) {
            !zip_archive_names(data, size, "main.xml");
 }
 
-/* "there is no array 'q'; allowed: x, y, z" */
-static int refuse_layer(const struct zip_archive *zip, const char *asked, struct error *err) {
-    char names[300] = "";
-    const char *name;
+/* Writes "x, y, z": the arrays that are marked, or all (NULL). */
+static void list_names(const struct zip_archive *zip, const bool *marked, char *names,
+                       size_t size) {
     size_t used = 0;
+    *names = '\0';
     for (size_t entry = 0; entry < zip_archive_entries(zip); entry++) {
+        const char *name;
         size_t length = array_name(zip, entry, &name);
-        if (length == 0)
+        if (length == 0 || (marked != NULL && !marked[entry]))
             continue;
-        int more = snprintf(names + used, sizeof names - used, "%s%.*s", used > 0 ? ", " : "",
+        int more = snprintf(names + used, size - used, "%s%.*s", used > 0 ? ", " : "",
                             (int)(length < 80 ? length : 80), name);
-        if (more < 0 || (size_t)more >= sizeof names - used)
+        if (more < 0 || (size_t)more >= size - used)
             break;
         used += (size_t)more;
     }
+}
+
+/* "there is no array 'q'; allowed: x, y, z" */
+static int refuse_layer(const struct zip_archive *zip, const char *asked, struct error *err) {
+    char names[300];
+    list_names(zip, NULL, names, sizeof names);
     return error_set(err, ERROR_INPUT, "there is no array '%.40s'; allowed: %s", asked, names);
 }
 
@@ -66,30 +73,57 @@ static int find_layer(const struct zip_archive *zip, const char *asked, size_t *
     return any ? 0 : refuse_layer(zip, asked, err);
 }
 
-/* Finds the first array that can be a map of several rows, or else the first that can be one. */
-static int find_first(struct zip_archive *zip, size_t *found, struct error *err) {
+/* Marks the arrays that can be a map of several rows, or where there are none those that can be a
+ * profile; *count is their number, *last one of them. */
+static int mark_maps(struct zip_archive *zip, bool *marked, size_t *count, size_t *last,
+                     struct error *err) {
     char start[START];
-    bool any = false;
+    size_t rows = 1;
     struct error fault = {0};
+    *count = 0;
     for (size_t entry = 0; entry < zip_archive_entries(zip); entry++) {
         const char *name;
         size_t size = sizeof start, ny, nx;
+        marked[entry] = false;
         if (array_name(zip, entry, &name) == 0)
             continue;
         int status = zip_archive_peek(zip, entry, start, &size, err);
         if (status != 0)
             return status;
-        if (height_map_npy_shape(start, size, &ny, &nx, &fault) != 0 || (any && ny == 1))
+        if (height_map_npy_shape(start, size, &ny, &nx, &fault) != 0 || (rows > 1 && ny == 1))
             continue;
-        *found = entry;
-        any = true;
-        if (ny > 1)
-            return 0;
+        for (size_t before = 0; before < entry && rows == 1 && ny > 1; before++)
+            marked[before] = false;
+        *count = rows == 1 && ny > 1 ? 1 : *count + 1;
+        rows = ny > rows ? ny : rows;
+        marked[entry] = true;
+        *last = entry;
     }
-    if (any)
+    if (*count > 0)
         return 0;
     return error_set(err, ERROR_INPUT, "no array can be a map%s%.300s",
                      fault.code != 0 ? "; the last: " : "", fault.text);
+}
+
+/* Finds the only array that can be a map: nothing says of several which has the heights, as of x, y
+ * and z over one grid. */
+static int find_only(struct zip_archive *zip, size_t *found, struct error *err) {
+    const size_t entries = zip_archive_entries(zip);
+    char names[300];
+    size_t count = 0;
+    bool *marked = array_create(entries > 0 ? entries : 1, sizeof *marked);
+    if (marked == NULL)
+        return error_memory(err, entries * sizeof *marked, "marks of arrays");
+    int status = mark_maps(zip, marked, &count, found, err);
+    if (status == 0 && count > 1) {
+        list_names(zip, marked, names, sizeof names);
+        status = error_set(err, ERROR_INPUT,
+                           "%zu arrays can be the map: %s; --layer NAME (layer in studies and "
+                           "requests) says which",
+                           count, names);
+    }
+    free(marked);
+    return status;
 }
 
 static int npz_read(struct height_map *out, const char *data, size_t size,
@@ -101,7 +135,7 @@ static int npz_read(struct height_map *out, const char *data, size_t size,
     size_t entry = 0, bytes = 0;
     int status = zip_archive_open(&zip, data, size, err);
     if (status == 0)
-        status = asked != NULL ? find_layer(zip, asked, &entry, err) : find_first(zip, &entry, err);
+        status = asked != NULL ? find_layer(zip, asked, &entry, err) : find_only(zip, &entry, err);
     if (status == 0)
         status = zip_archive_read(zip, entry, &array, &bytes, err);
     if (status == 0) {

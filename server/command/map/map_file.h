@@ -12,7 +12,7 @@
 /* Part of a command's options. */
 struct map_options {
     const char *name;    /* of the file; NULL: that of its path */
-    const char *layer;   /* NULL: the first with heights */
+    const char *layer;   /* NULL: the first with heights, of NPZ the only one */
     int columns;         /* enum instrument_columns */
     const char *convert; /* seconds that a converter may take; NULL, "0": none is asked */
     struct preparation_words words;
@@ -43,7 +43,8 @@ struct map_options {
     MAP_ROW(type, member, "name", OPTION_TEXT, name, "NAME", NULL,                                 \
             "of the file, such as patch.x3p, where it comes by standard input (-)"),               \
         MAP_ROW(type, member, "layer", OPTION_TEXT, layer, "NAME|NUMBER", NULL,                    \
-                "layer of the file (the first with heights); a name that is none lists them"),     \
+                "layer of the file (the first with heights, of NPZ the only one); a name that "    \
+                "is none lists them"),                                                             \
         MAP_ROW(type, member, "columns", OPTION_CHOICE, columns, INSTRUMENT_COLUMNS, "auto",       \
                 "what plain columns are: a trace x z, points x y z, or rows of a map"),            \
         MAP_ROW(type, member, "convert", OPTION_TEXT, convert, "SECONDS", MAP_CONVERT_SECONDS,     \
