@@ -1,8 +1,10 @@
 #include "core/map/preparation/gaussian_filter.h"
+#include "core/map/length_unit.h"
 #include "core/statistics/measured_map.h"
 #include "core/surface/transform.h"
 #include <gsl/gsl_statistics_double.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -121,9 +123,22 @@ static int open_axis(struct axis *axis, double ratio, struct error *err) {
     return axis->radius > DIRECT_MOST ? kernel_transform(axis, err) : 0;
 }
 
-static int axis_create(struct axis *axis, size_t n, double spacing, double cut_off,
-                       enum boundary boundary, struct error *err) {
-    const double ratio = ALPHA * cut_off / spacing;
+enum { LENGTH_TEXT = 40 };
+
+/* Returns a length as messages print it. */
+static const char *length_text(const struct gaussian_filter *filter, double length,
+                               char text[LENGTH_TEXT]) {
+    double one = 1;
+    const char *unit = filter->metres ? length_unit_readable(length, &one) : "";
+    snprintf(text, LENGTH_TEXT, "%g%s%s", length / one, *unit != '\0' ? " " : "", unit);
+    return text;
+}
+
+static int axis_create(struct axis *axis, size_t n, double spacing,
+                       const struct gaussian_filter *filter, enum boundary boundary,
+                       struct error *err) {
+    const double ratio = ALPHA * filter->cut_off / spacing;
+    char apart[LENGTH_TEXT], cut_off[LENGTH_TEXT];
     *axis = (struct axis){.n = n, .transmission = 0.5};
     if (n == 1)
         return 0;
@@ -131,17 +146,19 @@ static int axis_create(struct axis *axis, size_t n, double spacing, double cut_o
                                                : open_axis(axis, ratio, err);
     if (status == 0 && !(fabs(axis->transmission - 0.5) <= 0.01))
         return error_set(err, ERROR_INPUT,
-                         "points %g apart leave %.3g of waves as long as the cut-off, %g, in place "
+                         "points %s apart leave %.3g of waves as long as the cut-off, %s, in place "
                          "of 0.5; allowed: a cut-off of about 4 spacings or more",
-                         spacing, axis->transmission, cut_off);
+                         length_text(filter, spacing, apart), axis->transmission,
+                         length_text(filter, filter->cut_off, cut_off));
     return status;
 }
 
 /* A Gaussian that halves the amplitude of waves as long as the cut-off. For an open map it is a
  * kernel of weights, with sum 1 and cut off where they are below 1e-14 of the largest; for a
  * periodic one a factor of its waves. ERROR_INPUT where points are too far apart for that. */
-static int smoother_create(struct smoother **out, const struct grid *grid, double cut_off,
-                           enum boundary boundary, struct error *err) {
+static int smoother_create(struct smoother **out, const struct grid *grid,
+                           const struct gaussian_filter *filter, enum boundary boundary,
+                           struct error *err) {
     *out = NULL;
     struct smoother *s = array_create(1, sizeof *s);
     if (s == NULL)
@@ -149,10 +166,10 @@ static int smoother_create(struct smoother **out, const struct grid *grid, doubl
     s->grid = *grid;
     s->lines = array_create(LINES * grid->ny, sizeof *s->lines);
     int status = s->lines != NULL
-                     ? axis_create(&s->x, grid->nx, grid_dx(grid), cut_off, boundary, err)
+                     ? axis_create(&s->x, grid->nx, grid_dx(grid), filter, boundary, err)
                      : error_memory(err, LINES * grid->ny * sizeof *s->lines, "a filter");
     if (status == 0)
-        status = axis_create(&s->y, grid->ny, grid_dy(grid), cut_off, boundary, err);
+        status = axis_create(&s->y, grid->ny, grid_dy(grid), filter, boundary, err);
     if (status != 0)
         smoother_destroy(&s);
     *out = s;
@@ -268,7 +285,7 @@ static int work_create(struct work *work, const struct grid *grid, const double 
     }
     if (!complete)
         return error_memory(err, points * 3 * sizeof(double), "a filter");
-    return smoother_create(&work->smoother, grid, filter->cut_off, boundary, err);
+    return smoother_create(&work->smoother, grid, filter, boundary, err);
 }
 
 /* Computes the mean surface of all heights that are there. */
@@ -338,11 +355,12 @@ int gaussian_filter_run(const struct grid *grid, double *z, enum boundary bounda
                         struct error *err) {
     struct work work;
     const double longest = grid_longest_side(grid);
+    char cut_off[LENGTH_TEXT], side[LENGTH_TEXT];
     *out = (struct gaussian_filter_result){0};
     if (!(filter->cut_off > 0 && filter->cut_off <= longest))
-        return error_set(err, ERROR_INPUT,
-                         "a cut-off of %g; allowed: above 0, up to the length of the map, %g",
-                         filter->cut_off, longest);
+        return error_set(
+            err, ERROR_INPUT, "a cut-off of %s; allowed: above 0, up to the length of the map, %s",
+            length_text(filter, filter->cut_off, cut_off), length_text(filter, longest, side));
     int status = work_create(&work, grid, z, boundary, filter, err);
     if (status == 0) {
         out->transmission = smoother_transmission(work.smoother);

@@ -9,6 +9,7 @@ struct gaussian_filter {
     double cut_off;        /* wavelength, in the unit of the grid */
     bool keeps_long_waves; /* an S-filter; otherwise an L-filter, which removes them */
     bool robust;           /* heights far from the mean surface lose their weight */
+    bool metres;           /* that unit is the metre, which messages name */
 };
 struct gaussian_filter_result {
     double transmission; /* of the Gaussian, for waves as long as the cut-off */

@@ -647,7 +647,8 @@ static int filter_one(struct preparation_record *record, struct height_map *map,
                       const struct asked_length *asked, bool keeps_long_waves, bool robust,
                       struct error *err) {
     const char *option = keeps_long_waves ? "--filter S" : "--filter L";
-    struct gaussian_filter filter = {.keeps_long_waves = keeps_long_waves, .robust = robust};
+    struct gaussian_filter filter = {
+        .keeps_long_waves = keeps_long_waves, .robust = robust, .metres = is_metre(map->xy_unit)};
     struct gaussian_filter_result result;
     char cut_off[40], weights[60] = "";
     if (asked->value == 0)

@@ -26,7 +26,7 @@ static void a_periodic_wave_is_left_exactly(void **state) {
     double z[N * M], was[N * M];
     for (size_t c = 0; c < 4; c++)
         for (int waves = 1; waves < 6; waves++) {
-            struct gaussian_filter filter = {CUT_OFFS[c], true, false};
+            struct gaussian_filter filter = {CUT_OFFS[c], true, false, false};
             struct gaussian_filter_result result;
             for (size_t i = 0; i < (size_t)N * M; i++)
                 z[i] = was[i] =
@@ -58,7 +58,7 @@ static void an_open_wave_is_left_inside(void **state) {
     assert_non_null(z);
     for (size_t c = 0; c < 5; c++)
         for (int part = 1; part <= 3; part++) {
-            const struct gaussian_filter filter = {CUT_OFFS[c], true, false};
+            const struct gaussian_filter filter = {CUT_OFFS[c], true, false, false};
             struct gaussian_filter_result result;
             const double length = CUT_OFFS[c] * part;
             for (size_t i = 0; i < N; i++)
@@ -100,7 +100,7 @@ static void sides_and_holes_have_no_part(void **state) {
     for (int kind = 0; kind < 4; kind++) {
         const bool holes = kind % 2 == 1;
         /* half kernels of 12 and of 69 points along x */
-        const struct gaussian_filter filter = {kind < 2 ? 4 : 34, true, false};
+        const struct gaussian_filter filter = {kind < 2 ? 4 : 34, true, false, false};
         struct gaussian_filter_result result;
         for (size_t i = 0; i < (size_t)N * M; i++)
             z[i] = was[i] = holes && next_word(&seed) % 3 == 0 ? (double)NAN : 100 + noise(&seed);
@@ -129,7 +129,7 @@ static void a_robust_filter_keeps_clear_of_spikes(void **state) {
         clean[i] = noise(&seed) + noise(&seed) + noise(&seed);
         plain[i] = z[i] = clean[i] + (next_word(&seed) % 20 == 0 ? 40 : 0);
     }
-    struct gaussian_filter filter = {20, true, false};
+    struct gaussian_filter filter = {20, true, false, false};
     struct gaussian_filter_result result;
     assert_int_equal(gaussian_filter_run(&grid, plain, BOUNDARY_OPEN, &filter, &result, NULL), 0);
     assert_int_equal(gaussian_filter_run(&grid, clean, BOUNDARY_OPEN, &filter, &result, NULL), 0);
@@ -157,7 +157,7 @@ static void cut_offs_without_meaning_are_refused(void **state) {
     for (size_t c = 0; c < sizeof CUT_OFFS / sizeof *CUT_OFFS; c++) {
         struct error err = {0};
         struct gaussian_filter_result result;
-        const struct gaussian_filter filter = {CUT_OFFS[c], true, false};
+        const struct gaussian_filter filter = {CUT_OFFS[c], true, false, false};
         assert_int_equal(gaussian_filter_run(&grid, z, BOUNDARY_OPEN, &filter, &result, &err),
                          ERROR_INPUT);
         assert_non_null(strstr(err.text, "allowed"));

@@ -286,7 +286,10 @@ static void filters_are_told(void **state) {
                  {"0.5", "S=2um", "--filter S has a unit"},
                  {"0.5", "S=6,L=3", "leave no waves"},
                  {"0.5", "S=0.5", "--filter S: points 0.5 apart"},
-                 {"0.5", "L=100", "--filter L: a cut-off of 100"}};
+                 {"0.5", "L=100", "--filter L: a cut-off of 100;"},
+                 {"0.5um", "S=0.5um", "--filter S: points 500 nm apart leave "},
+                 {"0.5um", "S=0.5um", " as long as the cut-off, 500 nm, in place of 0.5"},
+                 {"0.5um", "L=1mm", "--filter L: a cut-off of 1 mm; allowed: above 0, up to "}};
     for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
         make(&map);
         words = (struct preparation_words){.dx = CASES[c].dx, .filter = CASES[c].filter};
