@@ -129,7 +129,7 @@ export function showSurface(root, signal) {
     make("input", { type: "file", multiple: true, "aria-label": "Files of a measured surface", onchange: (event) => take(event.target.files) }));
   root.append(make("h1", {}, "Measured surface"), drop,
     make("div", { class: "tools" }, choice("Trend", DETRENDS, kept.options.detrend, set("detrend")), choice("Boundary", BOUNDARIES, kept.options.boundary, set("boundary")),
-      text("Layer", "layer", "the first"), choice("Columns", COLUMNS, kept.options.columns, set("columns")), text("Spacing", "dx", "0.5um"), text("Unit of x and y", "unit", "um"), text("Unit of heights", "z_unit", "nm"), text("Part", "crop", "x,y,width,height"),
+      text("Layer", "layer", "the first"), choice("Columns", COLUMNS, kept.options.columns, set("columns")), text("Spacing", "dx", "0.5um"), text("Unit of x and y", "unit", "um"), text("Unit of heights", "z_unit", "nm"), text("Heights of missing points", "missing", "-9999"), text("Part", "crop", "x,y,width,height"),
       choice("Scan lines", LINES, kept.options.lines, set("lines")), text("Spikes, deviations", "despike", "8"), text("Tip", "deconvolve", "tip=10nm"), text("Turn, degrees", "rotate", "30"), tick("exchange x and y", kept.options.transpose === "true", (on) => set("transpose")(on ? "true" : "")),
       text("Filters", "filter", "S=2um,L=50um"), text("Trust wavelengths from", "trust_from", "50um"), text("Trust them to", "trust_to", "2um"), tick("fill holes", kept.options.fill === "true", (on) => set("fill")(on ? "true" : ""))),
     message, fault, place);

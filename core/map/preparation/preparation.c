@@ -741,10 +741,21 @@ static int taper(struct preparation_record *record, struct height_map *map, enum
     return 0;
 }
 
+static int take_missing(struct preparation_record *record, struct height_map *map,
+                        const struct preparation *asked, struct error *err) {
+    char text[MISSING_TEXT];
+    int status = missing_take_out(map, &asked->missing, text, err);
+    if (status == 0 && *text != '\0')
+        preparation_note(record, "missing", "%s", text);
+    return status;
+}
+
 int preparation_run(struct preparation_record *record, struct height_map *map,
                     const struct preparation *asked, struct error *err) {
     record->window_power = 1;
-    int status = preparation_units(record, map, asked, err);
+    int status = take_missing(record, map, asked, err);
+    if (status == 0)
+        status = preparation_units(record, map, asked, err);
     if (status == 0)
         status = crop(record, map, asked, err);
     if (status == 0)

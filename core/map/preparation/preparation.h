@@ -1,6 +1,7 @@
 /* Preparation of a height map before it is measured or pressed: steps in a fixed order, each only
  * where it is requested, and a record of them. FORMULAS.md, F18.20 to F18.23, F18.30 to F18.33.
  *
+ *   missing   makes holes of heights that stand for points which were not measured
  *   units     spacing, and units of lengths that the file does not have; lengths become metres
  *   crop      keeps a rectangle of the points
  *   stride    keeps every so manieth column and row, from the first on
@@ -31,6 +32,7 @@
 #include "core/map/artefacts/map_artefacts.h"
 #include "core/map/height_map.h"
 #include "core/map/preparation/detrend.h"
+#include "core/map/preparation/missing.h"
 #include "core/map/preparation/scan_lines.h"
 #include "core/statistics/measured_map.h"
 #include "core/statistics/uncertainty/seam.h"
@@ -64,9 +66,11 @@ enum asked_detrend {
     ASK_DETREND_QUADRATIC
 };
 
-/* The requested steps; {0}: none but the two decisions. Lengths without a unit are in that of the
+/* The requested steps; {0}: none but the two decisions, and marks of points that were not measured
+ * are refused. Lengths without a unit are in that of the
  * map, those of a crop in points. */
 struct preparation {
+    struct missing_marks missing;
     struct asked_length dx, dy; /* spacing in place of that of the file; dx 0: not requested, dy 0:
                                    changes as dx does */
     double unit, z_unit;        /* metres in one unit of the file's lengths; 0: not requested */
@@ -94,7 +98,7 @@ struct preparation {
     uint64_t extend_seed; /* of the draw */
 };
 
-enum { PREPARATION_STEPS_MOST = 28, PREPARATION_TEXT = 160 };
+enum { PREPARATION_STEPS_MOST = 29, PREPARATION_TEXT = 160 };
 
 /* The steps that were done, and what was measured in them. */
 struct preparation_record {

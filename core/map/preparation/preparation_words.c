@@ -70,6 +70,26 @@ static int parse_units(struct preparation *out, const struct preparation_words *
     return 0;
 }
 
+static int parse_missing(struct preparation *out, const char *text, struct error *err) {
+    struct asked_length list[MISSING_MOST] = {{0}};
+    size_t count = 0;
+    if (text == NULL)
+        return 0;
+    bool read = strcmp(text, "none") == 0 || parse_lengths(list, MISSING_MOST, &count, text);
+    out->missing =
+        (struct missing_marks){.asked = true, .count = count, .has_unit = list[0].has_unit};
+    for (size_t n = 0; n < count; n++) {
+        read = read && list[n].has_unit == list[0].has_unit;
+        out->missing.value[n] = list[n].value;
+    }
+    if (read)
+        return 0;
+    return error_set(err, ERROR_INPUT,
+                     "--missing %.60s: allowed are none, or up to %d heights with commas between, "
+                     "such as -9999, all with a unit or none",
+                     text, (int)MISSING_MOST);
+}
+
 static int parse_crop(struct preparation *out, const char *text, struct error *err) {
     size_t count = 0;
     if (text == NULL)
@@ -234,6 +254,8 @@ int preparation_parse(struct preparation *out, const struct preparation_words *w
                                 .lines_along = (enum scan_axis)words->lines_along,
                                 .transpose = words->transpose};
     int status = parse_units(&asked, words, err);
+    if (status == 0)
+        status = parse_missing(&asked, words->missing, err);
     if (status == 0)
         status = parse_crop(&asked, words->crop, err);
     if (status == 0)

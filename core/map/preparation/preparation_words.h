@@ -20,6 +20,7 @@ struct preparation_words {
     const char *dx;       /* "0.5um", "0.5", "0.5um,0.25um" */
     const char *unit;     /* "um": of x and y */
     const char *z_unit;   /* "nm", "25nm": of z, or the length of one of the file's units */
+    const char *missing;  /* "-9999", "-9999,32767", "-9999nm", "none": heights of no point */
     const char *crop;     /* "X0,Y0,WIDTH,HEIGHT", points or lengths with units */
     const char *stride;   /* "2", "2,1" */
     const char *resample; /* "512", "512,256", "0.5um", "dx=0.5" */

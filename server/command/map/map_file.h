@@ -55,6 +55,9 @@ struct map_options {
                 "of x and y, such as um, where the file tells none"),                              \
         MAP_ROW(type, member, "z-unit", OPTION_TEXT, words.z_unit, "UNIT", NULL,                   \
                 "of heights, such as nm, where the file tells none"),                              \
+        MAP_ROW(type, member, "missing", OPTION_TEXT, words.missing, "VALUE[,VALUE]|none", NULL,   \
+                "heights that mark points without one, such as -9999, become holes; none: all "    \
+                "are heights (refused where one looks like such a mark)"),                         \
         MAP_ROW(type, member, "crop", OPTION_TEXT, words.crop, "X0,Y0,WIDTH,HEIGHT", NULL,         \
                 "the part to take, in points or in lengths such as 10um"),                         \
         MAP_ROW(type, member, "stride", OPTION_TEXT, words.stride, "NX[,NY]", NULL,                \

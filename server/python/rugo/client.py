@@ -327,7 +327,7 @@ class Server:
 
     def characterise(self, file, name=None, format="json", **options):
         """What a map in a file (a path, or bytes with a name) is like: a dict of groups; format="svg": the page about it,
-        as text; "study": a study of surfaces like it, for submit. options: layer, columns, dx, unit, z_unit, crop, stride, lines,
+        as text; "study": a study of surfaces like it, for submit. options: layer, columns, dx, unit, z_unit, missing, crop, stride, lines,
         lines_along, despike, deconvolve, transpose, rotate, detrend, degroove, fill, denoise, filter, resample, window, boundary, trust_from, trust_to, hold,
         as of rugo characterise. A list of paths: maps of one surface together."""
         if isinstance(file, (list, tuple)):

@@ -7,7 +7,7 @@
 #include <string.h>
 
 enum {
-    WORDS = 9,
+    WORDS = 10,
     NX = 30,
     NY = 26,
 };
@@ -50,9 +50,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
                                       .fill = choices / 45 % 2 == 1};
     struct preparation asked;
     struct error err = {0};
-    const char **const lines[WORDS] = {&words.dx,      &words.unit,   &words.z_unit,
-                                       &words.crop,    &words.filter, &words.resample,
-                                       &words.despike, &words.tip,    &words.rotate};
+    const char **const lines[WORDS] = {&words.dx,     &words.unit,     &words.z_unit,  &words.crop,
+                                       &words.filter, &words.resample, &words.despike, &words.tip,
+                                       &words.rotate, &words.missing};
     for (size_t w = 0; w < WORDS; w++)
         *lines[w] = cut(&at);
     const unsigned char letter = (unsigned char)*at; /* more choices; 0: none of them */

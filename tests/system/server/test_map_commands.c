@@ -402,6 +402,31 @@ static void what_instruments_leave_is_removed(void **state) {
     assert_true(contains("shell.err", "--rotate 400: allowed are degrees"));
 }
 
+/* A matrix with two points that were not measured: refused by all commands, until the option says
+ * what the value is. */
+static void missing_points_are_asked_for(void **state) {
+    (void)state;
+    static const char *const COMMANDS[] = {"characterise missing.csv", "press missing.csv",
+                                           "convert missing.csv holes.csv"};
+    assert_int_equal(
+        run_shell("awk 'BEGIN { for (j = 0; j < 40; j++) for (i = 0; i < 50; i++) printf "
+                  "\"%.9g%c\", (i * 50 + j == 1020 || i * 50 + j == 530) ? -9999 : cos(i * 0.3 + "
+                  "j * j), i < 49 ? 44 : 10 }' > missing.csv"),
+        0);
+    for (size_t c = 0; c < sizeof COMMANDS / sizeof *COMMANDS; c++) {
+        char line[120];
+        snprintf(line, sizeof line, "$RUGO %s", COMMANDS[c]);
+        assert_int_equal(run_shell(line), 2);
+        assert_true(contains("shell.err", "missing.csv: 2 of 2000 heights are -9999, far from all "
+                                          "others, "));
+    }
+    assert_int_equal(run_shell("$RUGO convert missing.csv holes.csv --missing -9999 --fill"), 0);
+    assert_true(contains("shell.out",
+                         "missing: 2 points, 0.1 %, became holes: heights of -9999\nfill: 2 "));
+    assert_int_equal(run_shell("$RUGO characterise missing.csv --missing none"), 0);
+    assert_int_equal(run_shell("$RUGO press missing.csv --missing -9999 --fill --error none"), 0);
+}
+
 /* A sphere's map with units: Hertz's radius of 32 um needs 10.0825 N on a radius of 1 mm. */
 /* One screen unless more is asked for; groups as text and as JSON; other groups are refused. */
 static void groups_are_printed(void **state) {
@@ -643,6 +668,7 @@ int main(void) {
         cmocka_unit_test(a_map_is_converted),
         cmocka_unit_test(a_patch_is_extended),
         cmocka_unit_test(what_instruments_leave_is_removed),
+        cmocka_unit_test(missing_points_are_asked_for),
         cmocka_unit_test(columns_are_a_trace),
         cmocka_unit_test(groups_are_printed),
         cmocka_unit_test(planes_have_units),

@@ -56,6 +56,11 @@ static void words_are_read_or_refused(void **state) {
         {{.unit = ""}, "--unit "},
         {{.z_unit = "0nm"}, "--z-unit 0nm"},
         {{.z_unit = "25"}, "--z-unit 25"},
+        {{.missing = "none"}, NULL},
+        {{.missing = "-9999,1e38"}, NULL},
+        {{.missing = "nan"}, "--missing nan"},
+        {{.missing = "1,2nm"}, "--missing 1,2nm"},
+        {{.missing = "1,2,3,4,5"}, "--missing 1,2,3,4,5"},
         {{.crop = "0,0,10"}, "--crop 0,0,10"},
         {{.crop = "0,0,10,"}, "--crop 0,0,10,"},
         {{.crop = "-1,0,10,10"}, "--crop -1,0"},
@@ -531,7 +536,7 @@ static void turns_are_stated_or_refused(void **state) {
 }
 
 /* What squares and their products leave the numbers for is refused before anything is computed; the
- * largest float, which files have in holes, is not. */
+ * largest float, which files have in holes, is not where it is said to be a height. */
 static void what_cannot_be_computed_with_is_refused(void **state) {
     (void)state;
     static const struct {
@@ -539,9 +544,10 @@ static void what_cannot_be_computed_with_is_refused(void **state) {
         double scale, first; /* of the heights, and of the first of them in their place */
         const char *says;    /* NULL: prepared */
     } CASES[] = {
-        {{0}, 1, 3.4028234663852886e38, NULL},
-        {{0}, 1, 1e41, "to 1e+41; allowed: at most 1e+40"},
-        {{0}, 1, -1e300, "heights from -1e+300"},
+        {{.missing = "none"}, 1, 3.4028234663852886e38, NULL},
+        {{0}, 1, 3.4028234663852886e38, "1 of 960 heights are 3.40282347e+38, far"},
+        {{.missing = "none"}, 1, 1e41, "to 1e+41; allowed: at most 1e+40"},
+        {{.missing = "none"}, 1, -1e300, "heights from -1e+300"},
         {{0}, 1e-39, 0, NULL},
         {{0}, 1e-300, 0, "heights that differ by"},
         {{0}, 0, 0, NULL},
