@@ -23,6 +23,17 @@ int height_map_mirror(struct height_map *map, struct error *err) {
     return 0;
 }
 
+const char *height_map_unit_note(const struct height_map *map) {
+    if (*map->xy_unit == '\0' && *map->z_unit == '\0')
+        return "units: the file names none; --dx 0.5um and --z-unit nm (or others) say what x, y "
+               "and heights are in";
+    if (*map->xy_unit == '\0')
+        return "units: the file names none of x and y; --dx 0.5um (or another) says it";
+    if (*map->z_unit == '\0')
+        return "units: the file names none of heights; --z-unit nm (or another) says it";
+    return NULL;
+}
+
 void height_map_clear(struct height_map *map) {
     free(map->z);
     *map = (struct height_map){0};

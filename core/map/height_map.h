@@ -15,6 +15,10 @@ struct height_map {
 };
 void height_map_clear(struct height_map *map);
 
+/* Returns a sentence for people on units that are not known of x and y, of heights, or of both, and
+ * on the options that say them; NULL where there is none. Static. */
+const char *height_map_unit_note(const struct height_map *map);
+
 /* Returns the number of holes. */
 size_t height_map_holes(const struct height_map *map);
 /* ERROR_INPUT, with the number of holes and the first of them, where there are any: for callers

@@ -50,6 +50,8 @@ static int print(const struct height_map *map, const struct preparation_record *
     printf("written: %zu by %zu points, %.10g by %.10g%s%s apart, heights%s%s\n", grid->nx,
            grid->ny, grid_dx(grid), grid_dy(grid), *map->xy_unit != '\0' ? " " : "", map->xy_unit,
            *map->z_unit != '\0' ? " in " : "", map->z_unit);
+    if (height_map_unit_note(map) != NULL)
+        printf("%s\n", height_map_unit_note(map));
     return output_flush(err);
 }
 

@@ -52,6 +52,12 @@ static void print_size(FILE *file, const struct map_figure *figure) {
     print_folded(file, text);
 }
 
+static void print_units(FILE *file, const struct map_figure *figure) {
+    const char *note = height_map_unit_note(figure->map);
+    if (note != NULL)
+        print_folded(file, note);
+}
+
 static void print_steps(FILE *file, const struct map_figure *figure) {
     static const char BEGIN[] = "prepared: ";
     char text[sizeof BEGIN + PREPARATION_STEPS_TEXT];
@@ -95,6 +101,7 @@ static void print_rest(FILE *file, const struct named_values *found) {
 void map_summary_print(FILE *file, const struct map_figure *figure) {
     print_file(file, figure);
     print_size(file, figure);
+    print_units(file, figure);
     print_steps(file, figure);
     fputc('\n', file);
     print_values(file, figure);

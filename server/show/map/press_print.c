@@ -191,6 +191,8 @@ static void print_preparation(FILE *file, const struct press_report *report) {
     const struct preparation_record *record = report->record;
     for (size_t step = 0; step < record->count; step++)
         fprintf(file, "%s: %s\n", record->steps[step].name, record->steps[step].text);
+    if (report->unit_note != NULL)
+        fprintf(file, "%s\n", report->unit_note);
 }
 
 /* Returns NULL of models that have no choice of strains. */

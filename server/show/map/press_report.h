@@ -17,6 +17,7 @@ struct press_report {
     double resistivity;                /* of both bodies, ohm m or m K/W; 0: not known */
     bool heat;                         /* to heat, else to current */
     bool metres;                       /* the map's lengths are */
+    const char *unit_note;             /* that of height_map.h; NULL: there is none */
     double map_area;                   /* of a profile its length */
     size_t loads;
     bool with_errors;               /* they are estimated (map_press_error.h) */

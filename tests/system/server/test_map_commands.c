@@ -427,6 +427,38 @@ static void missing_points_are_asked_for(void **state) {
     assert_int_equal(run_shell("$RUGO press missing.csv --missing -9999 --fill --error none"), 0);
 }
 
+/* What is printed of a matrix of numbers says once that nothing says their units, until options
+ * do; JSON stays as it is. */
+static void unknown_units_are_said(void **state) {
+    (void)state;
+    static const char *const COMMANDS[] = {"characterise bare.csv", "press bare.csv --error none",
+                                           "convert bare.csv out.csv"};
+    static const char NOTE[] = "\nunits: the file names none; --dx 0.5um and --z-unit nm ";
+    assert_int_equal(
+        run_shell("awk 'BEGIN { for (j = 0; j < 40; j++) for (i = 0; i < 50; i++) printf "
+                  "\"%.9g%c\", cos(i * 0.3 + j * j), i < 49 ? 44 : 10 }' > bare.csv"),
+        0);
+    for (size_t c = 0; c < sizeof COMMANDS / sizeof *COMMANDS; c++) {
+        char line[120];
+        snprintf(line, sizeof line, "$RUGO %s", COMMANDS[c]);
+        assert_int_equal(run_shell(line), 0);
+        char *text = slurp("shell.out");
+        const char *first = strstr(text, NOTE);
+        assert_non_null(first);
+        assert_null(strstr(first + 1, "\nunits: "));
+        free(text);
+        snprintf(line, sizeof line, "$RUGO %s --dx 0.5um --z-unit nm", COMMANDS[c]);
+        assert_int_equal(run_shell(line), 0);
+        assert_false(contains("shell.out", "\nunits: "));
+    }
+    assert_int_equal(run_shell("$RUGO convert bare.csv out.csv --dx 0.5um"), 0);
+    assert_true(contains("shell.out", "units: the file names none of heights; --z-unit nm "));
+    assert_int_equal(run_shell("$RUGO convert bare.csv out.csv --z-unit nm"), 0);
+    assert_true(contains("shell.out", "units: the file names none of x and y; --dx 0.5um "));
+    assert_int_equal(run_shell("$RUGO characterise bare.csv --format json"), 0);
+    assert_false(contains("shell.out", "units"));
+}
+
 /* A sphere's map with units: Hertz's radius of 32 um needs 10.0825 N on a radius of 1 mm. */
 /* One screen unless more is asked for; groups as text and as JSON; other groups are refused. */
 static void groups_are_printed(void **state) {
@@ -669,6 +701,7 @@ int main(void) {
         cmocka_unit_test(a_patch_is_extended),
         cmocka_unit_test(what_instruments_leave_is_removed),
         cmocka_unit_test(missing_points_are_asked_for),
+        cmocka_unit_test(unknown_units_are_said),
         cmocka_unit_test(columns_are_a_trace),
         cmocka_unit_test(groups_are_printed),
         cmocka_unit_test(planes_have_units),

@@ -502,6 +502,7 @@ static int report(const struct press_order *order, const struct pressed *pressed
                                         .resistivity = order->loads.resistivity,
                                         .heat = order->loads.heat,
                                         .metres = strcmp(map->xy_unit, "m") == 0,
+                                        .unit_note = height_map_unit_note(map),
                                         .map_area = map_area(press),
                                         .loads = order->loads.count,
                                         .with_errors = order->options->without_error == 0,
