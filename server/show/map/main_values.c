@@ -8,6 +8,8 @@
 static const char NOISELESS[] = "trusted";
 /* What an instrument left, and slopes without it. */
 static const char ARTEFACTS[] = "artefacts";
+/* Grooves, and the two laws of a stratified face, which are shown where they clearly fit. */
+static const char GROOVES[] = "grooves", CROSSED[] = "crossed_grooves", STRATA[] = "functional";
 
 /* The rows in their order; those without a value are left out. Of rows with one label the first
  * that has a value is shown. */
@@ -43,8 +45,24 @@ static const struct table_row {
     {"waves along over across", "spectrum_fit", "lay_ratio", 0, 0, NULL},
     {"lay, degrees from x", "spectrum_fit", "lay_angle", 0, 0, NULL},
     {"trusted wavelengths", "spectrum_fit", "trusted_to", 1, 0, "trusted_from"},
+    {"grooves every", GROOVES, "period", 1, 0, NULL},
+    {"grooves, degrees from x", GROOVES, "angle", 0, 0, NULL},
+    {"groove depth", GROOVES, "depth", 0, 1, NULL},
+    {"groove shape", GROOVES, "shape", 0, 0, NULL},
+    {"crossed grooves every", CROSSED, "period", 1, 0, NULL},
+    {"crossed, degrees from x", CROSSED, "angle", 0, 0, NULL},
+    {"crossed groove depth", CROSSED, "depth", 0, 1, NULL},
+    {"crossed groove shape", CROSSED, "shape", 0, 0, NULL},
+    {"RMS height without grooves", GROOVES, "rms_height_without", 0, 1, NULL},
+    {"RMS height without grooves", CROSSED, "rms_height_without", 0, 1, NULL},
     {"heights like", "height_fit", "distribution", 0, 0, NULL},
     {"their shape C", "height_fit", "shape", 0, 0, NULL},
+    {"RMS of the plateau Spq", STRATA, "Spq", 0, 1, NULL},
+    {"RMS of the valleys Svq", STRATA, "Svq", 0, 1, NULL},
+    {"ratio where they meet Smq", STRATA, "Smq", 0, 0, NULL},
+    {"RMS of the plateau Rpq", STRATA, "Rpq", 0, 1, NULL},
+    {"RMS of the valleys Rvq", STRATA, "Rvq", 0, 1, NULL},
+    {"ratio where they meet Rmq", STRATA, "Rmq", 0, 0, NULL},
     {"p-value of these heights", "height_fit", "p_value", 0, 0, NULL},
     {"p-value of isotropy", "isotropy", "p_value", 0, 0, NULL},
     {"p-value of stationarity", "stationarity", "p_value", 0, 0, NULL},
@@ -159,18 +177,26 @@ static bool is_untrusted(const struct table_row *row, const struct map_artefacts
            (follows && map_artefacts_bend(artefacts, has_noise));
 }
 
+static bool is_said(const struct table_row *row) {
+    return strcmp(row->name, "p_value") == 0 || row->group == GROOVES || row->group == CROSSED ||
+           row->group == STRATA;
+}
+
 size_t main_values_list(struct main_value out[MAIN_VALUES_MOST], const struct map_figure *figure,
                         const char *plus_minus) {
     const struct list list = {figure->found, figure_units_of(figure), plus_minus};
     const bool has_areal = isfinite(named_number(list.found, "areal", "Sq"));
     const bool has_noise = main_values_have_noise(list.found);
+    const bool has_strata = plateau_is_clear(&figure->measured->functional.plateau);
     size_t count = 0;
     for (size_t n = 0; n < ROW_COUNT && count < MAIN_VALUES_MOST; n++) {
         const bool twin = has_areal && strcmp(ROWS[n].label, "RMS height") == 0;
         if (twin || (ROWS[n].group == NOISELESS && !has_noise) ||
+            (ROWS[n].group == STRATA && !has_strata) ||
             !write_value(&list, &ROWS[n], out[count].text))
             continue;
         out[count].label = ROWS[n].label;
+        out[count].said = is_said(&ROWS[n]);
         out[count].untrusted = is_untrusted(&ROWS[n], &figure->record->artefacts, has_noise);
         figure_unit_text(&list.units, ROWS[n].x_power, ROWS[n].z_power, out[count].unit);
         count++;

@@ -6,11 +6,12 @@
 #include "server/show/map/figure/map_figure.h"
 #include "server/show/map/figure/map_figure_internal.h"
 
-enum { MAIN_VALUES_MOST = 32, MAIN_VALUE_SIZE = 96 };
+enum { MAIN_VALUES_MOST = 44, MAIN_VALUE_SIZE = 96 };
 
 struct main_value {
     const char *label;          /* "RMS slope"; static */
     bool untrusted;             /* it holds what the instrument left, or follows from that */
+    bool said;                  /* the screen leaves it to a sentence */
     char text[MAIN_VALUE_SIZE]; /* rounded to its error */
     char unit[UNIT_TEXT_SIZE];  /* for svg_label; "" where none is known */
 };

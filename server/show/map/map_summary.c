@@ -66,13 +66,11 @@ static void print_steps(FILE *file, const struct map_figure *figure) {
     print_folded(file, text[strlen(BEGIN)] != '\0' ? text : "prepared: as it was read");
 }
 
-/* p-values stand in the sentences. */
 static void print_values(FILE *file, const struct map_figure *figure) {
-    static const char P_VALUE[] = "p-value";
     struct main_value rows[MAIN_VALUES_MOST];
     const size_t count = main_values_list(rows, figure, "+-");
     for (size_t n = 0; n < count; n++)
-        if (strncmp(rows[n].label, P_VALUE, strlen(P_VALUE)) != 0)
+        if (!rows[n].said)
             fprintf(file, "%c %-*s %s%s%s\n", rows[n].untrusted ? '*' : ' ', LABEL_WIDTH,
                     rows[n].label, rows[n].text, *rows[n].unit != '\0' ? " " : "", rows[n].unit);
 }

@@ -6,6 +6,7 @@
 #include "server/show/map/map_report.h"
 #include "tests/support/check.h"
 #include "tests/support/count_of.h"
+#include "tests/support/noise.h"
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdlib.h>
@@ -104,6 +105,51 @@ static void what_is_not_trusted_is_marked(void **state) {
         assert_int_equal(count_of(page.text, "RMS height Sq<"), 1);
         clear(&page);
     }
+}
+
+/* What the screen says of grooves in a sentence has rows here. */
+static void grooves_have_rows(void **state) {
+    (void)state;
+    struct page page;
+    uint64_t seed = seed_or(6);
+    make(&page, 96, 96, 0, "m");
+    noise_fill(&seed, grid_points(&page.map.grid), page.map.z);
+    for (size_t p = 0; p < grid_points(&page.map.grid); p++)
+        page.map.z[p] = 30e-9 * (page.map.z[p] + 2 * cos(2 * M_PI * (double)(p % 96) / 12));
+    draw(&page);
+    assert_int_equal(page.measured.grooves.families, 1);
+    assert_int_equal(count_of(page.text, ">grooves every<"), 1);
+    assert_int_equal(count_of(page.text, ">grooves, degrees from x<"), 1);
+    assert_int_equal(count_of(page.text, ">groove depth<"), 1);
+    assert_int_equal(count_of(page.text, ">RMS height without grooves<"), 1);
+    assert_int_equal(count_of(page.text, ">crossed grooves every<"), 0);
+    assert_int_equal(count_of(page.text, "plateau"), 0);
+    /* the reason why there are no errors is as wide as the table */
+    assert_int_equal(count_of(page.text, ">no standard errors: along some direction heights stay<"),
+                     1);
+    clear(&page);
+}
+
+/* Of a plateau above valleys the rows of both, with errors. */
+static void stratified_faces_have_rows(void **state) {
+    (void)state;
+    struct page page;
+    uint64_t seed = seed_or(7);
+    make(&page, 96, 96, 0, "m");
+    const size_t points = grid_points(&page.map.grid);
+    double *plateau = array_create(points, sizeof *plateau);
+    assert_non_null(plateau);
+    noise_fill(&seed, points, page.map.z);
+    noise_fill(&seed, points, plateau);
+    for (size_t p = 0; p < points; p++)
+        page.map.z[p] = 1e-6 * fmin(page.map.z[p], 0.15 * plateau[p] - 0.3);
+    draw(&page);
+    free(plateau);
+    assert_int_equal(count_of(page.text, ">RMS of the plateau Spq<"), 1);
+    assert_int_equal(count_of(page.text, ">RMS of the valleys Svq<"), 1);
+    assert_int_equal(count_of(page.text, ">ratio where they meet Smq<"), 1);
+    assert_int_equal(count_of(page.text, ">grooves every<"), 0);
+    clear(&page);
 }
 
 static void without_units_there_are_none(void **state) {
@@ -251,6 +297,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lengths_are_in_readable_units),
         cmocka_unit_test(what_is_not_trusted_is_marked),
+        cmocka_unit_test(grooves_have_rows),
+        cmocka_unit_test(stratified_faces_have_rows),
         cmocka_unit_test(without_units_there_are_none),
         cmocka_unit_test(the_file_holds_the_characterisation),
         cmocka_unit_test(holes_profiles_and_flat_maps_are_drawn),
