@@ -54,7 +54,7 @@ static int solver_create(struct rugo_contact *contact, const struct grid *grid, 
     if (status == 0)
         status = patch_finder_create(&contact->patches, grid, err);
     if (status == 0 && open)
-        patch_finder_open(contact->patches);
+        patch_finder_open(contact->patches, grid->nx, grid->ny);
     contact->approach = NAN;
     return status;
 }

@@ -7,7 +7,8 @@
  * smaller index is the root, so that roots come in the order of the nodes. */
 struct patch_finder {
     struct grid grid;
-    bool open;       /* its sides do not meet */
+    size_t nx, ny;   /* patches are found among its first nx by ny nodes */
+    bool open;       /* whose sides do not meet */
     ptrdiff_t *own;  /* grid_points: takes memory where none is lent */
     ptrdiff_t *link; /* that, or what was lent: of a root minus the nodes of its patch; else nearer
                         to it */
@@ -19,6 +20,8 @@ int patch_finder_create(struct patch_finder **out, const struct grid *grid, stru
     struct patch_finder *finder = array_create(1, sizeof *finder);
     if (finder != NULL) {
         finder->grid = *grid;
+        finder->nx = grid->nx;
+        finder->ny = grid->ny;
         finder->own = finder->link = array_create(n, sizeof *finder->own);
     }
     if (finder == NULL || finder->own == NULL) {
@@ -29,7 +32,9 @@ int patch_finder_create(struct patch_finder **out, const struct grid *grid, stru
     return 0;
 }
 
-void patch_finder_open(struct patch_finder *finder) {
+void patch_finder_open(struct patch_finder *finder, size_t nx, size_t ny) {
+    finder->nx = nx;
+    finder->ny = ny;
     finder->open = true;
 }
 
@@ -58,28 +63,34 @@ static void join(ptrdiff_t *link, size_t i, size_t j) {
     link[other] = (ptrdiff_t)root;
 }
 
+/* Makes each node under pressure a patch of its own. */
+static void divide(const struct patch_finder *finder, const double *p) {
+    for (size_t j = 0; j < finder->ny; j++)
+        for (size_t i = 0; i < finder->nx; i++)
+            finder->link[j * finder->nx + i] = p[j * finder->grid.nx + i] > 0 ? -1 : 0;
+}
+
 /* Joins each node under pressure with those at its right and above it. */
 static void join_neighbours(const struct patch_finder *finder, const double *p) {
-    size_t nx = finder->grid.nx, ny = finder->grid.ny;
+    size_t nx = finder->nx, ny = finder->ny, row = finder->grid.nx;
     ptrdiff_t *link = finder->link;
     for (size_t j = 0; j < ny; j++)
         for (size_t i = 0; i < nx; i++) {
-            size_t at = j * nx + i, right = j * nx + (i + 1) % nx, up = (j + 1) % ny * nx + i;
-            if (!(p[at] > 0))
+            size_t right = (i + 1) % nx, up = (j + 1) % ny;
+            if (!(p[j * row + i] > 0))
                 continue;
-            if (p[right] > 0 && !(finder->open && i + 1 == nx))
-                join(link, at, right);
-            if (p[up] > 0 && !(finder->open && j + 1 == ny))
-                join(link, at, up);
+            if (p[j * row + right] > 0 && !(finder->open && right == 0))
+                join(link, j * nx + i, j * nx + right);
+            if (p[up * row + i] > 0 && !(finder->open && up == 0))
+                join(link, j * nx + i, up * nx + i);
         }
 }
 
 void patches_find(struct patch_finder *finder, const double *p, struct patches *out,
                   size_t *sizes) {
-    size_t n = grid_points(&finder->grid);
-    ptrdiff_t *link = finder->link;
-    for (size_t i = 0; i < n; i++)
-        link[i] = p[i] > 0 ? -1 : 0;
+    size_t n = finder->nx * finder->ny;
+    const ptrdiff_t *link = finder->link;
+    divide(finder, p);
     join_neighbours(finder, p);
     double nodes = 0;
     *out = (struct patches){0};

@@ -12,8 +12,10 @@ struct patches {
 };
 struct patch_finder;
 int patch_finder_create(struct patch_finder **out, const struct grid *grid, struct error *err);
-/* Joins nothing across the sides from then on. */
-void patch_finder_open(struct patch_finder *finder);
+/* From then on patches are those of the first nx by ny nodes alone, at most those of the grid, and
+ * nothing is joined across the sides of these: a map in free space, or one that the grid repeats by
+ * its mirror images. */
+void patch_finder_open(struct patch_finder *finder, size_t nx, size_t ny);
 void patch_finder_destroy(struct patch_finder **finder);
 /* Returns the bytes that patches_find touches where the caller lends no memory. */
 double patch_finder_bytes(const struct grid *grid);

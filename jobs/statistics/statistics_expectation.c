@@ -365,16 +365,12 @@ static int add_side(struct expectation *e, const struct summit_theory *theory, b
     return status != 0 ? status : add_summit_scalars(e, pits, &without, &grid, err);
 }
 
-/* Adds summits. Of surfaces that are not Gaussian the translated ones alone are expected. */
 static int add_summits(struct expectation *e, bool joint, struct error *err) {
     struct summit_theories theories;
     int status = summit_theories_create(&theories, &e->one_case, &e->basis, err);
     if (status != 0)
         return status;
-    const struct summit_theory *theory = NULL;
-    for (size_t t = 0; t < theories.count; t++)
-        if (theories.of[t].translated || statistics_case_symmetric(&e->one_case))
-            theory = &theories.of[t];
+    const struct summit_theory *theory = summit_theories_own(&theories, &e->one_case);
     for (size_t side = 0; side < statistics_case_sides(&e->one_case) && status == 0; side++)
         status = add_side(e, theory, joint, side == SIDE_PITS, err);
     summit_theories_clear(&theories);

@@ -293,10 +293,9 @@ static void theory_of_scalars(const struct statistics_case *one_case, const stru
     }
     if (one_case->surface.grooves != NULL)
         statistics_scalars_with_grooves(one_case, moments, out);
-    if (theories->count == 0)
-        return;
-    for (size_t side = 0; side < statistics_case_sides(one_case); side++)
-        theory_of_summits(one_case, &theories->of[0], side == SIDE_PITS, out + side * SIDE_SCALARS);
+    const struct summit_theory *own = summit_theories_own(theories, one_case);
+    for (size_t side = 0; own != NULL && side < statistics_case_sides(one_case); side++)
+        theory_of_summits(one_case, own, side == SIDE_PITS, out + side * SIDE_SCALARS);
 }
 
 /* Adds a scalar with a fixed name. */

@@ -106,6 +106,14 @@ void summit_theories_clear(struct summit_theories *theories) {
     *theories = (struct summit_theories){0};
 }
 
+const struct summit_theory *summit_theories_own(const struct summit_theories *theories,
+                                                const struct statistics_case *one_case) {
+    for (size_t t = 0; t < theories->count; t++)
+        if (theories->of[t].translated || statistics_case_symmetric(one_case))
+            return &theories->of[t];
+    return NULL;
+}
+
 /* --- values --- */
 
 static struct translated_surface side_of(const struct summit_theory *theory, bool pits) {

@@ -38,6 +38,12 @@ struct summit_theories {
 int summit_theories_create(struct summit_theories *out, const struct statistics_case *one_case,
                            const struct surface_basis *basis, struct error *err);
 void summit_theories_clear(struct summit_theories *theories);
+/* Returns the theory of the surfaces themselves, which scalars and `rugo theory` have: of Gaussian
+ * surfaces that of Gaussian ones, else that of translated ones with their heights. NULL: none, as
+ * beside the random part of surfaces with grooves, or where no such translation exists. Borrowed
+ * from the theories. */
+const struct summit_theory *summit_theories_own(const struct summit_theories *theories,
+                                                const struct statistics_case *one_case);
 
 /* pits: of the summits of the mirrored surface. */
 struct summit_expectation summit_theory_expectation(const struct summit_theory *theory, bool pits);

@@ -5,6 +5,28 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Returns the power of two by which heights about the mean are at most 1 to 2 in size, so that
+ * their fourth powers are numbers whatever their unit; as a power of two it rounds nothing. 1 of a
+ * flat map. */
+static double heights_scale(const struct roughness *of) {
+    static const int MOST = 1000; /* larger powers are no numbers */
+    const double reach = fmax(of->highest - of->mean, of->mean - of->lowest);
+    if (!(reach > 0 && isfinite(reach)))
+        return 1;
+    const int power = -ilogb(reach);
+    return ldexp(1, power < MOST ? power : MOST);
+}
+
+/* Fills what the means of powers of scaled heights make. Returns the mean square height. */
+static double shape_fill(struct roughness *out, double scale, double second, double third,
+                         double fourth) {
+    const double rms = sqrt(second);
+    out->rms_height = rms / scale;
+    out->skewness = third / (second * rms);
+    out->kurtosis = fourth / (second * second);
+    return second / scale / scale;
+}
+
 static void heights_measure(const struct measured_map *map, struct roughness *out) {
     struct average mean = {0};
     out->lowest = INFINITY;
@@ -20,12 +42,12 @@ static void heights_measure(const struct measured_map *map, struct roughness *ou
 
 enum { TOGETHER = 64 };
 enum { SECOND, THIRD, FOURTH, SLOPE_X, SLOPE_Y, BEND_X, BEND_Y, EITHER, POWERS };
-/* Powers of heights about the mean; squares of forward differences; squares of second ones, and of
- * their sum. */
+/* Powers of heights about the mean, times scale; squares of forward differences; squares of second
+ * ones, and of their sum. */
 struct powers {
     double terms[POWERS][TOGETHER]; /* of some points; NaN: not there */
     double total[POWERS], rest[POWERS], count[POWERS];
-    double mean, dx, dy;
+    double mean, scale, dx, dy;
 };
 
 /* Adds the terms of n points in their order, all powers at once, as sum_add does. */
@@ -60,9 +82,10 @@ struct around {
 };
 
 WIDE_VECTORS static void points_fill(size_t n, struct around at, struct powers *restrict powers) {
-    double mean = powers->mean, dx = powers->dx, square = powers->dx * powers->dx;
+    double mean = powers->mean, scale = powers->scale;
+    double dx = powers->dx, square = powers->dx * powers->dx;
     for (size_t l = 0; l < n; l++) {
-        double z = at.z[l], h = z - mean;
+        double z = at.z[l], h = (z - mean) * scale;
         double slope = (at.right[l] - z) / dx, bend = (at.left[l] - 2 * z + at.right[l]) / square;
         powers->terms[SECOND][l] = h * h;
         powers->terms[THIRD][l] = h * h * h;
@@ -142,16 +165,16 @@ void open_roughness_measure(const struct measured_map *map, struct roughness *ou
     bool profile = grid_is_profile(grid);
     double dx = grid_dx(grid), means[POWERS];
     heights_measure(map, out);
-    struct powers powers = {.mean = out->mean, .dx = dx, .dy = profile ? dx : grid_dy(grid)};
+    struct powers powers = {.mean = out->mean,
+                            .scale = heights_scale(out),
+                            .dx = dx,
+                            .dy = profile ? dx : grid_dy(grid)};
     for (size_t j = 0; j < grid->ny; j++)
         open_row_add(map, j, &powers);
     for (size_t p = 0; p < POWERS; p++)
         means[p] = powers.count[p] > 0 ? (powers.total[p] + powers.rest[p]) / powers.count[p]
                                        : (double)NAN;
-    double variance = means[SECOND];
-    out->rms_height = sqrt(variance);
-    out->skewness = means[THIRD] / (variance * out->rms_height);
-    out->kurtosis = means[FOURTH] / (variance * variance);
+    double variance = shape_fill(out, powers.scale, means[SECOND], means[THIRD], means[FOURTH]);
     out->m2 = profile ? means[SLOPE_X] : (means[SLOPE_X] + means[SLOPE_Y]) / 2;
     out->m4 = profile ? means[BEND_X] : (means[BEND_X] + means[BEND_Y]) / 2;
     out->rms_slope = profile ? sqrt(means[SLOPE_X]) : sqrt(2 * out->m2);
@@ -170,7 +193,7 @@ void map_roughness_measure(const struct measured_map *map, struct roughness *out
  * compiler. */
 enum { LANES = 8 };
 struct row_sums {
-    double second[LANES], third[LANES], fourth[LANES]; /* powers of the height about the mean */
+    double second[LANES], third[LANES], fourth[LANES]; /* powers of the scaled height */
     double slope_x[LANES], slope_y[LANES];             /* squares of forward differences */
     double bend_x[LANES], bend_y[LANES], bend[LANES];  /* squares of second ones, of their sum */
 };
@@ -180,10 +203,15 @@ static double lanes_total(const double *lanes) {
            ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]));
 }
 
+/* How heights are taken for their powers: (z - mean) scale. */
+struct standard {
+    double mean, scale;
+};
+
 /* Adds one point to lane l: z[i] with its neighbours; up == middle == down for a profile. */
 static inline void point_add(struct row_sums *sums, size_t l, double left, double z, double right,
-                             double up, double down, double mean) {
-    double h = z - mean, h2 = h * h;
+                             double up, double down, struct standard by) {
+    double h = (z - by.mean) * by.scale, h2 = h * h;
     double slope_x = right - z, slope_y = down - z;
     double bend_x = left - 2 * z + right, bend_y = up - 2 * z + down;
     sums->second[l] += h2;
@@ -197,15 +225,15 @@ static inline void point_add(struct row_sums *sums, size_t l, double left, doubl
 }
 
 WIDE_VECTORS static void row_add(const double *up, const double *row, const double *down, size_t nx,
-                                 double mean, struct row_sums *sums) {
-    point_add(sums, 0, row[nx - 1], row[0], row[1], up[0], down[0], mean);
+                                 struct standard by, struct row_sums *sums) {
+    point_add(sums, 0, row[nx - 1], row[0], row[1], up[0], down[0], by);
     size_t i = 1;
     for (; i + LANES < nx; i += LANES)
         for (size_t l = 0; l < LANES; l++)
             point_add(sums, l, row[i + l - 1], row[i + l], row[i + l + 1], up[i + l], down[i + l],
-                      mean);
+                      by);
     for (; i < nx; i++)
-        point_add(sums, 0, row[i - 1], row[i], row[i + 1 < nx ? i + 1 : 0], up[i], down[i], mean);
+        point_add(sums, 0, row[i - 1], row[i], row[i + 1 < nx ? i + 1 : 0], up[i], down[i], by);
 }
 
 static double map_mean(const struct grid *grid, const double *z, double *lowest, double *highest) {
@@ -227,7 +255,7 @@ static double map_mean(const struct grid *grid, const double *z, double *lowest,
 enum { SUMS = sizeof(struct row_sums) / sizeof(double[LANES]) };
 
 /* Computes means over the map, in the order of struct row_sums. */
-static void map_means(const struct grid *grid, const double *z, double mean, double *means) {
+static void map_means(const struct grid *grid, const double *z, struct standard by, double *means) {
     struct sum totals[SUMS] = {{0}};
     size_t nx = grid->nx, ny = grid->ny;
     for (size_t j = 0; j < ny; j++) {
@@ -237,7 +265,7 @@ static void map_means(const struct grid *grid, const double *z, double mean, dou
             struct row_sums named;
             double lanes[SUMS][LANES];
         } sums = {.lanes = {{0}}};
-        row_add(up, z + j * nx, down, nx, mean, &sums.named);
+        row_add(up, z + j * nx, down, nx, by, &sums.named);
         for (size_t s = 0; s < SUMS; s++)
             sum_add(&totals[s], lanes_total(sums.lanes[s]));
     }
@@ -248,15 +276,14 @@ static void map_means(const struct grid *grid, const double *z, double mean, dou
 void roughness_measure(const struct grid *grid, const double *z, struct roughness *out) {
     double means[SUMS];
     out->mean = map_mean(grid, z, &out->lowest, &out->highest);
-    map_means(grid, z, out->mean, means);
+    const struct standard by = {out->mean, heights_scale(out)};
+    map_means(grid, z, by, means);
     bool profile = grid_is_profile(grid);
     double dx = grid_dx(grid), dy = profile ? dx : grid_dy(grid);
     double slope_x = means[3] / (dx * dx), slope_y = means[4] / (dy * dy);
     double bend_x = means[5] / (dx * dx * dx * dx), bend_y = means[6] / (dy * dy * dy * dy);
-    double both = means[7] / (dx * dx * dy * dy), variance = means[0];
-    out->rms_height = sqrt(variance);
-    out->skewness = means[1] / (variance * out->rms_height);
-    out->kurtosis = means[2] / (variance * variance);
+    double both = means[7] / (dx * dx * dy * dy);
+    double variance = shape_fill(out, by.scale, means[0], means[1], means[2]);
     out->rms_slope = sqrt(slope_x + slope_y);
     out->rms_curvature = profile ? sqrt(bend_x) : sqrt(bend_x + 2 * both + bend_y) / 2;
     out->m2 = profile ? slope_x : (slope_x + slope_y) / 2;

@@ -197,7 +197,8 @@ int hills_find(const struct measured_map *map, double least, struct summit_list 
     if (status != 0)
         return status;
     size_t searched = map_mark_whole(map, 1, 1, s.mark);
-    for (size_t j = 0; j < map->grid->ny && status == 0; j++)
+    const size_t rows = least > 0 ? map->grid->ny : 0; /* a flat map has no hill */
+    for (size_t j = 0; j < rows && status == 0; j++)
         status = row_search(&s, j, err);
     if (s.count > 0)
         qsort(s.peaks, s.count, sizeof *s.peaks, highest_first);

@@ -14,7 +14,8 @@ struct hills {
 /* Finds the peaks whose hills are `least` or more above their highest saddle to a higher peak,
  * after Wolf's pruning of the change tree (FORMULAS.md, F18.10). A point has 8 neighbours. Points
  * at the side of an open map and beside holes prune others, but do not count: they may be the slope
- * of a higher one. Surfaces alone. peaks: an empty list that those which count are put in, highest
+ * of a higher one. Nothing stands out by 0, as a share of the range of a flat map is. Surfaces
+ * alone. peaks: an empty list that those which count are put in, highest
  * first, or NULL. Memory: a byte a point, and 4 for each that lies less than `least` below a peak.
  * ERROR_MEMORY, or ERROR_INPUT for 2^32 - 1 points or more. */
 int hills_find(const struct measured_map *map, double least, struct summit_list *peaks,

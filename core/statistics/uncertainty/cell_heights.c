@@ -43,15 +43,13 @@ static void difference_add(const struct rows *rows, size_t i, size_t left, size_
     double z = rows->middle[i], ahead = rows->middle[right];
     double slope_x = (ahead - z) / lag->length_x;
     double bend_x = (ahead - 2 * z + rows->middle[left]) / (lag->length_x * lag->length_x);
-    double slope_y = 0, bend_y = 0, x = slope_x, y = 0;
+    double slope_y = 0, bend_y = 0;
     if (lag->y > 0) {
-        double down = rows->down[i], corner = rows->down[right];
+        double down = rows->down[i];
         slope_y = (down - z) / lag->length_y;
         bend_y = (down - 2 * z + rows->up[i]) / (lag->length_y * lag->length_y);
-        x = (ahead - z + corner - down) / (2 * lag->length_x);
-        y = (down - z + corner - ahead) / (2 * lag->length_y);
     }
-    if (isnan(bend_x + bend_y + x + y))
+    if (isnan(bend_x + bend_y))
         return;
     double slope = slope_x * slope_x + slope_y * slope_y;
     double curvature = lag->y > 0 ? (bend_x + bend_y) / 2 : bend_x;
@@ -60,9 +58,6 @@ static void difference_add(const struct rows *rows, size_t i, size_t left, size_
     out->bend[cell] += bend_x * bend_x + bend_y * bend_y;
     out->curvature[cell] += curvature * curvature;
     out->area[cell] += sqrt(1 + slope);
-    out->gradient[cell] += x * x + y * y;
-    out->along[cell] += x * x - y * y;
-    out->across[cell] += 2 * x * y;
 }
 
 enum { TOGETHER = 64 };
@@ -70,22 +65,19 @@ enum { TOGETHER = 64 };
 /* What some points add to the sums of their cell; 0 where a height is missing. */
 struct parts {
     double count[TOGETHER], slope[TOGETHER], bend[TOGETHER], curvature[TOGETHER], area[TOGETHER];
-    double gradient[TOGETHER], along[TOGETHER], across[TOGETHER];
 };
 
 /* What difference_add adds, of n points of a surface from column i on, at most TOGETHER. */
 WIDE_VECTORS static void parts_fill(struct rows rows, size_t i, size_t n, struct lag lag,
                                     struct parts *restrict parts) {
     const double *middle = rows.middle + i, *left = middle - lag.x, *right = middle + lag.x;
-    const double *above = rows.up + i, *below = rows.down + i, *beside = below + lag.x;
+    const double *above = rows.up + i, *below = rows.down + i;
     double lx = lag.length_x, ly = lag.length_y;
     for (size_t l = 0; l < n; l++) {
-        double z = middle[l], ahead = right[l], down = below[l], corner = beside[l];
+        double z = middle[l], ahead = right[l], down = below[l];
         double slope_x = (ahead - z) / lx, bend_x = (ahead - 2 * z + left[l]) / (lx * lx);
         double slope_y = (down - z) / ly, bend_y = (down - 2 * z + above[l]) / (ly * ly);
-        double x = (ahead - z + corner - down) / (2 * lx);
-        double y = (down - z + corner - ahead) / (2 * ly);
-        double all = bend_x + bend_y + x + y;
+        double all = bend_x + bend_y;
         bool there = all == all;
         double slope = slope_x * slope_x + slope_y * slope_y, curvature = (bend_x + bend_y) / 2;
         parts->count[l] = there ? 1 : 0;
@@ -93,9 +85,6 @@ WIDE_VECTORS static void parts_fill(struct rows rows, size_t i, size_t n, struct
         parts->bend[l] = there ? bend_x * bend_x + bend_y * bend_y : 0;
         parts->curvature[l] = there ? curvature * curvature : 0;
         parts->area[l] = there ? sqrt(1 + slope) : 0;
-        parts->gradient[l] = there ? x * x + y * y : 0;
-        parts->along[l] = there ? x * x - y * y : 0;
-        parts->across[l] = there ? 2 * x * y : 0;
     }
 }
 
@@ -104,8 +93,7 @@ WIDE_VECTORS static void parts_fill(struct rows rows, size_t i, size_t n, struct
 static void columns_add(const struct rows *rows, size_t first, size_t end, const struct lag *lag,
                         size_t cell, struct cell_differences *out) {
     double count = 0, area = out->area[cell], slope = out->slope[cell], bend = out->bend[cell];
-    double curvature = out->curvature[cell], gradient = out->gradient[cell];
-    double along = out->along[cell], across = out->across[cell];
+    double curvature = out->curvature[cell];
     for (size_t i = first; i < end; i += TOGETHER) {
         struct parts parts;
         size_t n = end - i < TOGETHER ? end - i : TOGETHER;
@@ -116,9 +104,6 @@ static void columns_add(const struct rows *rows, size_t first, size_t end, const
             bend += parts.bend[l];
             curvature += parts.curvature[l];
             area += parts.area[l];
-            gradient += parts.gradient[l];
-            along += parts.along[l];
-            across += parts.across[l];
         }
     }
     out->count[cell] += count;
@@ -126,9 +111,6 @@ static void columns_add(const struct rows *rows, size_t first, size_t end, const
     out->bend[cell] = bend;
     out->curvature[cell] = curvature;
     out->area[cell] = area;
-    out->gradient[cell] = gradient;
-    out->along[cell] = along;
-    out->across[cell] = across;
 }
 
 static void row_add(const struct measured_map *map, const struct low_modes *modes,
@@ -155,6 +137,63 @@ static void row_add(const struct measured_map *map, const struct low_modes *mode
     }
 }
 
+/* --- squares --- */
+
+/* What some squares add to the sums of their cell; 0 where a height is missing. */
+struct square_parts {
+    double count[TOGETHER], gradient[TOGETHER], along[TOGETHER], across[TOGETHER];
+};
+
+/* Of n squares, at most TOGETHER, whose corners are z and ahead above down and corner. */
+WIDE_VECTORS static void squares_fill(size_t n, const double *z, const double *ahead,
+                                      const double *down, const double *corner, struct lag lag,
+                                      struct square_parts *restrict parts) {
+    for (size_t l = 0; l < n; l++) {
+        double x = (ahead[l] - z[l] + corner[l] - down[l]) / (2 * lag.length_x);
+        double y = (down[l] - z[l] + corner[l] - ahead[l]) / (2 * lag.length_y);
+        bool there = x + y == x + y;
+        parts->count[l] = there ? 1 : 0;
+        parts->gradient[l] = there ? x * x + y * y : 0;
+        parts->along[l] = there ? x * x - y * y : 0;
+        parts->across[l] = there ? 2 * x * y : 0;
+    }
+}
+
+/* Adds, in their order, n squares of one cell, the first corner of which is column i, and the one
+ * ahead of that column `ahead`. */
+static void squares_add(const struct rows *rows, size_t i, size_t ahead, size_t n,
+                        const struct lag *lag, size_t cell, struct cell_differences *out) {
+    for (size_t done = 0; done < n; done += TOGETHER) {
+        struct square_parts parts;
+        const size_t at = i + done, beside = ahead + done;
+        const size_t some = n - done < TOGETHER ? n - done : TOGETHER;
+        squares_fill(some, rows->middle + at, rows->middle + beside, rows->down + at,
+                     rows->down + beside, *lag, &parts);
+        for (size_t l = 0; l < some; l++) {
+            out->squares[cell] += parts.count[l];
+            out->gradient[cell] += parts.gradient[l];
+            out->along[cell] += parts.along[l];
+            out->across[cell] += parts.across[l];
+        }
+    }
+}
+
+/* Adds the squares between two rows, of which the cells are those from first_cell on. */
+static void squares_between(const struct measured_map *map, const struct low_modes *modes,
+                            const struct rows *rows, size_t first_cell, const struct lag *lag,
+                            struct cell_differences *out) {
+    const size_t nx = map->grid->nx, wide = (size_t)lag->x, whole = nx - wide;
+    const size_t end = map->boundary == BOUNDARY_OPEN ? whole : nx;
+    for (size_t i = 0; i < end;) {
+        const size_t middle = (i + wide / 2) % nx, cell = cell_of(middle, modes->cells_x, nx);
+        const size_t in_cell = cell_begin(cell + 1, modes->cells_x, nx) - middle;
+        const size_t in_row = (i < whole ? whole : nx) - i;
+        const size_t n = in_cell < in_row ? in_cell : in_row;
+        squares_add(rows, i, (i + wide) % nx, n, lag, first_cell + cell, out);
+        i += n;
+    }
+}
+
 void cell_differences_measure(const struct measured_map *map, const struct low_modes *modes,
                               size_t lag, struct cell_differences *out) {
     const struct lag steps = lag_make(map->grid, lag);
@@ -166,6 +205,14 @@ void cell_differences_measure(const struct measured_map *map, const struct low_m
         size_t cell = cell_of((size_t)j, modes->cells_y, map->grid->ny) * modes->cells_x;
         if (rows.up != NULL && rows.down != NULL)
             row_add(map, modes, &rows, cell, &steps, out);
+    }
+    for (long j = 0; j < (long)map->grid->ny; j++) {
+        const struct rows rows = {.middle = row_at(map, j), .down = row_at(map, j + steps.y)};
+        const size_t middle = (size_t)(j + steps.y / 2) % map->grid->ny;
+        if (rows.down != NULL)
+            squares_between(map, modes, &rows,
+                            cell_of(middle, modes->cells_y, map->grid->ny) * modes->cells_x, &steps,
+                            out);
     }
 }
 

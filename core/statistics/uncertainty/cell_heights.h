@@ -13,11 +13,14 @@ struct cell_differences {
      * the square of the mean curvature, of profiles the same. */
     double slope[LOW_CELLS_MOST], bend[LOW_CELLS_MOST], curvature[LOW_CELLS_MOST];
     double area[LOW_CELLS_MOST]; /* sqrt(1 + slope^2) */
-    /* g_x^2 + g_y^2, g_x^2 - g_y^2 and 2 g_x g_y of the gradient in a square of four points. */
+    /* Of all squares of four points a lag apart, in the cells of their middles: how many, and
+     * g_x^2 + g_y^2, g_x^2 - g_y^2 and 2 g_x g_y of their gradients. All together are the same of
+     * the map turned by two right angles. */
+    double squares[LOW_CELLS_MOST];
     double gradient[LOW_CELLS_MOST], along[LOW_CELLS_MOST], across[LOW_CELLS_MOST];
 };
 /* lag in points along x, and as far along y, in whole points. Of long lags every (lag/4)th point is
- * taken along either axis. */
+ * taken along either axis, but for squares. */
 void cell_differences_measure(const struct measured_map *map, const struct low_modes *modes,
                               size_t lag, struct cell_differences *out);
 

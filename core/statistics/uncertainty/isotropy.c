@@ -87,7 +87,7 @@ static struct covariance covariance_measure(const struct cell_differences *d,
     }
     double waves = 0;
     for (size_t m = 0; m < modes->count; m++) {
-        const double weight = low_mode_weight(modes, m, d->count);
+        const double weight = low_mode_weight(modes, m, d->squares);
         if (!(weight > LOW_MODE_WEIGHT_LEAST))
             continue;
         double of_a = low_mode_amplitude(modes, m, a), of_b = low_mode_amplitude(modes, m, b);

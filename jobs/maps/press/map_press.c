@@ -262,8 +262,8 @@ static int solver_create(struct map_press *press, struct error *err) {
         status = model_of(press)->set_team(press->solver, press->team, err);
     if (status == 0)
         status = patch_finder_create(&press->patches, grid, err);
-    if (status == 0 && open)
-        patch_finder_open(press->patches);
+    if (status == 0 && press->boundary != PRESS_PERIODIC)
+        patch_finder_open(press->patches, press->map.nx, press->map.ny);
     const struct quantity_scene scene = {.one_case = one_case,
                                          .grid = *grid,
                                          .block = one_case->blocks[0],
@@ -371,12 +371,15 @@ static double largest(size_t n, const double *p) {
     return most;
 }
 
-/* The factor from a measure of the cell that is pressed to that of the map. */
+/* The factor from a measure of the cell that is pressed to that of the map. Patches are found in
+ * the map alone, and their areas are over that of the cell. */
 static double cell_factor(const struct map_press *press, enum measure_cell cell) {
-    if (cell == CELL_POINT)
-        return (double)grid_points(&press->grid);
-    /* the largest patch of each copy is that of the map */
-    return measure_factor(cell == CELL_UNLIMITED ? CELL_SHRINKS : cell, press->copies);
+    const double factors[CELL_KINDS] = {[CELL_SAME] = 1,
+                                        [CELL_GROWS] = 1,
+                                        [CELL_SHRINKS] = press->copies,
+                                        [CELL_UNLIMITED] = press->copies,
+                                        [CELL_POINT] = (double)grid_points(&press->grid)};
+    return factors[cell];
 }
 
 static struct measure_context context_of(struct map_press *press) {

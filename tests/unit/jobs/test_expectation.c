@@ -266,8 +266,8 @@ static void translated_surfaces_have_summits_and_pits(void **state) {
     result_clear(&expected);
 }
 
-/* Iterated surfaces stand beside Gaussian ones, as they did, and beside the translated ones of
- * their heights and spectrum. */
+/* Curves of iterated surfaces stand beside Gaussian ones, and beside the translated ones of their
+ * heights and spectrum. The theory of a scalar is that of these, as without surfaces. */
 static void iterated_surfaces_stand_beside_translated_ones(void **state) {
     (void)state;
     struct case_result expected = expect(WEIBULL, false), translated = expect(TRANSLATED, false);
@@ -280,8 +280,16 @@ static void iterated_surfaces_stand_beside_translated_ones(void **state) {
     assert_string_equal(curve->theories[0].name, "nayak");
     assert_true(scalar_of(&expected, "pit_height_mean")->value ==
                 scalar_of(&translated, "pit_height_mean")->value);
-    double gaussian = 4 / sqrt(M_PI * scalar_of(&expected, "nayak_alpha")->value);
-    check_relative(scalar_of(&result, "summit_height_mean")->theory, gaussian, 1e-12);
+    size_t compared = 0;
+    for (size_t n = 0; n < result.scalar_count; n++) {
+        const struct scalar *found = &result.scalars[n];
+        bool summits = strncmp(found->name, "summit_", 7) == 0;
+        if (!summits && strncmp(found->name, "pit_", 4) != 0)
+            continue;
+        assert_true(found->theory == scalar_of(&expected, found->name)->value);
+        compared++;
+    }
+    assert_int_equal(compared, 14);
     result_clear(&result);
     result_clear(&translated);
     result_clear(&expected);

@@ -384,9 +384,14 @@ static void sides_do_not_meet(void **state) {
     assert_int_equal(patch_finder_create(&finder, &scene.grid, NULL), 0);
     patches_find(finder, solved.p, &patches, NULL);
     assert_int_equal(patches.count, 1);
-    patch_finder_open(finder);
+    patch_finder_open(finder, 64, 64);
     patches_find(finder, solved.p, &patches, NULL);
     assert_int_equal(patches.count, 2);
+    const size_t both = patches.largest;
+    patch_finder_open(finder, 40, 32); /* a quarter of the hill that is at the left */
+    patches_find(finder, solved.p, &patches, NULL);
+    assert_int_equal(patches.count, 1);
+    assert_true(patches.largest > both / 4 && patches.largest < both / 2 + 1);
     assert_true(area.lower < area.edges && area.edges < area.upper);
     check_relative(area.edges, area.nodes, 0.05);
     /* The same map with rows for columns. */

@@ -1,4 +1,5 @@
-/* Protects: the areal parameters of waves are what they are in closed form. */
+/* Protects: the areal parameters of waves are what they are in closed form; a flat map has no
+ * hills. */
 #include "core/statistics/heights/areal.h"
 #include "tests/support/check.h"
 #include <stdlib.h>
@@ -62,10 +63,31 @@ static void a_roof(void **state) {
     }
 }
 
+/* Without a range a hill of 5 % of it would be one of no height. */
+static void a_flat_map_has_no_hills(void **state) {
+    (void)state;
+    const struct grid grid = {20, 20, 10, 20};
+    double z[400];
+    for (size_t point = 0; point < 400; point++)
+        z[point] = 0.1;
+    for (int boundary = BOUNDARY_PERIODIC; boundary <= BOUNDARY_OPEN; boundary++) {
+        const struct measured_map map = {&grid, z, (enum boundary)boundary};
+        struct correlation *correlation = NULL;
+        struct roughness roughness;
+        struct areal areal;
+        assert_int_equal(correlation_create(&correlation, &map, NULL), 0);
+        open_roughness_measure(&map, &roughness);
+        assert_int_equal(areal_measure(&map, &roughness, correlation, NULL, &areal, NULL), 0);
+        assert_true(areal.sz == 0 && areal.spd == 0 && isnan(areal.spc));
+        correlation_destroy(&correlation);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_double_wave),
         cmocka_unit_test(a_roof),
+        cmocka_unit_test(a_flat_map_has_no_hills),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* Protects: the ratio and the direction of slopes, and the sector of waves, are those of waves in
- * closed form; p-values of maps without a direction are uniform. */
+ * closed form; a map turned by two right angles has the same ones; p-values of maps without a
+ * direction are uniform. */
 #include "core/statistics/uncertainty/isotropy.h"
 #include "tests/support/check.h"
 #include "tests/support/noise.h"
@@ -44,6 +45,39 @@ static void two_waves(void **state) {
         z[point] = 1;
     measure(z, BOUNDARY_PERIODIC, &flat);
     assert_true(isnan(flat.ratio) && isnan(flat.p_value));
+}
+
+/* Squares of four points are the same ones in the turned map, at all lags, in maps that repeat and
+ * in others, with sides of even and odd numbers of points, and with a hole. */
+static void turned_maps_are_alike(void **state) {
+    (void)state;
+    enum { MOST = 90 * 71 };
+    static const struct grid GRIDS[] = {{64, 48, 64, 48}, {90, 71, 90, 35.5}};
+    static double z[MOST], turned[MOST];
+    static struct low_modes modes;
+    static struct cell_differences differences[2];
+    uint64_t seed = seed_or(9);
+    for (size_t n = 0; n < 8; n++) {
+        const struct grid *grid = &GRIDS[n % 2];
+        const enum boundary boundary = n % 4 < 2 ? BOUNDARY_PERIODIC : BOUNDARY_OPEN;
+        const struct measured_map maps[] = {{grid, z, boundary}, {grid, turned, boundary}};
+        const size_t points = grid_points(grid);
+        noise_fill(&seed, points, z);
+        if (n >= 4)
+            z[points / 3] = (double)NAN;
+        for (size_t point = 0; point < points; point++)
+            turned[point] = z[points - 1 - point];
+        assert_true(low_modes_fill(&maps[0], NULL, &modes));
+        for (size_t lag = 1; lag <= 16; lag = lag < 4 ? lag + 1 : 2 * lag) {
+            struct isotropy found[2];
+            for (size_t m = 0; m < 2; m++) {
+                cell_differences_measure(&maps[m], &modes, lag, &differences[m]);
+                isotropy_measure(&differences[m], (double)lag, &modes, 1, &found[m]);
+            }
+            check_close(found[1].anisotropy, found[0].anisotropy, 1e-12);
+            check_close(sin(found[1].direction - found[0].direction), 0, 1e-10);
+        }
+    }
 }
 
 static void uniform_p_values(void **state) {
@@ -113,7 +147,8 @@ static void waves_by_sector(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(two_waves), cmocka_unit_test(uniform_p_values),
-        cmocka_unit_test(least_of_p_values), cmocka_unit_test(waves_by_sector)};
+        cmocka_unit_test(two_waves), cmocka_unit_test(turned_maps_are_alike),
+        cmocka_unit_test(uniform_p_values), cmocka_unit_test(least_of_p_values),
+        cmocka_unit_test(waves_by_sector)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 /* Protects: parameters of maps that do not repeat, or that have holes, are sums over what is there;
- * of a whole periodic map they are the usual ones. */
+ * of a whole periodic map they are the usual ones. No unit of heights takes them out of the range
+ * of numbers. */
 #include "core/statistics/heights/roughness.h"
 #include "tests/support/check.h"
 #include "tests/support/cut.h"
@@ -24,6 +25,36 @@ static void periodic_maps_as_usual(void **state) {
         check_relative(open.m4, usual.m4, 1e-13);
         check_relative(open.nayak_alpha, usual.nayak_alpha, 1e-12);
         assert_true(open.lowest == usual.lowest && open.highest == usual.highest);
+        free(z);
+    }
+}
+
+/* Skewness and kurtosis have no unit: they are the same where fourth powers of the heights, or
+ * their squares, would be no numbers. */
+static void shape_has_no_unit(void **state) {
+    (void)state;
+    static const double UNITS[] = {1e77, 1e150, 1e-81, 1e-155, 1e-300};
+    const struct grid grids[] = {{64, 50, 8, 6}, {100, 1, 10, 1}};
+    for (size_t g = 0; g < 2; g++) {
+        const size_t points = grid_points(&grids[g]);
+        double *z = whole_surface(&grids[g], 0.5, g);
+        double *scaled = array_create(points, sizeof *scaled);
+        struct roughness plain, found[2];
+        assert_non_null(scaled);
+        roughness_measure(&grids[g], z, &plain);
+        for (size_t u = 0; u < sizeof UNITS / sizeof *UNITS; u++) {
+            const struct measured_map map = {&grids[g], scaled, BOUNDARY_PERIODIC};
+            for (size_t point = 0; point < points; point++)
+                scaled[point] = z[point] * UNITS[u];
+            roughness_measure(&grids[g], scaled, &found[0]);
+            open_roughness_measure(&map, &found[1]);
+            for (size_t by = 0; by < 2; by++) {
+                check_relative(found[by].skewness, plain.skewness, 1e-9);
+                check_relative(found[by].kurtosis, plain.kurtosis, 1e-12);
+                check_relative(found[by].rms_height / UNITS[u], plain.rms_height, 1e-12);
+            }
+        }
+        free(scaled);
         free(z);
     }
 }
@@ -99,6 +130,7 @@ static void marks_are_of_points_with_all_around(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(periodic_maps_as_usual),
+        cmocka_unit_test(shape_has_no_unit),
         cmocka_unit_test(sums_are_of_the_inside),
         cmocka_unit_test(marks_are_of_points_with_all_around),
     };

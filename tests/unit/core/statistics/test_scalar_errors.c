@@ -134,13 +134,14 @@ static void differences_of_a_wave(void **state) {
         z[point] = cos(k * (double)(point % SIDE));
     assert_true(low_modes_fill(&map, NULL, &modes));
     for (size_t lag = 1; lag <= 8; lag *= 2) {
-        double count = 0, slope = 0, bend = 0, across = 0, along = 0, gradient = 0;
+        double count = 0, slope = 0, bend = 0, squares = 0, across = 0, along = 0, gradient = 0;
         double length = (double)lag, sine = 2 * sin(k * length / 2);
         cell_differences_measure(&map, &modes, lag, &d);
         for (size_t cell = 0; cell < LOW_CELLS_MOST; cell++) {
             count += d.count[cell];
             slope += d.slope[cell];
             bend += d.bend[cell];
+            squares += d.squares[cell];
             across += d.across[cell];
             along += d.along[cell];
             gradient += d.gradient[cell];
@@ -149,8 +150,9 @@ static void differences_of_a_wave(void **state) {
         check_close(count, POINTS / (double)(every * every), 0);
         check_relative(slope / count, sine * sine / 2 / (length * length), 1e-9);
         check_relative(bend / count, pow(sine / length, 4) / 2, 1e-9);
-        check_relative(gradient, slope, 1e-9);
-        check_relative(along, slope, 1e-9);
+        check_close(squares, POINTS, 0);
+        check_relative(gradient / squares, slope / count, 1e-9);
+        check_relative(along, gradient, 1e-9);
         check_close(across, 0, 1e-9);
     }
 }

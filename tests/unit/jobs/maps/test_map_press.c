@@ -130,7 +130,7 @@ static void a_face_slips_after_yielding(void **state) {
 }
 
 /* A quarter of a summit in a corner, mirrored, is a summit, whose neighbours are twelve units off:
- * Hertz's area, and a quarter of a patch to each map. */
+ * Hertz's area, and the map's one patch is what of it lies in the map. */
 static void mirrored_map_is_pressed(void **state) {
     (void)state;
     const struct press_block block = {.model = model_named("halfspace"), .poisson = 0.3};
@@ -140,11 +140,70 @@ static void mirrored_map_is_pressed(void **state) {
     press_summit(&block, PRESS_MIRRORED, -0.05, -0.05, &row, &slope, &height);
     /* The force of the map is that of a quarter: the radius grows by the cube root of four. */
     check_relative(row.value[MEASURE_EDGES] * 36, M_PI * pow(4, 2.0 / 3), 0.08);
-    check_close(row.value[MEASURE_PATCHES], 0.25, 0);
-    check_relative(row.value[MEASURE_PATCH_LARGEST], 4 * row.value[MEASURE_NODES], 1e-12);
+    check_close(row.value[MEASURE_PATCHES], 1, 0);
+    check_relative(row.value[MEASURE_PATCH_MEAN], row.value[MEASURE_NODES], 1e-12);
+    check_relative(row.value[MEASURE_PATCH_LARGEST], row.value[MEASURE_NODES], 1e-12);
     layered.model = model_named("layered");
     press_summit(&layered, PRESS_MIRRORED, -0.05, -0.05, &meshed, &slope, &height);
     check_relative(meshed.value[MEASURE_EDGES], row.value[MEASURE_EDGES], 0.03);
+}
+
+/* Four hills: in a corner, at two sides, inside. */
+static struct height_map hills(void) {
+    static const double AT[4][3] = {{0, 0, 0.9}, {11, 30, 1}, {44, 39, 0.95}, {26, 14, 1}};
+    struct height_map map = {.grid = {48, 40, 48, 40}, .z = array_create(1920, sizeof *map.z)};
+    assert_non_null(map.z);
+    for (size_t p = 0; p < 1920; p++)
+        for (size_t h = 0; h < 4; h++) {
+            const size_t i = p % 48, j = p / 48;
+            double x = (double)i - AT[h][0], y = (double)j - AT[h][1];
+            map.z[p] += AT[h][2] * exp(-(x * x + y * y) / 40);
+        }
+    return map;
+}
+
+/* Takes the nodes of a patch out of `touching`, which has one side of 48. Returns their number. */
+static size_t flood(bool *touching, size_t i, size_t j) {
+    if (i >= 48 || j >= 40 || !touching[j * 48 + i])
+        return 0;
+    touching[j * 48 + i] = false;
+    return 1 + flood(touching, i + 1, j) + flood(touching, i - 1, j) + flood(touching, i, j + 1) +
+           flood(touching, i, j - 1);
+}
+
+/* Patches of a mirrored map are those of the map, over its area, as are contact areas: what meets
+ * its own image at a side has the area within the map. Here they are counted by flooding. */
+static void patches_are_those_of_the_map(void **state) {
+    (void)state;
+    const struct press_block block = {.model = model_named("halfspace"), .poisson = 0.3};
+    static const double PRESSURES[] = {0.002, 0.01, 1};
+    for (size_t load = 0; load < 3; load++) {
+        struct error err = {0};
+        struct map_press press = {0};
+        struct height_map map = hills();
+        struct press_row row = {0};
+        bool touching[1920];
+        size_t count = 0, most = 0, nodes = 0;
+        if (map_press_begin(&press, &map, PRESS_MIRRORED, &err) != 0 ||
+            map_press_lift(&press, map.z, &block, &err) != 0 ||
+            map_press_load(&press, PRESSURES[load], &row, &err) != 0)
+            fail_msg("%s", err.text);
+        for (size_t p = 0; p < 1920; p++)
+            touching[p] = press.state.p[p / 48 * 96 + p % 48] > 0;
+        for (size_t p = 0; p < 1920; p++) {
+            size_t size = flood(touching, p % 48, p / 48);
+            count += size > 0 ? 1 : 0;
+            most = size > most ? size : most;
+            nodes += size;
+        }
+        assert_int_equal(count, load == 2 ? 1 : 4); /* at last all is in contact */
+        check_close(row.value[MEASURE_PATCHES], (double)count, 0);
+        check_relative(row.value[MEASURE_PATCH_LARGEST], (double)most / 1920, 1e-12);
+        check_relative(row.value[MEASURE_PATCH_MEAN] * (double)count, (double)nodes / 1920, 1e-12);
+        check_relative(row.value[MEASURE_NODES], (double)nodes / 1920, 1e-12);
+        map_press_clear(&press);
+        height_map_clear(&map);
+    }
 }
 
 /* The error of a sphere's contact lies within what every second point changes; maps that cannot be
@@ -364,6 +423,7 @@ int main(void) {
         cmocka_unit_test(a_sphere_slips),
         cmocka_unit_test(a_face_slips_after_yielding),
         cmocka_unit_test(mirrored_map_is_pressed),
+        cmocka_unit_test(patches_are_those_of_the_map),
         cmocka_unit_test(points_make_an_error),
         cmocka_unit_test(full_model_is_pressed),
         cmocka_unit_test(librugo_has_the_areas_of_press),

@@ -232,6 +232,7 @@ static void grooves_are_beside_the_random_part(void **state) {
         assert_true(isnan(grid));
     }
     assert_null(result_scalar(&result, "isotropy"));
+    assert_true(isnan(result_scalar(&result, "summit_density")->theory));
     cJSON_Delete(parameters);
     result_clear(&result);
 }
