@@ -292,20 +292,29 @@ static double dispersion_of(double variance, double count) {
     return count > 0 ? fmax(1, variance / count) : 1;
 }
 
-/* Sums over a cell and some of its neighbours. */
+/* Sums over a cell and some of its neighbours: all, and those that are rare. */
 struct window_sum {
-    double variance, count;
+    double variance, count, rare_variance, rare_count;
     uint64_t some;
 };
 static void window_add(struct window_sum *sum, const struct tally *tally, size_t cell,
                        const struct tally_total *total, bool outside) {
-    sum->variance += tally->count[cell] > 0 ? cell_variance(tally, cell, total) : 0;
-    sum->count += (double)side_count(tally, cell, total, outside);
-    sum->some += side_some(tally, cell, total, outside);
+    const double variance = tally->count[cell] > 0 ? cell_variance(tally, cell, total) : 0;
+    const double count = (double)side_count(tally, cell, total, outside);
+    const uint64_t some = side_some(tally, cell, total, outside);
+    sum->variance += variance;
+    sum->count += count;
+    sum->some += some;
+    if (!is_rare(some, total->realisations))
+        return;
+    sum->rare_variance += variance;
+    sum->rare_count += count;
 }
 
 /* Returns the dispersion of the cell and its nearest neighbours with things on that side, as many
- * as are needed. Neighbours at equal distance on the left and right are added together. */
+ * as are needed. Neighbours at equal distance on the left and right are added together. One that is
+ * not rare may raise the dispersion, and does not lower it: how many things it has may be
+ * prescribed, as of heights near the edge of their distribution, and says nothing of clusters. */
 static double neighbours_dispersion(const struct tally_near *near, const struct tally_total *total,
                                     bool outside) {
     struct window_sum sum = {0};
@@ -319,7 +328,8 @@ static double neighbours_dispersion(const struct tally_near *near, const struct 
         if (behind <= before)
             window_add(&sum, near->tally, near->right[right++], total, outside);
     }
-    return dispersion_of(sum.variance, sum.count);
+    return fmax(dispersion_of(sum.variance, sum.count),
+                dispersion_of(sum.rare_variance, sum.rare_count));
 }
 
 /* Returns the error of a count of clusters as large as the dispersion. A Poisson mean of which n

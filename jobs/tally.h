@@ -7,7 +7,7 @@
  *
  * The variance of a cell cannot be estimated from few realisations with things in it; from none the
  * estimate would be 0. Such rare cells take the dispersion (variance over mean of a count,
- * McCullagh & Nelder 1989, section 4.5) of their neighbours; FORMULAS.md, F15.8. Below two
+ * McCullagh & Nelder 1989, section 4.5) of them and their neighbours; FORMULAS.md, F15.8. Below two
  * realisations there is no error. */
 #ifndef RUGO_JOBS_TALLY_H
 #define RUGO_JOBS_TALLY_H

@@ -188,18 +188,41 @@ static double density(const struct spectrum *s, bool profile, double kx, double 
     return s->translation != NULL ? asked * translation_factor(s->translation, k) : asked;
 }
 
-/* Returns the highest wave number along a side of `length` with `points`: the band edge, or Nyquist
- * for a spectrum without one. anisotropy: of the longest wave of the band's edge along this side.
- */
-static int band_edge(const struct spectrum *s, double length, size_t points, double anisotropy,
-                     size_t *mode, struct error *err) {
-    size_t nyquist = points / 2;
-    double edge = (double)nyquist;
+/* Returns how many times as long the waves along a side are at least as the shortest of all, where
+ * this side has an angle to the lay. */
+static double shortest_along(const struct spectrum *s, double angle) {
+    double ratio = s->anisotropy > 0 ? s->anisotropy : 1;
+    return angle == 0 ? ratio : 1 / hypot(cos(angle) / ratio, sin(angle));
+}
+
+/* Returns the highest wave number of the band along a side of `length`; infinite for a spectrum
+ * without a band. anisotropy: of the longest wave of the band's edge along this side. */
+static double band_edge(const struct spectrum *s, double length, double anisotropy) {
     if (s->type == SPECTRUM_SELF_AFFINE)
-        edge = floor(length / (s->wavelength_short * anisotropy) * (1 + BAND_EDGE));
-    else if (s->type == SPECTRUM_TABLE)
-        edge = floor(s->table_wave_number[s->table_count - 1] * length / (2 * M_PI * anisotropy) *
+        return floor(length / (s->wavelength_short * anisotropy) * (1 + BAND_EDGE));
+    if (s->type == SPECTRUM_TABLE)
+        return floor(s->table_wave_number[s->table_count - 1] * length / (2 * M_PI * anisotropy) *
                      (1 + BAND_EDGE));
+    return INFINITY;
+}
+
+static double band_edge_x(const struct spectrum *s, bool profile, double lx) {
+    return band_edge(s, lx, profile ? 1 : shortest_along(s, s->lay_angle));
+}
+
+static double band_edge_y(const struct spectrum *s, bool profile, double ly) {
+    if (profile)
+        return 0;
+    return band_edge(s, ly, s->lay_angle != 0 ? shortest_along(s, M_PI / 2 - s->lay_angle) : 1);
+}
+
+/* Finds the highest wave number along a side of `length` with `points`: the band's edge, or Nyquist
+ * for a spectrum without one. */
+static int resolved_edge(double edge, double length, size_t points, size_t *mode,
+                         struct error *err) {
+    size_t nyquist = points / 2;
+    if (isinf(edge))
+        edge = (double)nyquist;
     if (edge > (double)nyquist)
         return error_set(
             err, ERROR_INPUT,
@@ -210,15 +233,34 @@ static int band_edge(const struct spectrum *s, double length, size_t points, dou
     return 0;
 }
 
-/* Returns the density of a mode. One with as many waves as half of the points is also its mirror
- * image, of which an oblique lay makes another. */
-static double mode_density(const struct grid *grid, const struct spectrum *s, size_t mx, long my) {
+/* Returns the density of the wave with mx waves along x and my along y. */
+static double wave_density(const struct spectrum *s, const struct grid *grid, size_t mx, long my) {
     const bool profile = grid_is_profile(grid);
     double kx = 2 * M_PI * (double)mx / grid->lx;
     double ky = profile ? 0 : 2 * M_PI * (double)my / grid->ly;
-    bool twice = modes_twin(grid, mx, my);
-    double own = density(s, profile, kx, ky);
-    return twice && s->lay_angle != 0 ? (own + density(s, profile, kx, -ky)) / 2 : own;
+    return density(s, profile, kx, ky);
+}
+
+bool spectrum_has_mode(const struct spectrum *spectrum, const struct grid *grid) {
+    if (spectrum->type == SPECTRUM_EXPONENTIAL_ACF)
+        return true;
+    const bool profile = grid_is_profile(grid);
+    const double edge_x = band_edge_x(spectrum, profile, grid->lx);
+    const double edge_y = band_edge_y(spectrum, profile, grid->ly);
+    for (size_t mx = 0; (double)mx <= edge_x; mx++)
+        for (long my = -(long)edge_y; (double)my <= edge_y; my++)
+            if (wave_density(spectrum, grid, mx, my) > 0)
+                return true;
+    return false;
+}
+
+/* Returns the density of a mode. One with as many waves as half of the points is also its mirror
+ * image, of which an oblique lay makes another. */
+static double mode_density(const struct grid *grid, const struct spectrum *s, size_t mx, long my) {
+    double own = wave_density(s, grid, mx, my);
+    return modes_twin(grid, mx, my) && s->lay_angle != 0
+               ? (own + wave_density(s, grid, mx, -my)) / 2
+               : own;
 }
 
 static void modes_fill(struct modes *modes, const struct spectrum *s) {
@@ -270,13 +312,6 @@ static int modes_scale(struct modes *modes, const struct spectrum *s, struct err
     return 0;
 }
 
-/* Returns how many times as long the waves along a side are at least as the shortest of all, where
- * this side has an angle to the lay. */
-static double shortest_along(const struct spectrum *s, double angle) {
-    double ratio = s->anisotropy > 0 ? s->anisotropy : 1;
-    return angle == 0 ? ratio : 1 / hypot(cos(angle) / ratio, sin(angle));
-}
-
 /* Makes the modes of the first face. */
 static int face_modes_create(struct modes **out, const struct spectrum *spectrum,
                              const struct grid *grid, struct error *err) {
@@ -289,13 +324,12 @@ static int face_modes_create(struct modes **out, const struct spectrum *spectrum
     if (modes == NULL)
         return error_memory(err, sizeof *modes, "a discrete spectrum");
     modes->grid = *grid;
-    double along_x = grid_is_profile(grid) ? 1 : shortest_along(spectrum, spectrum->lay_angle);
-    status = band_edge(spectrum, grid->lx, grid->nx, along_x, &modes->mode_x, err);
-    if (status == 0 && !grid_is_profile(grid)) {
-        double along_y =
-            spectrum->lay_angle != 0 ? shortest_along(spectrum, M_PI / 2 - spectrum->lay_angle) : 1;
-        status = band_edge(spectrum, grid->ly, grid->ny, along_y, &modes->mode_y, err);
-    }
+    const bool profile = grid_is_profile(grid);
+    status = resolved_edge(band_edge_x(spectrum, profile, grid->lx), grid->lx, grid->nx,
+                           &modes->mode_x, err);
+    if (status == 0)
+        status = resolved_edge(band_edge_y(spectrum, profile, grid->ly), grid->ly, grid->ny,
+                               &modes->mode_y, err);
     if (status == 0) {
         size_t count = (modes->mode_x + 1) * (2 * modes->mode_y + 1);
         modes->power = array_create(count, sizeof *modes->power);

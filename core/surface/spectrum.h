@@ -36,6 +36,10 @@ double spectrum_expected_summits(const struct spectrum *spectrum, const struct g
 int modes_create(struct modes **out, const struct spectrum *spectrum, const struct grid *grid,
                  struct error *err);
 void modes_destroy(struct modes **modes);
+/* Returns whether a wave of the grid's cell lies in the band of a valid spectrum, its first face
+ * alone: else modes_create() refuses it. The number of points does not matter. Time grows with the
+ * waves outside the band, up to all of the cell. */
+bool spectrum_has_mode(const struct spectrum *spectrum, const struct grid *grid);
 
 /* Moments of the surface, also of one that is translated from a Gaussian field of this spectrum.
  * Sums pairwise or compensated, with a relative error of about 1e-15. */

@@ -444,7 +444,8 @@ void contact_case_estimate(const struct contact_case *one_case, struct study_cos
     out->seconds += companions_seconds(one_case);
     out->result_bytes = contact_rows_bytes(one_case);
     out->runs_most = RUNS_MOST;
-    out->early_seconds = companions_first_seconds(one_case) / STUDY_EARLY;
+    for (uint64_t r = 0; r < STUDY_EARLY; r++)
+        out->early_seconds[r] = companions_beyond_seconds(one_case, r);
     out->case_seconds = case_seconds(one_case);
     out->relative_error = area_scatter(one_case);
 }

@@ -99,7 +99,8 @@ void statistics_case_estimate(const struct statistics_case *one_case, struct stu
                         6 * summits * sizeof(struct summit) + spectra_bytes(one_case) +
                         PROCESS_BYTES;
     out->seconds = expected_seconds(one_case);
-    out->early_seconds = statistics_law_early_seconds(one_case);
+    for (uint64_t r = 0; r < STUDY_EARLY; r++)
+        out->early_seconds[r] = statistics_law_beyond_seconds(one_case, r);
     out->case_seconds =
         expected_case_seconds(one_case, summits) + LIKE_DRAWS * statistics_draws_seconds(one_case);
     /* sum of the bins' errors over their sum: integral sqrt(p) / sqrt(N w), p near normal */

@@ -167,13 +167,13 @@ double statistics_law_seconds(const struct statistics_case *one_case) {
                : 0;
 }
 
-double statistics_law_early_seconds(const struct statistics_case *one_case) {
+double statistics_law_beyond_seconds(const struct statistics_case *one_case, uint64_t realisation) {
     const struct surface_case *surface = &one_case->surface;
     if (!other_law_applies(surface))
         return 0;
     const struct subset due = due_of(surface);
     return other_law_seconds(surface) *
-           (1.0 / (double)due.first_interval - 1.0 / (double)due.interval);
+           ((subset_has(&due, realisation) ? 1 : 0) - 1 / (double)due.interval);
 }
 
 /* --- pairs of surfaces --- */

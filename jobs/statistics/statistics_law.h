@@ -24,10 +24,10 @@ int statistics_law_measure(struct statistics_law *law, const struct realisation 
                            struct statistics_groups pairs[PAIR_SURFACES],
                            double scalars[SCALAR_COUNT], struct error *err);
 /* Return the bytes of this object, the mean CPU seconds a realisation on a 3 GHz core, and what
- * each of the first STUDY_EARLY realisations takes besides. */
+ * a realisation takes beyond that. */
 double statistics_law_bytes(const struct statistics_case *one_case);
 double statistics_law_seconds(const struct statistics_case *one_case);
-double statistics_law_early_seconds(const struct statistics_case *one_case);
+double statistics_law_beyond_seconds(const struct statistics_case *one_case, uint64_t realisation);
 
 /* Adds one surface of a pair, in its scales, to the sums of curves of a group. counts: scratch. */
 void statistics_pair_add(const struct statistics_case *one_case, struct summit_counts *counts,

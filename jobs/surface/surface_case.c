@@ -235,37 +235,6 @@ static int solve_ratio(struct surface_case *out, struct values *values, double a
     return 0;
 }
 
-/* Returns whether a wave vector lies in the self-affine band of a profile, or along one side. */
-static bool line_has_mode(double low, double high) {
-    return floor(high * (1 + ROUNDING)) >= ceil(low * (1 - ROUNDING));
-}
-
-/* Returns the same of a cell with wave numbers from low to high along x, and from `times` as much
- * along y. */
-static bool plane_has_mode(double low, double high, double times) {
-    low *= 1 - ROUNDING;
-    high *= 1 + ROUNDING;
-    if (high >= low + 1)
-        return floor(high) >= ceil(low);
-    for (size_t mx = 0; (double)mx <= high; mx++) {
-        double square = (double)mx * (double)mx;
-        double my = ceil(times * sqrt(fmax(0, low * low - square))) / times;
-        if (square + my * my <= high * high)
-            return true;
-    }
-    return false;
-}
-
-/* Returns whether a wave vector of the cell lies in the self-affine band; else the spectrum would
- * be empty. Waves that are longer along x have the band's lengths along y. */
-static bool band_has_mode(const struct surface_case *surface) {
-    double low = surface->length_ratio, along_y = surface->length_ratio_y;
-    double ratio = surface->wavelength_ratio;
-    if (surface->dimension == 1 || surface->spectrum.anisotropy > 1)
-        return line_has_mode(along_y, along_y * ratio);
-    return plane_has_mode(low, low * ratio, along_y / low);
-}
-
 /* Reads the anisotropy. The cell must hold the longest waves of a self-affine surface along x, too.
  * Nayak's parameter is that of isotropic surfaces. */
 static void read_anisotropy(struct surface_case *out, struct values *values) {
@@ -355,11 +324,6 @@ static int read_self_affine(struct surface_case *out, struct values *values, str
         values_fault(values, "/surface/rolloff_ratio",
                      "%g is more than wavelength_ratio, %g: the roll-off lies within the band",
                      rolloff, ratio);
-    if (!isnan(ratio) && !isnan(out->length_ratio) && !band_has_mode(out))
-        values_fault(
-            values, "/surface/length_ratio",
-            "no wave of this cell lies between lambda_l and lambda_s: take an integer, or a "
-            "wider band");
     out->spectrum.wavelength_short = 1;
     out->spectrum.wavelength_long = ratio;
     out->spectrum.wavelength_rolloff = fmax(1, ratio / rolloff);
@@ -508,8 +472,24 @@ int surface_case_dimension(struct values *values) {
     return values_number(values, "/surface/dimension") == 1 ? 1 : 2;
 }
 
+/* Checks that the cell of a surface without a fault holds a wave of the band: else the spectrum
+ * would be empty. */
+static void check_modes(const struct surface_case *surface, struct values *values) {
+    if (spectrum_has_mode(&surface->spectrum, &surface->grid))
+        return;
+    if (surface->spectrum.type == SPECTRUM_SELF_AFFINE)
+        values_fault(values, "/surface/length_ratio",
+                     "no wave of this cell lies between lambda_l and lambda_s: take an integer, or "
+                     "a wider band");
+    else
+        values_fault(values, "/surface/length_ratio",
+                     "no wave of this cell has a density above 0: take a longer cell, or a table "
+                     "of more wave numbers");
+}
+
 /* Reads the whole surface. A value at fault is NaN or empty, and what depends on it is left out. */
 static int read_surface(struct surface_case *out, struct values *values, struct error *err) {
+    const size_t before = values_fault_count(values);
     double points = values_number(values, "/surface/points_per_wavelength");
     out->dimension = surface_case_dimension(values);
     read_lengths(out, values);
@@ -529,9 +509,10 @@ static int read_surface(struct surface_case *out, struct values *values, struct 
         status = read_exponential(out, values, err);
     if (status == 0 && out->spectrum.type == SPECTRUM_TABLE)
         status = (acf ? read_acf : read_table)(out, values, points, err);
-    if (status == 0 &&
-        !isnan(out->length_ratio * out->wavelength_ratio * points)) /* else at fault */
-        surface_case_grid(out, points, "/surface/points_per_wavelength", values, &out->grid);
+    if (status == 0 && !isnan(out->length_ratio * out->wavelength_ratio * points) &&
+        surface_case_grid(out, points, "/surface/points_per_wavelength", values, &out->grid) &&
+        values_fault_count(values) == before)
+        check_modes(out, values);
     return status;
 }
 
@@ -540,7 +521,6 @@ static int read_plateau(struct surface_case *out, struct values *values, struct 
     static const char POINTS[] = "/surface/points_per_wavelength";
     const struct valley_face valleys = {.dimension = out->dimension,
                                         .lx = out->grid.lx,
-                                        .ly = out->grid.ly,
                                         .length_ratio = out->length_ratio,
                                         .wavelength_ratio = out->wavelength_ratio,
                                         .spectrum = &out->spectrum,
@@ -554,7 +534,11 @@ static int read_plateau(struct surface_case *out, struct values *values, struct 
             "grooves are of a face of one random part; allowed: one of grooves and plateau");
     out->spectrum.plateau = out->plateau;
     out->heights_name = "stratified";
-    surface_case_grid(out, values_number(values, POINTS), POINTS, values, &out->grid);
+    if (surface_case_grid(out, values_number(values, POINTS), POINTS, values, &out->grid) &&
+        !spectrum_has_mode(&out->plateau->spectrum, &out->grid))
+        values_fault(values, "/surface/plateau/length_ratio",
+                     "no wave of this cell lies between the longest and the shortest of the "
+                     "plateau: take an integer, or a wider band");
     return 0;
 }
 

@@ -98,35 +98,6 @@ static void read_spectrum(const struct valley_face *valleys, struct spectrum *sp
     read_lay(valleys, length_ratio, spectrum, values);
 }
 
-/* A band with a whole number of waves along y has a wave; another, narrow one may have oblique
- * ones, which are looked for on a grid of as few points as hold it. */
-static int check_band(const struct valley_face *valleys, const struct spectrum *spectrum,
-                      struct values *values, struct error *err) {
-    static const double POINTS_MOST = 1e6;
-    const bool profile = valleys->dimension == 1;
-    const double side = profile ? valleys->lx : valleys->ly;
-    const double low = side / spectrum->wavelength_long * (1 - ROUNDING);
-    const double high = side / spectrum->wavelength_short * (1 + ROUNDING);
-    const double nx = 2 * floor(valleys->lx / spectrum->wavelength_short * (1 + ROUNDING)) + 2;
-    const double ny = profile ? 1 : 2 * floor(high) + 2;
-    struct moments moments;
-    struct error reason = {0};
-    int status = 0;
-    bool any = floor(high) >= ceil(low);
-    if (!any && !profile && nx * ny <= POINTS_MOST) {
-        const struct grid grid = {(size_t)nx, (size_t)ny, valleys->lx, valleys->ly};
-        status = spectrum_moments(spectrum, &grid, &moments, &reason);
-        any = status == 0;
-    }
-    if (status != 0 && status != ERROR_INPUT)
-        return error_set(err, status, "%s", reason.text);
-    if (!any)
-        values_fault(values, LENGTH_RATIO,
-                     "no wave of this cell lies between the longest and the shortest of the "
-                     "plateau: take an integer, or a wider band");
-    return 0;
-}
-
 int surface_plateau_fill(struct plateau_face **out, const struct valley_face *valleys,
                          struct values *values, struct error *err) {
     const size_t before = values_fault_count(values);
@@ -138,10 +109,8 @@ int surface_plateau_fill(struct plateau_face **out, const struct valley_face *va
     check_valleys(valleys, values);
     face.offset = read_offset(face.rms_ratio, values);
     read_spectrum(valleys, &face.spectrum, values);
-    int status =
-        values_fault_count(values) == before ? check_band(valleys, &face.spectrum, values, err) : 0;
-    if (status != 0 || values_fault_count(values) != before)
-        return status;
+    if (values_fault_count(values) != before)
+        return 0;
     *out = array_create(1, sizeof **out);
     if (*out == NULL)
         return error_memory(err, sizeof face, "a plateau");

@@ -10,7 +10,7 @@
 /* The surface with the valleys, which has no fault. */
 struct valley_face {
     int dimension;
-    double lx, ly; /* of the cell, in lambda_s */
+    double lx; /* of the cell, in lambda_s */
     double length_ratio, wavelength_ratio;
     const struct spectrum *spectrum;
     const struct surface_options *options;

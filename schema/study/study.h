@@ -36,8 +36,8 @@ struct study_cost {
     /* Of these, what only some realisations take, in the mean, and its variance between
      * realisations; 0: all take about the same. */
     double rare_seconds, rare_variance;
-    double case_seconds;   /* the same of a case besides: merging and publishing it */
-    double early_seconds;  /* the same of each of the first STUDY_EARLY realisations besides */
+    double case_seconds;               /* the same of a case besides: merging and publishing it */
+    double early_seconds[STUDY_EARLY]; /* the same of each of the first realisations besides */
     double result_bytes;   /* of a realisation in a job's result, where they grow with these */
     double relative_error; /* standard error of the main curve after one realisation, of contact
                             * at the load where it is largest; / sqrt(n) */

@@ -171,7 +171,8 @@ bool contact_case_stretches(const struct contact_case *one_case, size_t model);
 /* Returns how the case has linear models solved. */
 struct contact_options contact_case_options(const struct contact_case *one_case);
 /* Returns the CPU seconds of a linear model on a grid of any length, as estimated, with so many
- * densities of pressure. */
+ * densities of pressure: of all loads, and under a hardness with what yields and loads that fall
+ * again. */
 double contact_case_linear_seconds(const struct contact_case *one_case, const struct grid *grid,
                                    bool elements, size_t densities);
 /* Returns the least planned seconds of a realisation, without its companions. A choice that changes

@@ -163,7 +163,8 @@ double coarse_solver_seconds(const struct contact_case *one_case, const struct g
 }
 
 double coarse_solver_planned_seconds(const struct contact_case *one_case, const struct grid *grid) {
-    const struct quantity_scene scene = quantity_scene_of(one_case, grid, INFINITY);
+    struct quantity_scene scene = quantity_scene_of(one_case, grid, INFINITY);
+    scene.planned = true;
     return cost_linear_contact(grid, one_case->tolerance, one_case->load_count) +
            contact_quantities_seconds(&scene);
 }

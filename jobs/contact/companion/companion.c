@@ -44,16 +44,14 @@ double companions_seconds(const struct contact_case *one_case) {
     return seconds;
 }
 
-double companions_first_seconds(const struct contact_case *one_case) {
+double companions_beyond_seconds(const struct contact_case *one_case, uint64_t realisation) {
     double seconds = 0;
     for (enum companion_name c = 0; c < COMPANION_COUNT; c++) {
         const struct companion_plan *plan = &one_case->companions[c];
-        uint64_t draws = 0;
-        for (uint64_t r = 0; r < plan->due.first; r++)
-            draws += companion_draws(plan, r);
         if (contact_case_has(one_case, c))
-            seconds += COMPANIONS[c]->seconds(one_case, plan) *
-                       ((double)draws - (double)plan->due.first / (double)plan->due.interval);
+            seconds +=
+                COMPANIONS[c]->seconds(one_case, plan) *
+                ((double)companion_draws(plan, realisation) - 1 / (double)plan->due.interval);
     }
     return seconds;
 }

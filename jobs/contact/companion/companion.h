@@ -71,10 +71,10 @@ const struct companion *companion_of(enum error_source source);
 /* Plans the companions of a case that is read. values: of its study. */
 void companions_plan(struct contact_case *one_case, struct values *values);
 /* Return the bytes of the companions of a case, their mean CPU seconds a realisation, and the
- * CPU seconds that they take beyond that in the first realisations. */
+ * CPU seconds that they take beyond that in a realisation. */
 double companions_bytes(const struct contact_case *one_case);
 double companions_seconds(const struct contact_case *one_case);
-double companions_first_seconds(const struct contact_case *one_case);
+double companions_beyond_seconds(const struct contact_case *one_case, uint64_t realisation);
 int companions_curves(const struct contact_tally *tally, struct case_result *out,
                       struct error *err);
 

@@ -9,11 +9,8 @@ struct contact_solver {
 };
 
 double linear_seconds(const struct contact_case *one_case, size_t model, const struct grid *grid) {
-    static const double YIELDING = 1.5; /* of the work of an elastic solution, at most */
-    double paths = one_case->unloads ? 1 + YIELDING : YIELDING;
     bool elements = one_case->blocks[model].model == MODEL_LAYERED;
-    return (one_case->hardness > 0 ? paths : 1) *
-           contact_case_linear_seconds(one_case, grid, elements, one_case->pdf_count);
+    return contact_case_linear_seconds(one_case, grid, elements, one_case->pdf_count);
 }
 
 double linear_bytes(const struct contact_case *one_case, size_t model, const struct grid *grid) {

@@ -75,9 +75,10 @@ struct quantity_scene {
     const struct contact_case *one_case; /* borrowed, for as long as the state lives */
     struct grid grid;
     struct block block;
-    bool exact;  /* by core/contact on the block itself, without a mesh */
-    bool open;   /* in free space */
-    bool slides; /* by the model full, with friction at finite strain */
+    bool exact;   /* by core/contact on the block itself, without a mesh */
+    bool open;    /* in free space */
+    bool slides;  /* by the model full, with friction at finite strain */
+    bool planned; /* seconds are those that companions are planned by: they stay, as draws follow */
 };
 
 struct quantity_state; /* each quantity's own */

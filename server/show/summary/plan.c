@@ -17,7 +17,9 @@ double plan_case_seconds(const struct study_case *one) {
     double count = (double)one->realisations;
     double seconds =
         one->component_count > 0 ? target_expect(one, expected) : one->cost.seconds * count;
-    return seconds + one->cost.early_seconds * fmin(count, STUDY_EARLY) + one->cost.case_seconds;
+    for (uint64_t r = 0; r < STUDY_EARLY && r < one->realisations; r++)
+        seconds += one->cost.early_seconds[r];
+    return seconds + one->cost.case_seconds;
 }
 
 /* What is taken, and of this what only some realisations take, with its variance. */

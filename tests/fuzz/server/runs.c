@@ -2,10 +2,10 @@
  * and no result of one's own is refused. Those that are thought to take long are left out. */
 #include "core/file/memory_file.h"
 #include "jobs/runner.h"
-#include "jobs/target.h"
 #include "schema/result/csv.h"
 #include "schema/result/result_json.h"
 #include "schema/study/study_reader.h"
+#include "server/show/summary/plan.h"
 #include "server/show/summary/summary.h"
 #include "tests/support/fuzz/draw_study.h"
 #include "tests/support/fuzz/fuzz.h"
@@ -43,19 +43,6 @@ static void open_store(void) {
     MUST(checker_create(&checker, &err) == 0);
 }
 
-static double seconds_of(const struct study *study) {
-    double seconds = 0;
-    for (size_t c = 0; c < study->case_count; c++) {
-        const struct study_case *one = &study->cases[c];
-        uint64_t numbers[TARGET_PARTS_MOST];
-        seconds += one->component_count > 0
-                       ? target_expect(one, numbers)
-                       : (double)one->realisations * (one->cost.seconds + one->cost.early_seconds) +
-                             one->cost.case_seconds;
-    }
-    return seconds;
-}
-
 /* Draws a study and reads it; NULL where it is refused, or would take long. */
 static struct study *read_study(struct choices *choices) {
     /* What a target takes is not known beforehand. */
@@ -74,7 +61,7 @@ static struct study *read_study(struct choices *choices) {
     int status = study_read_ext(&study, text, strlen(text), &reading, &faults, &err);
     fault_list_clear(&faults);
     free(text);
-    if (status == 0 && !(seconds_of(study) <= SECONDS_MOST))
+    if (status == 0 && !(plan_seconds(study) <= SECONDS_MOST))
         study_destroy(&study);
     return study;
 }

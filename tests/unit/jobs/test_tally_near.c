@@ -46,6 +46,7 @@ static void draw(struct sparse *out, uint64_t *seed, bool cumulative) {
  * their number about its share; and residuals of k. */
 struct cell_sums {
     double things, some, variance;
+    double rare_things, rare_variance; /* the same, of a rare cell */
     double squares, weight, freedom;
 };
 
@@ -66,6 +67,10 @@ static struct cell_sums cell_sums(const struct sparse *sparse, size_t cell, bool
         out.squares += own > 0 ? pow(sparse->k[r][cell] - k / n * own, 2) : 0;
     }
     out.things = outside ? all - n : n;
+    if (out.some < TALLY_RARE) {
+        out.rare_things = out.things;
+        out.rare_variance = out.variance;
+    }
     out.weight = m >= 2 ? n * (m - 1) / m : 0;
     out.freedom = m >= 2 ? m - 1 : 0;
     return out;
@@ -82,6 +87,8 @@ static struct cell_sums window_sums(const struct sparse *sparse, size_t cell, bo
         for (size_t a = first; a < last; a++) {
             struct cell_sums one = cell_sums(sparse, a, outside);
             out.things += one.things;
+            out.rare_things += one.rare_things;
+            out.rare_variance += one.rare_variance;
             out.some += one.some;
             out.variance += one.variance;
             out.squares += one.freedom > 0 ? one.squares : 0;
@@ -101,6 +108,8 @@ static void check_share(const struct sparse *sparse, size_t cell, struct estimat
         return;
     struct cell_sums window = window_sums(sparse, cell, outside, false);
     double dispersion = window.things > 0 ? fmax(1, window.variance / window.things) : 1;
+    if (window.rare_things > 0)
+        dispersion = fmax(dispersion, window.rare_variance / window.rare_things);
     double error = own.things > 0 ? dispersion * sqrt(own.things / dispersion + 1)
                                   : dispersion * TALLY_NONE_SEEN;
     check_relative(share.standard_error, error / (double)sparse->total.sum, 1e-9);

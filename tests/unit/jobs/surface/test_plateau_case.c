@@ -63,6 +63,23 @@ static void one_cell(void **state) {
     }
 }
 
+/* A plateau of a narrow band with a lay, of which only oblique waves fit into the cell: two of them
+ * and their opposites. */
+static void oblique_plateau(void **state) {
+    (void)state;
+    struct contact_case one_case = read_case(
+        PRESSED("\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 4",
+                STRATA ", \"length_ratio\": 2.5, \"wavelength_ratio\": 1.05, \"anisotropy\": 2,"
+                       " \"lay_angle\": 45",
+                ""));
+    struct modes *modes = NULL;
+    const struct surface_case *surface = &one_case.surface;
+    assert_int_equal(modes_create(&modes, &surface->plateau->spectrum, &surface->grid, NULL), 0);
+    assert_int_equal(modes->count, 4);
+    modes_destroy(&modes);
+    contact_case_clear(&one_case);
+}
+
 static void faults(void **state) {
     (void)state;
     static const struct {
@@ -88,6 +105,9 @@ static void faults(void **state) {
                  ""),
          "/surface/heights/distribution", "two Gaussian surfaces"},
         {PRESSED(PROFILE, STRATA ", \"length_ratio\": 4.5, \"wavelength_ratio\": 1.05", ""),
+         "/surface/plateau/length_ratio", "no wave"},
+        {PRESSED("\"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 8",
+                 STRATA ", \"wavelength_ratio\": 1, \"anisotropy\": 1.5, \"lay_angle\": 30", ""),
          "/surface/plateau/length_ratio", "no wave"},
         {PRESSED("\"hurst\": 0.8, \"wavelength_ratio\": 4",
                  STRATA ", \"length_ratio\": 1e5, \"wavelength_ratio\": 1e5", ""),
@@ -222,6 +242,7 @@ static void pressed_on_its_plateaus(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_cell),
+        cmocka_unit_test(oblique_plateau),
         cmocka_unit_test(faults),
         cmocka_unit_test(statistics_beside_the_law),
         cmocka_unit_test(pressed_on_its_plateaus),

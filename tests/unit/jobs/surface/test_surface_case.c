@@ -376,6 +376,12 @@ static const struct broken_case BROKEN[] = {
      "/surface/length_ratio_y", "simple ratio"},
     {"{\"hurst\": 0.8, \"wavelength_ratio\": 1, \"length_ratio\": 1.5, \"length_ratio_y\": 2.5}",
      "/surface/length_ratio", "no wave"},
+    {"{\"hurst\": 0.8, \"wavelength_ratio\": 1, \"length_ratio\": 8, \"anisotropy\": 1.5,"
+     " \"lay_angle\": 30}",
+     "/surface/length_ratio", "no wave"},
+    {"{\"wavelength_ratio\": 1, \"length_ratio\": 8, \"spectrum\": {\"type\": \"table\","
+     " \"wave_number\": [4.1, 4.11], \"density\": [1, 1]}}",
+     "/surface/length_ratio", "no wave"},
     {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"rms_slope\": 1, \"rms_height\": 1}",
      "/surface/rms_height", "not both"},
     {"{\"hurst\": 0.8, \"wavelength_ratio\": 8, \"heights\": {\"distribution\": \"weibull_min\"}}",
@@ -442,6 +448,30 @@ static void faults_have_pointer_and_words(void **state) {
     }
 }
 
+/* Cells of which only oblique waves lie in a narrow band are accepted. Their spectra have the modes
+ * that are counted by hand, of wave vectors stretched and turned with the lay. */
+static void narrow_bands(void **state) {
+    (void)state;
+    static const struct {
+        const char *study;
+        size_t modes;
+    } BANDS[] = {
+        {"{\"hurst\": 0.8, \"wavelength_ratio\": 1.05, \"length_ratio\": 2.5, \"anisotropy\": 2,"
+         " \"lay_angle\": 45}",
+         4}, /* (1, -2), (2, -1), and their opposites */
+        {"{\"hurst\": 0.8, \"wavelength_ratio\": 1.03, \"length_ratio\": 2.75, \"anisotropy\": 2}",
+         4}, /* (1, 2), (1, -2), and their opposites */
+    };
+    for (size_t b = 0; b < sizeof BANDS / sizeof *BANDS; b++) {
+        struct surface_case surface = read(BANDS[b].study);
+        struct modes *modes = NULL;
+        assert_int_equal(modes_create(&modes, &surface.spectrum, &surface.grid, NULL), 0);
+        assert_int_equal(modes->count, BANDS[b].modes);
+        modes_destroy(&modes);
+        surface_case_clear(&surface);
+    }
+}
+
 /* All faults of a surface at once, not the first alone. */
 static void all_faults_at_once(void **state) {
     (void)state;
@@ -471,6 +501,7 @@ int main(void) {
         cmocka_unit_test(everything_given),
         cmocka_unit_test(what_is_exact),
         cmocka_unit_test(grids),
+        cmocka_unit_test(narrow_bands),
         cmocka_unit_test(rectangles),
         cmocka_unit_test(bytes_of_a_rectangle),
         cmocka_unit_test(alpha_of_a_rectangle),
