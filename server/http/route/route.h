@@ -6,7 +6,10 @@
 #include "server/http/exchange.h"
 
 #define FORM_MEDIA "multipart/form-data" /* of several files */
-enum { SEGMENT_SIZE = 256, QUERY_NAMES_MOST = 32 };
+enum {
+    SEGMENT_SIZE = 801, /* a study's name has up to 200 characters, of up to 4 bytes */
+    QUERY_NAMES_MOST = 32
+};
 typedef void route_handler(struct exchange *exchange, const char *id);
 
 struct route {

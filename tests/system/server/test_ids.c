@@ -106,6 +106,18 @@ static void a_name_goes_before_first_digits(void **state) {
     check_both("status", digit, 0, named);
 }
 
+/* The longest name: 200 characters of 4 bytes. */
+static void a_long_name_is_found(void **state) {
+    (void)state;
+    char id[17], name[801] = "", document[1200];
+    for (int c = 0; c < 200; c++)
+        strcat(name, "\xf0\x9d\x9c\x86"); /* a mathematical lambda */
+    snprintf(document, sizeof document, NAMED("%s", "3"), name);
+    spit("long.json", document);
+    submit("long.json", id);
+    check_both("status", name, 0, id);
+}
+
 static void over_http_too(void **state) {
     (void)state;
     char *answer;
@@ -141,6 +153,7 @@ static void a_name_that_is_no_segment(void **state) {
     } ASKED[] = {{"GET", "/v1/studies/a%2Fb"},
                  {"DELETE", "/v1/studies/a%2fb"},
                  {"GET", "/v1/studies/one%2Freport"}, /* not the report of one */
+                 {"GET", "/v1/%73tudies/one%2Freport"},
                  {"GET", "/v1/studies/a%2Fb/curves?case=0"}};
     submit("path.json", id);
     assert_int_equal(run_rugo("near", (const char *[]){"status", "--db", "rugo.db", "a/b", NULL}),
@@ -207,6 +220,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_study_has_several_names),
         cmocka_unit_test(none_of_several_is_lost),
+        cmocka_unit_test(a_long_name_is_found),
         cmocka_unit_test(over_http_too),
         cmocka_unit_test(a_name_goes_before_first_digits),
         cmocka_unit_test(a_name_that_is_no_segment),
