@@ -58,7 +58,8 @@ bool query_number(struct exchange *exchange, const char *name, int64_t least, in
  */
 struct comparison;
 int query_difference(struct exchange *exchange, struct comparison *out, bool *asked);
-/* Answers 422 to a message of a worker that cannot be read, with what is wrong. */
+/* Answers 422 to a message of a worker that cannot be read, with what is wrong, and the pointer
+ * where the error begins with one (field.h). */
 void refuse_message(struct exchange *exchange, const struct error *err);
 /* Forgets the jobs of a claim whose answer arrived; gives them back where it did not. */
 void claim_settle(struct exchange *exchange, bool arrived);

@@ -2,8 +2,8 @@
 #include "jobs/clock.h"
 #include "jobs/kind.h"
 #include "schema/json/field.h"
+#include "schema/json/json.h"
 #include "schema/study/study.h"
-#include "schema/study/value.h"
 #include "server/command/access/api.h"
 #include "server/http/route/route.h"
 #include "server/show/summary/plan.h"
@@ -237,7 +237,7 @@ static void read_extension(const cJSON *body, uint64_t *realisations, struct fau
         *realisations = (uint64_t)number;
         return;
     }
-    value_describe(given, text, sizeof text);
+    json_describe(given, text, sizeof text);
     fault_add(faults, "/realisations", "%s is not %s", text, allowed);
 }
 
