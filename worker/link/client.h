@@ -16,8 +16,9 @@ void client_global_cleanup(void);
 
 struct client;
 
-/* Makes a client. url is http(s)://host:port without path; token may be NULL; trust NULL trusts the
- * system's authorities alone. ERROR_INPUT where the token would cross a network in clear text. */
+/* Makes a client. url is http(s)://host:port without path, or host:port alone, which is http://;
+ * token may be NULL; trust NULL trusts the system's authorities alone. ERROR_INPUT where the token
+ * would cross a network in clear text. */
 int client_create(struct client **out, const char *url, const char *token,
                   const struct client_trust *trust, struct error *err);
 void client_destroy(struct client **client);
