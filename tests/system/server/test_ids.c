@@ -197,6 +197,23 @@ static void waiting_ends_as_the_study_does(void **state) {
     assert_true(contains("waiting.err", "is cancelled"));
 }
 
+/* 130, as all commands end that are interrupted; of all studies there is no end to wait for. */
+static void watching_is_interrupted(void **state) {
+    (void)state;
+    char id[17];
+    struct process watching;
+    submit("one.json", id);
+    for (int one = 0; one < 2; one++) {
+        process_start(
+            &watching, "watching",
+            (const char *[]){"status", "--watch", "--server", url, one != 0 ? id : NULL, NULL});
+        wait_for_text("watching.out", "queued");
+        process_kill(&watching, SIGTERM);
+        assert_int_equal(process_wait(&watching, 20), one != 0 ? 130 : 0);
+    }
+    assert_int_equal(run_rugo("cancel", (const char *[]){"cancel", "--server", url, id, NULL}), 0);
+}
+
 /* The first loads are far above what the model reaches: each realisation leaves a note, and no
  * value.
  */
@@ -225,6 +242,7 @@ int main(void) {
         cmocka_unit_test(a_name_goes_before_first_digits),
         cmocka_unit_test(a_name_that_is_no_segment),
         cmocka_unit_test(waiting_ends_as_the_study_does),
+        cmocka_unit_test(watching_is_interrupted),
         cmocka_unit_test(a_study_without_a_value_is_no_success),
     };
     return cmocka_run_group_tests(tests, start, stop);
