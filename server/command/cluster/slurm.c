@@ -239,7 +239,7 @@ static int perform(struct slurm_run *run, const char *file, struct error *err) {
 
 static int prepare(struct slurm_run *run, struct error *err) {
     const struct options *options = run->options;
-    int status = options->out.path != NULL ? output_prepare(options->out.path, err) : 0;
+    int status = options->out.path != NULL ? output_check(options->out.path, err) : 0;
     if (status == 0)
         status = slurm_folder_open(&run->folder, options->folder, err);
     if (status == 0)

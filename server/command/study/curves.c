@@ -54,8 +54,6 @@ static int take_folder(struct access *access, const char *id, const struct resul
         return 0;
     int status = access_document(access, id, &document, err);
     if (status == 0)
-        status = result_folder_check(folder, id, document, err);
-    if (status == 0)
         status = result_folder_take(folder, id, document, err);
     cJSON_Delete(document);
     return status;
@@ -85,7 +83,7 @@ static int run(const void *values, const char *const *arguments) {
         return EXIT_USAGE;
     if (options->difference[0] >= 0 && options->case_number >= 0)
         return usage_error("curves", "--difference and --case exclude each other");
-    int status = options->folder.path != NULL ? output_prepare(options->folder.path, &err) : 0;
+    int status = options->folder.path != NULL ? output_check(options->folder.path, &err) : 0;
     if (status == 0)
         status = access_open(&access, &options->place, ACCESS_READ, &err);
     if (status == 0)

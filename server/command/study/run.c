@@ -71,7 +71,7 @@ static int perform(struct run *run, struct error *err) {
     struct study_status now = {0};
     struct publish_counts counts = {0};
     const char *folder = run->submission.folder.path;
-    int status = folder != NULL ? output_prepare(folder, err) : 0;
+    int status = folder != NULL ? output_check(folder, err) : 0;
     if (status == 0)
         status = local_study_submit(&run->store, &run->submission, run->id, &run->faults, err);
     if (status == 0)

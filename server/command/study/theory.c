@@ -92,11 +92,7 @@ static void tell_faces(const struct study *study) {
 static int write_folder(const struct study *study, const struct study_result *result,
                         const struct result_folder *folder, struct error *err) {
     cJSON *document = NULL;
-    int status = output_prepare(folder->path, err);
-    if (status == 0)
-        status = json_parse(study->source, strlen(study->source), NULL, &document, err);
-    if (status == 0)
-        status = result_folder_check(folder, FOLDER_OF_THEORY, document, err);
+    int status = json_parse(study->source, strlen(study->source), NULL, &document, err);
     if (status == 0)
         status = result_folder_take(folder, FOLDER_OF_THEORY, document, err);
     cJSON_Delete(document);
