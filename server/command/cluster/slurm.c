@@ -34,7 +34,7 @@ static const struct option_row OPTIONS[] = {
     {"nodes", 0, OPTION_COUNT, 1, 100000, AT(nodes), "N", "1", "pilots, one on a node each"},
     PILOT_ROWS(struct options),
     {"set", 0, OPTION_LIST, 0, 0, AT(sets), "PATH=VALUE", NULL, SET_HELP},
-    {"out", 0, OPTION_TEXT, 0, 0, AT(out.path), "DIR", NULL,
+    {"out", 'o', OPTION_TEXT, 0, 0, AT(out.path), "DIR", NULL,
      "write study.json, curves.json, curves.csv and an SVG a quantity"},
     REPLACE_ROW(AT(out.replace)),
     {"dir", 0, OPTION_TEXT, 0, 0, AT(folder), "DIR", "rugo-slurm",

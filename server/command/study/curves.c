@@ -25,7 +25,7 @@ static const struct option_row OPTIONS[] = {
     {"difference", 0, OPTION_PAIR, 0, 0, AT(difference), "A B", NULL,
      "case A less case B, by pairs of realisations where they share their random numbers"},
     {"format", 0, OPTION_CHOICE, 0, 0, AT(format), "json|csv|table", "json", "what to print"},
-    {"out", 0, OPTION_TEXT, 0, 0, AT(folder.path), "DIR", NULL,
+    {"out", 'o', OPTION_TEXT, 0, 0, AT(folder.path), "DIR", NULL,
      "write study.json, curves.json, curves.csv and an SVG a quantity instead"},
     REPLACE_ROW(AT(folder.replace)),
     {0}};

@@ -30,7 +30,7 @@ static const struct option_row OPTIONS[] = {
      "this quantity only; summit_joint_pdf is made only if named here"},
     {"format", 0, OPTION_CHOICE, 0, 0, AT(format), "text|json|csv|svg", "text",
      "what to print; svg: a picture of --quantity (summit_height_pdf)"},
-    {"out", 0, OPTION_TEXT, 0, 0, AT(folder.path), "DIR", NULL,
+    {"out", 'o', OPTION_TEXT, 0, 0, AT(folder.path), "DIR", NULL,
      "write study.json, curves.json, curves.csv and an SVG a quantity instead"},
     REPLACE_ROW(AT(folder.replace)),
     {0}};
