@@ -601,6 +601,13 @@ int key_make(char key[KEY_SIZE], struct error *err) {
     return hex_random(key, KEY_SIZE - 1, err);
 }
 
+bool key_is_good(const char *key) {
+    size_t length = 0;
+    while (key[length] > ' ' && key[length] < 0x7f)
+        length++;
+    return length != 0 && length <= KEY_MOST && key[length] == '\0';
+}
+
 static void pause_ms(int64_t milliseconds) {
     const struct timespec pause = {milliseconds / 1000, milliseconds % 1000 * 1000000};
     nanosleep(&pause, NULL);

@@ -6,6 +6,7 @@
 #include "schema/study/fault.h"
 #include "worker/link/client_trust.h"
 #include <cjson/cJSON.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 
@@ -43,6 +44,8 @@ int client_json(struct client *client, const struct request *request, cJSON **ou
 enum { KEY_SIZE = 33, KEY_MOST = 200 };
 /* Writes a unique key of 128 random bits. */
 int key_make(char key[KEY_SIZE], struct error *err);
+/* Whether a key is one that a header can repeat: 1 to KEY_MOST visible ASCII characters. */
+bool key_is_good(const char *key);
 /* Performs a request that changes something. It carries a key (its own, or one made for it), with
  * which it is repeated while answers are lost, within timeout_ms in all. `doubt` ends the message
  * where no answer came in time: it says what may have been done. */

@@ -48,6 +48,13 @@ cJSON *body_json(struct exchange *exchange);
 /* Returns whether the query holds nothing but these names (the rest NULL), each once and with a
  * value; false after a 422. */
 bool query_check(struct exchange *exchange, const char *const names[QUERY_NAMES_MOST]);
+/* Answers 422 with one fault, that of ?name. */
+__attribute__((format(printf, 3, 4))) void query_refuse(struct exchange *exchange, const char *name,
+                                                        const char *format, ...);
+/* One of `count` words of the query, all of which `words` has with | between: *out is its number,
+ * left alone where it is not there. False after a 422. */
+bool query_choice(struct exchange *exchange, const char *name, const char *const *choices,
+                  int count, const char *words, int *out);
 /* A switch of the query, true or left out; false after a 422, which says what it is for. */
 bool query_true(struct exchange *exchange, const char *name, const char *purpose);
 /* A whole number of the query: left alone where it is not there. False after a 422. */

@@ -305,20 +305,17 @@ static bool read_case_number(const char *text, uint64_t *out, const char **end) 
 
 int query_difference(struct exchange *exchange, struct comparison *out, bool *asked) {
     const char *text = exchange_query(exchange, "difference"), *end;
-    struct fault_list faults = {0};
     *asked = text != NULL;
     if (text == NULL)
         return 0;
     if (exchange_query(exchange, "case") != NULL)
-        fault_add(&faults, "?case", "not together with difference");
+        query_refuse(exchange, "case", "not together with difference");
     else if (!read_case_number(text, &out->minuend, &end) || *end != ',' ||
              !read_case_number(end + 1, &out->subtrahend, &end) || *end != '\0')
-        fault_add(&faults, "?difference", "%.40s is not two cases, as 1,0", text);
-    bool faulty = faults.count > 0;
-    if (faulty)
-        answer_problem(exchange, 422, "the query is not valid", &faults);
-    fault_list_clear(&faults);
-    return faulty ? ERROR_INPUT : 0;
+        query_refuse(exchange, "difference", "%.40s is not two cases, as 1,0", text);
+    else
+        return 0;
+    return ERROR_INPUT;
 }
 
 /* Likewise with a difference. */
