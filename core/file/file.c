@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -23,7 +24,7 @@ int file_close(FILE *file, const char *path, int status, struct error *err) {
 int folder_make(const char *path, struct error *err) {
     return mkdir(path, 0777) == 0 || errno == EEXIST
                ? 0
-               : error_set(err, ERROR_SYSTEM, "cannot make %s: %s", path, strerror(errno));
+               : error_set(err, ERROR_SYSTEM, "cannot make folder %s: %s", path, strerror(errno));
 }
 
 void file_sync_name(const char *path) {
@@ -57,5 +58,5 @@ char *file_pattern(const char *path, const char *ending) {
 
 bool file_ends_in(const char *path, const char *ending) {
     size_t length = strlen(path), last = strlen(ending);
-    return length > last && strcmp(path + length - last, ending) == 0;
+    return length > last && strcasecmp(path + length - last, ending) == 0;
 }

@@ -19,7 +19,7 @@ void file_sync_name(const char *path);
 /* Returns the glob(7) pattern of paths that begin with this one, whose wildcards are escaped, and
  * go on as the ending says, itself a pattern; NULL when out of memory. The caller frees it. */
 char *file_pattern(const char *path, const char *ending);
-/* Returns whether there is a name before this ending. */
+/* Returns whether there is a name before this ending, in letters of either case. */
 bool file_ends_in(const char *path, const char *ending);
 
 #endif

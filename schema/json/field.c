@@ -1,6 +1,7 @@
 #include "schema/json/field.h"
-
+#include "schema/json/json.h"
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* This is the largest integer that every JSON reader keeps exactly. */
@@ -40,8 +41,12 @@ cJSON *fields_finish(cJSON *value, bool complete) {
     return NULL;
 }
 
-int field_fault(const char *key, const char *what, struct error *err) {
-    return error_set(err, ERROR_INPUT, "\"%s\" must be %s", key, what);
+int field_fault(const cJSON *value, const char *key, const char *what, struct error *err) {
+    char text[48];
+    if (value == NULL)
+        return error_set(err, ERROR_INPUT, "/%s: missing; it is %s", key, what);
+    json_describe(value, text, sizeof text);
+    return error_set(err, ERROR_INPUT, "/%s: %s is not %s", key, text, what);
 }
 
 const cJSON *field_at(const cJSON *object, const char *key) {
@@ -55,10 +60,12 @@ double field_number(const cJSON *object, const char *key) {
 
 int field_text(const cJSON *object, const char *key, size_t size, const char **out,
                struct error *err) {
-    const char *text = cJSON_GetStringValue(field_at(object, key));
+    const cJSON *item = field_at(object, key);
+    const char *text = cJSON_GetStringValue(item);
     if (text == NULL || *text == '\0' || strlen(text) >= size) {
-        return error_set(err, ERROR_INPUT, "\"%s\" must be a string of 1 to %zu bytes", key,
-                         size - 1);
+        char what[48];
+        snprintf(what, sizeof what, "a string of 1 to %zu bytes", size - 1);
+        return field_fault(item, key, what, err);
     }
     *out = text;
     return 0;
@@ -76,7 +83,7 @@ int field_count(const cJSON *object, const char *key, uint64_t *out, struct erro
     const cJSON *item = field_at(object, key);
     if (!cJSON_IsNumber(item) || !(item->valuedouble >= 0 && item->valuedouble <= INTEGER_MOST) ||
         item->valuedouble != floor(item->valuedouble))
-        return field_fault(key, "an integer of 0 to 2^53", err);
+        return field_fault(item, key, "an integer of 0 to 2^53", err);
     *out = (uint64_t)item->valuedouble;
     return 0;
 }
@@ -84,7 +91,7 @@ int field_count(const cJSON *object, const char *key, uint64_t *out, struct erro
 int field_seconds(const cJSON *object, const char *key, double *out, struct error *err) {
     const cJSON *item = field_at(object, key);
     if (!cJSON_IsNumber(item) || !(item->valuedouble >= 0 && item->valuedouble <= 1e12))
-        return field_fault(key, "a number of seconds", err);
+        return field_fault(item, key, "a number of seconds, 0 or more", err);
     *out = item->valuedouble;
     return 0;
 }
@@ -92,7 +99,7 @@ int field_seconds(const cJSON *object, const char *key, double *out, struct erro
 int field_bool(const cJSON *object, const char *key, bool *out, struct error *err) {
     const cJSON *item = field_at(object, key);
     if (item != NULL && !cJSON_IsBool(item))
-        return field_fault(key, "true or false", err);
+        return field_fault(item, key, "true or false", err);
     *out = cJSON_IsTrue(item);
     return 0;
 }

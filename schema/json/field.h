@@ -24,9 +24,9 @@ cJSON *fields_finish(cJSON *value, bool complete);
 const cJSON *field_at(const cJSON *object, const char *key);
 /* Returns NaN where the member is absent or no number. */
 double field_number(const cJSON *object, const char *key);
-/* Sets "KEY must be WHAT" and returns ERROR_INPUT, as each reader below does for a value that is
- * not as described. */
-int field_fault(const char *key, const char *what, struct error *err);
+/* Sets "/KEY: VALUE is not WHAT", or that it is missing where value is NULL, and returns
+ * ERROR_INPUT, as each reader below does for a value that is not as described. */
+int field_fault(const cJSON *value, const char *key, const char *what, struct error *err);
 /* Reads a non-empty string of less than `size` bytes; *out borrows it. */
 int field_text(const cJSON *object, const char *key, size_t size, const char **out,
                struct error *err);
@@ -34,6 +34,7 @@ int field_text(const cJSON *object, const char *key, size_t size, const char **o
 int field_copy(const cJSON *object, const char *key, size_t size, char *out, struct error *err);
 /* Reads an integer of 0 to 2^53. */
 int field_count(const cJSON *object, const char *key, uint64_t *out, struct error *err);
+/* Reads a number of 0 to 10^12. */
 int field_seconds(const cJSON *object, const char *key, double *out, struct error *err);
 /* Reads true or false; false where it is absent. */
 int field_bool(const cJSON *object, const char *key, bool *out, struct error *err);

@@ -1,6 +1,5 @@
 #include "schema/json/json.h"
 #include "core/file/text_mark.h"
-#include "schema/json/field.h"
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
@@ -394,7 +393,14 @@ cJSON *json_number(double value) {
 cJSON *json_numbers(const double *values, size_t n) {
     cJSON *array = cJSON_CreateArray();
     bool complete = array != NULL;
-    for (size_t i = 0; complete && i < n; i++)
-        complete = list_put(array, json_number(values[i]));
-    return fields_finish(array, complete);
+    for (size_t i = 0; complete && i < n; i++) {
+        cJSON *number = json_number(values[i]);
+        complete = number != NULL && cJSON_AddItemToArray(array, number);
+        if (!complete)
+            cJSON_Delete(number);
+    }
+    if (complete)
+        return array;
+    cJSON_Delete(array);
+    return NULL;
 }

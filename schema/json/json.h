@@ -30,6 +30,8 @@ char *json_print_pretty(const cJSON *value);
 void json_print_number(FILE *file, double number);
 /* Prints the string in quotes, escaped; false when out of memory. */
 bool json_print_text(FILE *file, const char *text);
+/* Writes the value as it was given for messages, cut to fit. */
+void json_describe(const cJSON *value, char *text, size_t size);
 /* Returns the value at an RFC 6901 pointer, or NULL. */
 const cJSON *json_at(const cJSON *root, const char *pointer);
 /* Returns the number at a pointer, or `otherwise` where there is none. */

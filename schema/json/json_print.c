@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Counts and numbers of jobs have 15 digits or fewer, which need no search. */
 static bool is_short_integer(double number) {
@@ -129,4 +130,12 @@ char *json_print(const cJSON *value) {
 
 char *json_print_pretty(const cJSON *value) {
     return print(value, 0, "\n");
+}
+
+void json_describe(const cJSON *value, char *text, size_t size) {
+    char *printed = json_print(value);
+    snprintf(text, size, "%s", printed != NULL ? printed : "a value");
+    if (printed != NULL && strlen(printed) >= size)
+        memcpy(text + size - 4, "...", 4);
+    free(printed);
 }

@@ -293,8 +293,8 @@ int study_line(struct store *store, int64_t study, const struct at_work *at_work
 
 int store_share(struct store *store, const char *owner, double weight, struct error *err) {
     if (!(weight > 0) || isinf(weight) || strlen(owner) >= OWNER_SIZE)
-        return error_set(err, ERROR_INPUT, "%.60s=%g is no share: a weight is above 0", owner,
-                         weight);
+        return error_set(err, ERROR_INPUT, "%.60s=%g is no share: a weight is above 0, finite",
+                         owner, weight);
     int status = change_begin(store, err);
     if (status != 0)
         return status;

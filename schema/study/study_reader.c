@@ -111,7 +111,7 @@ static void check_names(const struct study_kind *kind, const cJSON *object, cons
 static void check_inside(const struct study_kind *kind, const cJSON *member, const char *pointer,
                          struct fault_list *faults) {
     char text[48];
-    value_describe(member, text, sizeof text);
+    json_describe(member, text, sizeof text);
     if (is_unread(kind, member, pointer))
         fault_add(faults, pointer,
                   "the file is not fitted: commands read it where they run, and rugo check --study "

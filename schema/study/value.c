@@ -5,14 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-void value_describe(const cJSON *value, char *text, size_t size) {
-    char *printed = json_print(value);
-    snprintf(text, size, "%s", printed != NULL ? printed : "a value");
-    if (printed != NULL && strlen(printed) >= size)
-        memcpy(text + size - 4, "...", 4);
-    free(printed);
-}
-
 /* Prints the fewest digits, of 15 or more, that read back to the bound. */
 static void bound_print(double bound, char *text, size_t size) {
     if (isinf(bound)) {
@@ -46,7 +38,7 @@ static bool in_range(const struct parameter *parameter, double value) {
 static bool is_not(const cJSON *value, const char *pointer, struct fault_list *faults,
                    const char *what) {
     char text[48];
-    value_describe(value, text, sizeof text);
+    json_describe(value, text, sizeof text);
     fault_add(faults, pointer, "%s is not %s", text, what);
     return false;
 }

@@ -15,8 +15,6 @@ bool value_check(const struct parameter *parameter, const cJSON *value, const ch
                  struct fault_list *faults);
 /* Returns whether value is a list of values (a sweep) of the parameter. */
 bool value_is_list(const struct parameter *parameter, const cJSON *value);
-/* Writes the value as it was given for messages, cut to fit. */
-void value_describe(const cJSON *value, char *text, size_t size);
 /* Adds the fault that a required value is missing. */
 void value_missing(const struct parameter *parameter, struct fault_list *faults);
 /* Returns the default of a row, which the caller deletes; NULL where it has none, or out of

@@ -241,10 +241,10 @@ void help_commands(FILE *file) {
 struct options {
     int markdown;
 };
-static const struct option_row OPTIONS[] = {{"format", 0, OPTION_CHOICE, 0, 0,
-                                             offsetof(struct options, markdown), "text|markdown",
-                                             "text", "how the topic study is written"},
-                                            {0}};
+static const struct option_row OPTIONS[] = {
+    {"format", 0, OPTION_CHOICE, 0, 0, offsetof(struct options, markdown), "text|markdown", "text",
+     "how the topic study is written; markdown without PATH"},
+    {0}};
 
 static int help_study(const char *path, bool markdown) {
     struct error err = {0};
@@ -275,8 +275,11 @@ static int run(const void *values, const char *const *arguments) {
     const char *name = arguments[0], *path = arguments[1];
     int words = 1;
     const struct command *command = name != NULL ? command_find_words(name, path, &words) : NULL;
-    if (name != NULL && strcmp(name, "study") == 0)
-        return help_study(path, options->markdown != 0);
+    bool study = name != NULL && strcmp(name, "study") == 0, markdown = options->markdown != 0;
+    if (markdown && !(study && path == NULL))
+        return usage_error("help", "--format markdown is of the topic study, without PATH");
+    if (study)
+        return help_study(path, markdown);
     if (path != NULL && words == 1)
         return usage_error("help", "unexpected argument %.60s", path);
     if (command == NULL && name != NULL)

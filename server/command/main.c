@@ -57,6 +57,14 @@ static int unknown_command(const char *name) {
     return EXIT_USAGE;
 }
 
+static bool is_version(const char *word) {
+    static const char *const WORDS[] = {"--version", "version", "-V", "-v"};
+    for (size_t w = 0; w < sizeof WORDS / sizeof *WORDS; w++)
+        if (strcmp(word, WORDS[w]) == 0)
+            return true;
+    return false;
+}
+
 static int dispatch(int argc, char **argv) {
     if (argc < 2) {
         help_commands(stderr);
@@ -66,7 +74,7 @@ static int dispatch(int argc, char **argv) {
         help_commands(stdout);
         return EXIT_DONE;
     }
-    if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "version") == 0) {
+    if (is_version(argv[1])) {
         char program[PROGRAM_SIZE];
         program_write(program);
         printf("rugo %s\n", program);

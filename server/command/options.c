@@ -224,11 +224,27 @@ void options_clear(const struct option_row *rows, void *values) {
 
 /* --- names --- */
 
+/* What an option of one command is called in another. */
+static const struct {
+    const char *typed, *name;
+} ELSEWHERE[] = {{"threads", "workers"}, {"workers", "threads"}, {"output", "out"}};
+
+/* Returns the name that this table has for an option of another one; else what was typed. */
+static const char *name_here(const struct option_row *rows, const char *typed) {
+    for (; rows->name != NULL; rows++)
+        for (size_t n = 0; n < sizeof ELSEWHERE / sizeof *ELSEWHERE; n++)
+            if (strcmp(ELSEWHERE[n].typed, typed) == 0 &&
+                strcmp(ELSEWHERE[n].name, rows->name) == 0)
+                return rows->name;
+    return typed;
+}
+
 static int unknown_option(const char *command, const struct option_row *rows, const char *given) {
     char typed[64];
-    struct near_name near = {.typed = typed + 2};
     snprintf(typed, sizeof typed, "%.*s", (int)strcspn(given, "="), given);
-    for (; rows->name != NULL && strncmp(typed, "--", 2) == 0; rows++)
+    const bool is_long = strncmp(typed, "--", 2) == 0;
+    struct near_name near = {.typed = is_long ? name_here(rows, typed + 2) : typed};
+    for (; rows->name != NULL && is_long; rows++)
         near_name_see(&near, rows->name);
     if (near.name != NULL)
         return usage_error(command, "unknown option %.60s (did you mean --%s?)", typed, near.name);

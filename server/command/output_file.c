@@ -39,7 +39,7 @@ static int write_drawn(const char *path, const char *svg, size_t size, FILE *fil
     if (output_file_is_png(path))
         return rasterise(svg, size, file, err);
     if (!file_ends_in(path, ".svg"))
-        return print_as(path + strlen(path) - strlen("pdf"), svg, size, file, err);
+        return print_as(file_ends_in(path, ".pdf") ? "pdf" : "eps", svg, size, file, err);
     (void)fwrite(svg, 1, size, file); /* the file remembers a failure */
     return 0;
 }

@@ -115,13 +115,20 @@ static ssize_t end_at_once(void *context, uint64_t position, char *buffer, size_
 
 /* Headers alone, without a length that is not known. Of chunks the library would send the end, and
  * so it is asked to send none. */
-static void answer_head(struct exchange *exchange, const char *type) {
+static void answer_head(struct exchange *exchange, unsigned status, const char *type) {
     enum { PART = 1024 };
     struct MHD_Response *response =
         MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, PART, end_at_once, NULL, NULL);
     if (response != NULL)
         MHD_set_response_options(response, MHD_RF_HTTP_VERSION_1_0_ONLY, MHD_RO_END);
-    finish(exchange, 200, type, response);
+    finish(exchange, status, type, response);
+}
+
+void answer_unchanged(struct exchange *exchange) {
+    if (exchange->response != NULL)
+        MHD_destroy_response(exchange->response);
+    answer_head(exchange, 304, NULL);
+    tell_coding(exchange, false);
 }
 
 void answer_stream(struct exchange *exchange, const char *type, uint64_t size,
@@ -130,7 +137,7 @@ void answer_stream(struct exchange *exchange, const char *type, uint64_t size,
     enum { PART = 32768 };
     if (size == MHD_SIZE_UNKNOWN && strcmp(exchange->method, "HEAD") == 0) {
         free_context(context);
-        answer_head(exchange, type);
+        answer_head(exchange, 200, type);
         return;
     }
     finish(exchange, 200, type,

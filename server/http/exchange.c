@@ -4,6 +4,7 @@
 #include <arpa/inet.h>
 #include <poll.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -38,10 +39,37 @@ const char *exchange_query(const struct exchange *exchange, const char *name) {
     return MHD_lookup_connection_value(exchange->connection, MHD_GET_ARGUMENT_KIND, name);
 }
 
+/* Those of the lists that the server reads. */
+static const char *const LIST_NAMES[HEADER_LISTS] = {"Accept", "Accept-Encoding", "If-None-Match",
+                                                     "Prefer"};
+
+static size_t list_of(const char *name) {
+    size_t l = 0;
+    while (l < HEADER_LISTS && strcasecmp(LIST_NAMES[l], name) != 0)
+        l++;
+    return l;
+}
+
+/* For want of memory a list ends early. */
+void exchange_join(struct exchange *exchange, const char *name, const char *value) {
+    size_t l = list_of(name);
+    const char *before = l < HEADER_LISTS ? exchange_header(exchange, name) : NULL;
+    char *both;
+    if (before == NULL || value == NULL || value == before)
+        return;
+    if (asprintf(&both, "%s, %s", before, value) < 0)
+        return;
+    free(exchange->lists[l]);
+    exchange->lists[l] = both;
+}
+
 /* A connection of the reserve is not kept waiting, as a claim may ask for. */
 const char *exchange_header(const struct exchange *exchange, const char *name) {
     if (connection_is_reserved(exchange->peer) && strcasecmp(name, "Prefer") == 0)
         return NULL;
+    size_t l = list_of(name);
+    if (l < HEADER_LISTS && exchange->lists[l] != NULL)
+        return exchange->lists[l];
     return MHD_lookup_connection_value(exchange->connection, MHD_HEADER_KIND, name);
 }
 

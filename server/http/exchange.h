@@ -8,6 +8,11 @@
 #include <cjson/cJSON.h>
 #include <microhttpd.h>
 
+enum {
+    HOST_SIZE = 272, /* a name of DNS has up to 253 characters */
+    HEADER_LISTS = 4 /* headers that may come as several lines (exchange.c) */
+};
+
 /* Routes fill the answer by the functions below, once. */
 struct exchange {
     struct service *service;
@@ -21,7 +26,9 @@ struct exchange {
     bool has_file;               /* it is a file, which is counted among those (service.h) */
     bool needs_host;             /* HTTP/1.1, where a request names its server */
     bool bad_target;             /* it asks for what has a space or a NUL, not escaped */
-    bool slashed_target;         /* below the studies it has an escaped slash */
+    bool slashed_target;         /* its path has an escaped slash */
+    char host[HOST_SIZE];        /* that the target names, with its port; "": that of the header */
+    char *lists[HEADER_LISTS];   /* owned: the lines of a list as one; NULL: there is one at most */
     int64_t start_ns;
 
     /* Who asks: the name of the token, "" without; and whether it may change the studies of all. */
@@ -34,7 +41,10 @@ struct exchange {
 };
 
 const char *exchange_query(const struct exchange *exchange, const char *name); /* NULL if absent */
+/* NULL if absent. Of a list (RFC 9110, 5.3) that came as several lines it is all of them. */
 const char *exchange_header(const struct exchange *exchange, const char *name);
+/* Takes a line of the head: lines of a list are joined. To be called for each of them, once. */
+void exchange_join(struct exchange *exchange, const char *name, const char *value);
 
 int exchange_socket(const struct exchange *exchange);
 /* Work for an answer asks this from time to time; context is the exchange. Not 0 once the peer has
@@ -59,6 +69,9 @@ void answer_bytes(struct exchange *exchange, const char *type, char *bytes, size
 /* Answers with static data that outlives the server. */
 void answer_static(struct exchange *exchange, const char *type, const char *data, size_t size);
 void answer_empty(struct exchange *exchange, unsigned status);
+/* Answers 304, in place of an answer that may be made already. It has no length, which would have
+ * to be that of the 200 (RFC 9110, 8.6), and as that says that it might be in gzip. */
+void answer_unchanged(struct exchange *exchange);
 /* Adds a header to the answer. */
 void answer_header(struct exchange *exchange, const char *name, const char *value);
 /* Makes well-formed UTF-8 of a text, which JSON must be: messages quote what a peer sent as it

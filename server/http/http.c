@@ -132,8 +132,25 @@ static struct connection *peer_of(struct MHD_Connection *connection) {
     return info != NULL ? info->socket_context : NULL;
 }
 
+/* A target may be in absolute form, with scheme and host before the path (RFC 9112, 3.2.2): the
+ * host is the one that is asked then, whatever the header says. One too long to be a name is cut.
+ */
+static void read_target(struct exchange *exchange, const char *target) {
+    static const char *const SCHEMES[] = {"http://", "https://"};
+    const char *host = NULL;
+    exchange->path = target;
+    for (size_t s = 0; s < sizeof SCHEMES / sizeof *SCHEMES; s++)
+        if (strncasecmp(target, SCHEMES[s], strlen(SCHEMES[s])) == 0)
+            host = target + strlen(SCHEMES[s]);
+    if (host == NULL || *host == '\0' || *host == '/')
+        return;
+    size_t length = strcspn(host, "/");
+    snprintf(exchange->host, sizeof exchange->host, "%.*s", (int)length, host);
+    exchange->path = host[length] != '\0' ? host + length : "/";
+}
+
 static struct exchange *exchange_create(struct http *http, struct MHD_Connection *connection,
-                                        const char *method, const char *path) {
+                                        const char *method, const char *target) {
     struct connection *peer = peer_of(connection);
     struct exchange *exchange = peer != NULL ? calloc(1, sizeof *exchange) : NULL;
     if (exchange == NULL)
@@ -143,7 +160,7 @@ static struct exchange *exchange_create(struct http *http, struct MHD_Connection
     exchange->http = http;
     exchange->connection = connection;
     exchange->method = method;
-    exchange->path = path;
+    read_target(exchange, target);
     exchange->start_ns = now_ns();
     exchange->body_most = BODY_MOST;
     exchange_renew(exchange);
@@ -181,7 +198,8 @@ static void note_lease(struct exchange *exchange) {
 }
 
 /* Stand in the slot of a request, before its headers are read, where its target is none, and where
- * it names a study with an escaped slash, which would be several segments once it is read. */
+ * its path has an escaped slash, which would be two segments once it is read. What else is escaped
+ * there, as a letter of "studies", hides nothing from who looks for that alone. */
 static char bad_target, slashed_target;
 
 /* The exchange of a request; NULL before it has one. */
@@ -189,11 +207,9 @@ static struct exchange *exchange_of(void *slot) {
     return slot != &bad_target && slot != &slashed_target ? slot : NULL;
 }
 
-static bool names_slash(const char *target) {
-    static const char STUDIES[] = "/v1/studies/";
+static bool has_escaped_slash(const char *target) {
     const char *slash = strcasestr(target, "%2F");
-    return slash != NULL && strncmp(target, STUDIES, sizeof STUDIES - 1) == 0 &&
-           (size_t)(slash - target) < strcspn(target, "?");
+    return slash != NULL && (size_t)(slash - target) < strcspn(target, "?");
 }
 
 /* The library would refuse a space in the target, and a request without a Host, too; but of some
@@ -205,7 +221,7 @@ static void *on_target(void *context, const char *target, struct MHD_Connection 
         strchr(target, ' ') == NULL && strncmp(target + strlen(target) + 1, "HTTP/", 5) == 0;
     if (!good)
         return &bad_target;
-    return names_slash(target) ? &slashed_target : NULL;
+    return has_escaped_slash(target) ? &slashed_target : NULL;
 }
 
 static void on_completed(void *context, struct MHD_Connection *connection, void **slot,
@@ -226,6 +242,8 @@ static void on_completed(void *context, struct MHD_Connection *connection, void 
     claim_settle(exchange, code == MHD_REQUEST_TERMINATED_COMPLETED_OK);
     note_lease(exchange);
     connection_set(http->connections, exchange->peer, CONNECTION_IDLE);
+    for (size_t l = 0; l < HEADER_LISTS; l++)
+        free(exchange->lists[l]);
     free(exchange->body);
     free(exchange);
     *slot = NULL;
@@ -275,9 +293,9 @@ static bool keep_body(struct exchange *exchange, const char *data, size_t size) 
 }
 
 static enum MHD_Result begin(struct http *http, struct MHD_Connection *connection,
-                             const char *method, const char *path, const char *version,
+                             const char *method, const char *target, const char *version,
                              void **slot) {
-    struct exchange *exchange = exchange_create(http, connection, method, path);
+    struct exchange *exchange = exchange_create(http, connection, method, target);
     bool is_bad = *slot == &bad_target, is_slashed = *slot == &slashed_target;
     *slot = exchange;
     if (exchange == NULL)
@@ -293,11 +311,11 @@ static enum MHD_Result begin(struct http *http, struct MHD_Connection *connectio
 }
 
 static enum MHD_Result on_request(void *context, struct MHD_Connection *connection,
-                                  const char *path, const char *method, const char *version,
+                                  const char *target, const char *method, const char *version,
                                   const char *data, size_t *size, void **slot) {
     struct exchange *exchange = exchange_of(*slot);
     if (exchange == NULL)
-        return begin(context, connection, method, path, version, slot);
+        return begin(context, connection, method, target, version, slot);
     if (*size != 0) {
         /* A chunked body past the cap can only be cut. */
         bool kept = keep_body(exchange, data, *size);

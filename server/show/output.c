@@ -1,4 +1,5 @@
 #include "server/show/output.h"
+#include "core/file/file.h"
 #include "schema/result/csv.h"
 #include "schema/result/result_json.h"
 #include "server/show/plot/plot.h"
@@ -149,23 +150,29 @@ static int write_plots(const struct study_result *study, const char *folder, str
     return 0;
 }
 
-int output_prepare(const char *folder, struct error *err) {
+int output_check(const char *folder, struct error *err) {
     char path[PATH_SIZE];
-    if (mkdir(folder, 0777) != 0 && errno != EEXIST)
-        return error_set(err, ERROR_SYSTEM, "cannot make folder %s: %s", folder, strerror(errno));
+    int status = 0;
     if (snprintf(path, sizeof path, "%s/.rugo-XXXXXX", folder) >= (int)sizeof path)
         return error_set(err, ERROR_INPUT, "the path %.100s... is too long", folder);
+    bool made = mkdir(folder, 0777) == 0;
+    if (!made && errno != EEXIST)
+        return error_set(err, ERROR_SYSTEM, "cannot make folder %s: %s", folder, strerror(errno));
     int file = mkstemp(path);
     if (file < 0)
-        return error_set(err, ERROR_SYSTEM, "folder %s: no file can be made in it: %s", folder,
-                         strerror(errno));
-    close(file);
-    (void)unlink(path);
-    return 0;
+        status = error_set(err, ERROR_SYSTEM, "folder %s: no file can be made in it: %s", folder,
+                           strerror(errno));
+    else {
+        close(file);
+        (void)unlink(path);
+    }
+    if (made)
+        (void)rmdir(folder);
+    return status;
 }
 
 int output_write(const struct study_result *study, const char *folder, struct error *err) {
-    int status = output_prepare(folder, err);
+    int status = folder_make(folder, err);
     if (status == 0)
         status = write_curves(study, folder, "curves.json", print_json, err);
     if (status == 0)

@@ -5,10 +5,11 @@
 
 #include "schema/result/result.h"
 
-/* Makes the folder if it is missing, and checks that files can be made in it: what takes hours to
- * compute must not find that out at its end. */
-int output_prepare(const char *folder, struct error *err);
-/* Prepares the folder; replaces files of an earlier run. */
+/* Checks that files can be made in the folder, and that it can be made if it is missing: what takes
+ * hours to compute must not find that out at its end. Leaves nothing: a command that is refused
+ * makes no folder. */
+int output_check(const char *folder, struct error *err);
+/* Makes the folder if it is missing; replaces files of an earlier run. */
 int output_write(const struct study_result *study, const char *folder, struct error *err);
 
 #endif

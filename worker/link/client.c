@@ -31,9 +31,17 @@ struct client_url {
     bool loopback; /* its host is this machine */
 };
 
+/* Whether it is HOST:PORT alone, as people type it; a path or the name of a file is none. */
+static bool lacks_scheme(const char *url) {
+    const char *colon = strrchr(url, ':');
+    return strstr(url, "://") == NULL && colon != NULL && colon[1] != '\0' &&
+           strspn(colon + 1, "0123456789") == strlen(colon + 1);
+}
+
 /* ERROR_INPUT where it is not http(s)://HOST:PORT. */
 static int client_url_read(const char *url, struct client_url *out, struct error *err) {
     char *scheme = NULL, *host = NULL, *path = NULL, *user = NULL, *query = NULL;
+    char *fragment = NULL;
     CURLU *parts = curl_url();
     if (parts == NULL)
         return error_memory(err, 1, "a URL");
@@ -43,6 +51,7 @@ static int client_url_read(const char *url, struct client_url *out, struct error
                 curl_url_get(parts, CURLUPART_PATH, &path, 0) == CURLUE_OK &&
                 curl_url_get(parts, CURLUPART_USER, &user, 0) == CURLUE_NO_USER &&
                 curl_url_get(parts, CURLUPART_QUERY, &query, 0) == CURLUE_NO_QUERY &&
+                curl_url_get(parts, CURLUPART_FRAGMENT, &fragment, 0) == CURLUE_NO_FRAGMENT &&
                 (strcmp(scheme, "http") == 0 || strcmp(scheme, "https") == 0) &&
                 strcmp(path, "/") == 0;
     out->tls = good && strcmp(scheme, "https") == 0;
@@ -52,10 +61,13 @@ static int client_url_read(const char *url, struct client_url *out, struct error
     curl_free(path);
     curl_free(user);
     curl_free(query);
+    curl_free(fragment);
     curl_url_cleanup(parts);
     return good ? 0
                 : error_set(err, ERROR_INPUT,
-                            "the server's URL must be http(s)://HOST:PORT, without user or path");
+                            "the server's URL %.200s is not http(s)://HOST:PORT, without user or "
+                            "path; HOST:PORT alone is http://",
+                            url);
 }
 
 /* --- fingerprints --- */
@@ -220,11 +232,9 @@ static int client_fill(struct client *client, const char *url, const char *token
     return client_options(client, trust, where, err);
 }
 
-int client_create(struct client **out, const char *url, const char *token,
+static int create(struct client **out, const char *url, const char *token,
                   const struct client_trust *trust, struct error *err) {
-    static const struct client_trust NOBODY_ELSE = {0};
     struct client_url where = {0};
-    trust = trust != NULL ? trust : &NOBODY_ELSE;
     int status = client_url_read(url, &where, err);
     if (status != 0)
         return status;
@@ -245,6 +255,18 @@ int client_create(struct client **out, const char *url, const char *token,
     }
     *out = client;
     return 0;
+}
+
+int client_create(struct client **out, const char *url, const char *token,
+                  const struct client_trust *trust, struct error *err) {
+    static const struct client_trust NOBODY_ELSE = {0};
+    char *whole = NULL;
+    if (lacks_scheme(url) && asprintf(&whole, "http://%s", url) < 0)
+        return error_memory(err, strlen(url), "a URL");
+    int status =
+        create(out, whole != NULL ? whole : url, token, trust != NULL ? trust : &NOBODY_ELSE, err);
+    free(whole);
+    return status;
 }
 
 void client_destroy(struct client **client) {
@@ -577,6 +599,13 @@ enum {
 
 int key_make(char key[KEY_SIZE], struct error *err) {
     return hex_random(key, KEY_SIZE - 1, err);
+}
+
+bool key_is_good(const char *key) {
+    size_t length = 0;
+    while (key[length] > ' ' && key[length] < 0x7f)
+        length++;
+    return length != 0 && length <= KEY_MOST && key[length] == '\0';
 }
 
 static void pause_ms(int64_t milliseconds) {

@@ -6,6 +6,7 @@
 #include "schema/study/fault.h"
 #include "worker/link/client_trust.h"
 #include <cjson/cJSON.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 
@@ -16,8 +17,9 @@ void client_global_cleanup(void);
 
 struct client;
 
-/* Makes a client. url is http(s)://host:port without path; token may be NULL; trust NULL trusts the
- * system's authorities alone. ERROR_INPUT where the token would cross a network in clear text. */
+/* Makes a client. url is http(s)://host:port without path, or host:port alone, which is http://;
+ * token may be NULL; trust NULL trusts the system's authorities alone. ERROR_INPUT where the token
+ * would cross a network in clear text. */
 int client_create(struct client **out, const char *url, const char *token,
                   const struct client_trust *trust, struct error *err);
 void client_destroy(struct client **client);
@@ -42,6 +44,8 @@ int client_json(struct client *client, const struct request *request, cJSON **ou
 enum { KEY_SIZE = 33, KEY_MOST = 200 };
 /* Writes a unique key of 128 random bits. */
 int key_make(char key[KEY_SIZE], struct error *err);
+/* Whether a key is one that a header can repeat: 1 to KEY_MOST visible ASCII characters. */
+bool key_is_good(const char *key);
 /* Performs a request that changes something. It carries a key (its own, or one made for it), with
  * which it is repeated while answers are lost, within timeout_ms in all. `doubt` ends the message
  * where no answer came in time: it says what may have been done. */

@@ -30,7 +30,8 @@ static int read_seed(const cJSON *object, uint64_t *out, struct error *err) {
     errno = 0;
     unsigned long long seed = digits ? strtoull(text, NULL, 10) : 0;
     if (!digits || errno != 0)
-        return field_fault("seed", "a decimal string of at most 2^64 - 1", err);
+        return field_fault(field_at(object, "seed"), "seed", "a decimal string of at most 2^64 - 1",
+                           err);
     *out = seed;
     return 0;
 }
@@ -66,12 +67,12 @@ cJSON *wire_claim(const struct claim *claim) {
 /* Takes each kind once, however often it is named. */
 static int read_kinds(const cJSON *kinds, const char **out, struct error *err) {
     if (!cJSON_IsArray(kinds) || cJSON_GetArraySize(kinds) > WIRE_KINDS_MOST)
-        return field_fault("kinds", "an array of at most 32 names", err);
+        return field_fault(kinds, "kinds", "an array of at most 32 names", err);
     size_t count = 0;
     const cJSON *kind;
     cJSON_ArrayForEach(kind, kinds) {
         if (!cJSON_IsString(kind))
-            return field_fault("kinds", "an array of at most 32 names", err);
+            return field_fault(kinds, "kinds", "an array of at most 32 names", err);
         size_t same = 0;
         while (same < count && strcmp(out[same], kind->valuestring) != 0)
             same++;
@@ -86,14 +87,14 @@ static int read_kinds(const cJSON *kinds, const char **out, struct error *err) {
 static int read_forms(const cJSON *forms, const char **kinds, char *others, struct error *err) {
     static const char WHAT[] = "an object of whole numbers by kinds";
     if (!cJSON_IsObject(forms))
-        return field_fault("forms", WHAT, err);
+        return field_fault(forms, "forms", WHAT, err);
     size_t kept = 0, used = 0;
     for (size_t n = 0; kinds[n] != NULL; n++) {
         const struct job_kind *kind = kind_find(kinds[n]);
         uint64_t form = 0;
         bool named = kind != NULL && field_at(forms, kinds[n]) != NULL;
         if (named && field_count(forms, kinds[n], &form, err) != 0)
-            return field_fault("forms", WHAT, err);
+            return field_fault(forms, "forms", WHAT, err);
         if (!named || form == kind->format_version)
             kinds[kept++] = kinds[n];
         else if (used < WIRE_FORMS_SIZE)
@@ -109,9 +110,9 @@ static int read_host(const cJSON *host, const char **out, struct error *err) {
     enum { HOST_MOST = 255 };
     const char *name = host != NULL ? cJSON_GetStringValue(host) : "";
     if (name == NULL || strlen(name) > HOST_MOST)
-        return field_fault("host", "a string of at most 255 bytes", err);
+        return field_fault(host, "host", "a string of at most 255 bytes", err);
     if (!worker_name_is_plain(name))
-        return field_fault("host", "a text without control characters", err);
+        return field_fault(host, "host", "a text without control characters", err);
     *out = name;
     return 0;
 }
@@ -126,13 +127,15 @@ int wire_claim_read(const cJSON *value, struct wire_claim *out, struct error *er
     bool sequence = false;
     int status = field_text(value, "worker", 256, &claim.worker, err);
     if (status == 0 && !worker_name_is_plain(claim.worker))
-        status = field_fault("worker", "a text without control characters", err);
+        status = field_fault(field_at(value, "worker"), "worker",
+                             "a text without control characters", err);
     if (status == 0)
         status = read_host(field_at(value, "host"), &claim.host, err);
     if (status == 0 && field_at(value, "program") != NULL)
         status = field_text(value, "program", PROGRAM_SIZE, &claim.program, err);
     if (status == 0 && claim.program != NULL && !worker_name_is_plain(claim.program))
-        status = field_fault("program", "a text without control characters", err);
+        status = field_fault(field_at(value, "program"), "program",
+                             "a text without control characters", err);
     if (status == 0 && field_at(value, "kinds") != NULL)
         status = read_kinds(field_at(value, "kinds"), kinds, err);
     if (status == 0 && field_at(value, "forms") != NULL)
@@ -201,7 +204,7 @@ static int read_numbers(const cJSON *value, struct claimed_job *job, struct erro
     status = status != 0 ? status : field_seconds(value, "lease_seconds", &lease, err);
     job->lease_ms = lease > 1e9 ? 1000000000000 : llround(lease * 1000.0);
     if (status == 0 && job->count == 0)
-        status = field_fault("count", "at least 1", err);
+        status = field_fault(field_at(value, "count"), "count", "at least 1", err);
     return status;
 }
 
@@ -213,7 +216,7 @@ static int wire_job_read(cJSON *value, struct claimed_job *out, struct error *er
     status = status != 0 ? status : field_copy(value, "token", TOKEN_SIZE, job.token, err);
     status = status != 0 ? status : field_text(value, "kind", 64, &kind, err);
     if (status == 0 && !cJSON_IsObject(field_at(value, "parameters")))
-        status = field_fault("parameters", "an object", err);
+        status = field_fault(field_at(value, "parameters"), "parameters", "an object", err);
     if (status != 0)
         return status;
     job.kind = strdup(kind);
@@ -228,8 +231,11 @@ int wire_jobs_read(cJSON *value, struct claimed_job *jobs, size_t most, size_t *
                    struct error *err) {
     const cJSON *array = field_at(value, "jobs");
     cJSON *item;
-    if (!cJSON_IsArray(array) || (size_t)cJSON_GetArraySize(array) > most)
-        return error_set(err, ERROR_INPUT, "\"jobs\" must be an array of at most %zu", most);
+    if (!cJSON_IsArray(array) || (size_t)cJSON_GetArraySize(array) > most) {
+        char what[48];
+        snprintf(what, sizeof what, "an array of at most %zu", most);
+        return field_fault(array, "jobs", what, err);
+    }
     size_t n = 0;
     int status = 0;
     cJSON_ArrayForEach(item, array) {
@@ -283,7 +289,7 @@ cJSON *wire_result(const char *token, const struct block_result *result) {
 static int read_names(const cJSON *scalars, struct block_result *out, struct error *err) {
     const cJSON *names = field_at(scalars, "names"), *name;
     if (!cJSON_IsArray(names))
-        return field_fault("names", "an array of strings", err);
+        return field_fault(names, "scalars/names", "an array of strings", err);
     size_t count = (size_t)cJSON_GetArraySize(names), n = 0;
     const char **texts_read = array_create(count, sizeof *texts_read);
     if (texts_read == NULL)
@@ -291,7 +297,7 @@ static int read_names(const cJSON *scalars, struct block_result *out, struct err
     out->names = texts_read;
     cJSON_ArrayForEach(name, names) {
         if (!cJSON_IsString(name))
-            return field_fault("names", "an array of strings", err);
+            return field_fault(names, "scalars/names", "an array of strings", err);
         texts_read[n++] = name->valuestring;
     }
     out->scalar_count = count;
@@ -302,20 +308,21 @@ static int read_row(const cJSON *row, double *values, size_t count, struct error
     size_t n = 0;
     const cJSON *item;
     if (!cJSON_IsArray(row))
-        return field_fault("rows", "an array of arrays", err);
+        return field_fault(row, "scalars/rows", "an array", err);
     cJSON_ArrayForEach(item, row) {
         if (n == count || !(cJSON_IsNumber(item) || cJSON_IsNull(item)))
-            return field_fault("rows", "numbers or null, one for each name", err);
+            return field_fault(row, "scalars/rows", "numbers or null, one for each name", err);
         values[n++] = cJSON_IsNull(item) ? (double)NAN : item->valuedouble;
     }
-    return n == count ? 0 : field_fault("rows", "numbers or null, one for each name", err);
+    return n == count ? 0
+                      : field_fault(row, "scalars/rows", "numbers or null, one for each name", err);
 }
 
 /* Memory follows the rows that are there, never a count that was only claimed. */
 static int read_rows(const cJSON *scalars, struct block_result *out, struct error *err) {
     const cJSON *rows = field_at(scalars, "rows"), *row;
     if (!cJSON_IsArray(rows) || (uint64_t)cJSON_GetArraySize(rows) != out->count)
-        return field_fault("rows", "an array of as many rows as \"count\"", err);
+        return field_fault(rows, "scalars/rows", "an array of as many rows as /count", err);
     size_t count = (size_t)out->count, width = out->scalar_count;
     double *values = array_create(count * (width > 0 ? width : 1), sizeof *values);
     out->scalars = values;
@@ -349,11 +356,11 @@ static int read_result(const cJSON *value, struct block_result *out, struct erro
         return status;
     const char *data = cJSON_GetStringValue(field_at(value, "data"));
     if (data == NULL)
-        return field_fault("data", "a base64 string", err);
+        return field_fault(field_at(value, "data"), "data", "a base64 string", err);
     unsigned char *decoded = NULL;
     status = base64_decode(data, &decoded, &out->size, err);
     out->data = decoded;
-    return status != 0 ? error_context(err, "\"data\"") : 0;
+    return status != 0 ? error_context(err, "/data") : 0;
 }
 
 int wire_result_read(const cJSON *value, char token[TOKEN_SIZE], struct block_result *out,
@@ -408,7 +415,7 @@ static int read_done(const cJSON *value, double *out, struct error *err) {
     int status = field_at(value, "done") != NULL ? field_count(value, "done", &whole, err) : 0;
     if (status == 0 && part != NULL &&
         !(cJSON_IsNumber(part) && part->valuedouble >= 0 && part->valuedouble < 1))
-        status = field_fault("part", "a number from 0 to below 1", err);
+        status = field_fault(part, "part", "a number from 0 to below 1", err);
     if (status == 0)
         *out = (double)whole + (part != NULL ? part->valuedouble : 0);
     return status;
@@ -422,7 +429,7 @@ int wire_report_read(const cJSON *value, struct wire_report *out, struct error *
     status = status != 0 ? status : field_bool(value, "permanent", &report.permanent, err);
     const cJSON *reason = field_at(value, "reason");
     if (status == 0 && reason != NULL && !cJSON_IsString(reason))
-        status = field_fault("reason", "a string", err);
+        status = field_fault(reason, "reason", "a string", err);
     if (status != 0)
         return status;
     if (reason != NULL)

@@ -48,7 +48,8 @@ static int verb_read(const cJSON *value, enum report_verb *out, struct error *er
             return 0;
         }
     }
-    return field_fault("verb", "heartbeat, complete, fail or release", err);
+    return field_fault(field_at(value, "verb"), "verb", "heartbeat, complete, fail or release",
+                       err);
 }
 
 static int item_read(const cJSON *value, struct wire_item *item, struct error *err) {
@@ -73,7 +74,7 @@ int wire_reports_read(const cJSON *value, struct wire_item **out, size_t *count,
     const cJSON *array = field_at(value, "reports"), *one;
     int most = cJSON_IsArray(array) ? cJSON_GetArraySize(array) : 0;
     if (most < 1 || most > WIRE_REPORTS_MOST)
-        return field_fault("reports", "an array of 1 to 1000", err);
+        return field_fault(array, "reports", "an array of 1 to 1000", err);
     struct wire_item *items = array_create((size_t)most, sizeof *items);
     if (items == NULL)
         return error_memory(err, (size_t)most * sizeof *items, "reports");
@@ -85,7 +86,7 @@ int wire_reports_read(const cJSON *value, struct wire_item **out, size_t *count,
     }
     if (status != 0) {
         wire_items_free(items, n);
-        return status;
+        return error_context(err, "/reports/%zu", n - 1);
     }
     *out = items;
     *count = n;
@@ -141,14 +142,14 @@ cJSON *wire_answers(const struct wire_item *items, size_t count) {
 int wire_answers_read(const cJSON *value, struct report *reports, size_t count, struct error *err) {
     const cJSON *array = field_at(value, "reports"), *one;
     if (!cJSON_IsArray(array) || (size_t)cJSON_GetArraySize(array) != count)
-        return field_fault("reports", "an array of an answer to each report", err);
+        return field_fault(array, "reports", "an array of an answer to each report", err);
     size_t n = 0;
     cJSON_ArrayForEach(one, array) {
         struct report *report = &reports[n++];
         const char *detail = cJSON_GetStringValue(field_at(one, "detail"));
         double status = field_number(one, "status");
         if (!(field_number(one, "job") == (double)report->job->id) || isnan(status))
-            return field_fault("reports", "answers to the reports, in their order", err);
+            return field_fault(array, "reports", "answers to the reports, in their order", err);
         report->status = code_of(status);
         if (report->status != 0)
             error_set(&report->err, ERROR_SYSTEM, "%s",

@@ -24,7 +24,8 @@ struct access {
     const char *server; /* its URL, borrowed */
 };
 
-enum { GIVEN_MOST = 255 }; /* bytes of what may stand for a study in a path */
+/* Bytes of what may stand for a study in a path: a name has up to 200 characters, of up to 4. */
+enum { GIVEN_MOST = 800 };
 
 int access_options_check(const char *command, const struct access_options *options) {
     if (options->database != NULL && options->server != NULL)

@@ -34,7 +34,7 @@ static const struct option_row OPTIONS[] = {
     {"nodes", 0, OPTION_COUNT, 1, 100000, AT(nodes), "N", "1", "pilots, one on a node each"},
     PILOT_ROWS(struct options),
     {"set", 0, OPTION_LIST, 0, 0, AT(sets), "PATH=VALUE", NULL, SET_HELP},
-    {"out", 0, OPTION_TEXT, 0, 0, AT(out.path), "DIR", NULL,
+    {"out", 'o', OPTION_TEXT, 0, 0, AT(out.path), "DIR", NULL,
      "write study.json, curves.json, curves.csv and an SVG a quantity"},
     REPLACE_ROW(AT(out.replace)),
     {"dir", 0, OPTION_TEXT, 0, 0, AT(folder), "DIR", "rugo-slurm",
@@ -239,7 +239,7 @@ static int perform(struct slurm_run *run, const char *file, struct error *err) {
 
 static int prepare(struct slurm_run *run, struct error *err) {
     const struct options *options = run->options;
-    int status = options->out.path != NULL ? output_prepare(options->out.path, err) : 0;
+    int status = options->out.path != NULL ? output_check(options->out.path, err) : 0;
     if (status == 0)
         status = slurm_folder_open(&run->folder, options->folder, err);
     if (status == 0)

@@ -77,6 +77,11 @@ static int choose_format(struct generate_order *order) {
             return usage_error("generate", "--format %.40s is not npy, csv or xyz", name);
     } else if (order->output != NULL)
         order->format = height_map_format_of(order->output);
+    if (name != NULL && !writes_surface(order))
+        return usage_error("generate",
+                           "--format %.40s is of the height map, which is written to "
+                           "-o FILE beside a picture or a mesh",
+                           name);
     if (order->format == HEIGHT_MAP_FORMATS && order->output != NULL && has_ending(order->output))
         return usage_error(
             "generate",

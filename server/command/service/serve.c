@@ -260,13 +260,19 @@ static void announce(const struct serve *serve) {
 static int set_shares(struct serve *serve, struct error *err) {
     int status = 0;
     for (const char **share = serve->options->shares; status == 0 && *share != NULL; share++) {
-        char name[OWNER_SIZE], *end = NULL;
+        char name[OWNER_SIZE + 1], *end = NULL;
         const char *equals = strchr(*share, '=');
-        double weight = equals != NULL ? strtod(equals + 1, &end) : 0;
-        if (equals == NULL || equals == *share || equals - *share >= OWNER_SIZE ||
-            end == equals + 1 || *end != '\0')
-            return error_set(err, ERROR_INPUT, "--share %.80s is not NAME=WEIGHT", *share);
-        snprintf(name, sizeof name, "%.*s", (int)(equals - *share), *share);
+        size_t length = strcspn(*share, "=");
+        const char *digits = equals != NULL ? equals + 1 : "";
+        double weight = strtod(digits, &end);
+        snprintf(name, sizeof name, "%.*s", length < sizeof name ? (int)length : OWNER_SIZE,
+                 *share);
+        if (!token_name_is_good(name) || *digits == '\0' || *end != '\0' ||
+            strspn(digits, "+-.0123456789eE") != strlen(digits))
+            return error_set(err, ERROR_INPUT,
+                             "--share %.80s is not NAME=WEIGHT, where a name has 1 to %d letters, "
+                             "digits, . _ @ or -",
+                             *share, OWNER_SIZE - 1);
         status = store_share(serve->service.store, name, weight, err);
     }
     return status;

@@ -94,7 +94,7 @@ int token_file_read(const char *file, bool open, token_visit *visit, void *conte
     return status;
 }
 
-static bool is_name(const char *text) {
+bool token_name_is_good(const char *text) {
     size_t length = strlen(text);
     return length > 0 && length < OWNER_SIZE &&
            strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._@-") ==
@@ -106,7 +106,7 @@ int token_line_check(const struct token_line *line, const char *file, struct err
         return error_set(err, ERROR_INPUT,
                          "%s, line %zu: no role:token; roles are read, submit, work and admin",
                          file, line->number);
-    if (*line->name != '\0' && !is_name(line->name))
+    if (*line->name != '\0' && !token_name_is_good(line->name))
         return error_set(err, ERROR_INPUT,
                          "%s, line %zu: in role:name:token, a name has 1 to %d letters, digits, "
                          ". _ @ or -",

@@ -35,6 +35,8 @@ int token_file_read(const char *file, bool open, token_visit *visit, void *conte
                     struct error *err);
 /* Likewise of the text of one, which it cuts into parts. */
 int token_lines_visit(char *text, token_visit *visit, void *context, struct error *err);
+/* Whether a text may be the name in a line: 1 to 40 letters, digits, . _ @ or -. */
+bool token_name_is_good(const char *text);
 /* What is wrong with a line that a server reads: ERROR_INPUT names file and line, never the token.
  */
 int token_line_check(const struct token_line *line, const char *file, struct error *err);

@@ -25,7 +25,7 @@ static const struct option_row OPTIONS[] = {
     {"difference", 0, OPTION_PAIR, 0, 0, AT(difference), "A B", NULL,
      "case A less case B, by pairs of realisations where they share their random numbers"},
     {"format", 0, OPTION_CHOICE, 0, 0, AT(format), "json|csv|table", "json", "what to print"},
-    {"out", 0, OPTION_TEXT, 0, 0, AT(folder.path), "DIR", NULL,
+    {"out", 'o', OPTION_TEXT, 0, 0, AT(folder.path), "DIR", NULL,
      "write study.json, curves.json, curves.csv and an SVG a quantity instead"},
     REPLACE_ROW(AT(folder.replace)),
     {0}};
@@ -53,8 +53,6 @@ static int take_folder(struct access *access, const char *id, const struct resul
     if (folder->path == NULL)
         return 0;
     int status = access_document(access, id, &document, err);
-    if (status == 0)
-        status = result_folder_check(folder, id, document, err);
     if (status == 0)
         status = result_folder_take(folder, id, document, err);
     cJSON_Delete(document);
@@ -85,7 +83,7 @@ static int run(const void *values, const char *const *arguments) {
         return EXIT_USAGE;
     if (options->difference[0] >= 0 && options->case_number >= 0)
         return usage_error("curves", "--difference and --case exclude each other");
-    int status = options->folder.path != NULL ? output_prepare(options->folder.path, &err) : 0;
+    int status = options->folder.path != NULL ? output_check(options->folder.path, &err) : 0;
     if (status == 0)
         status = access_open(&access, &options->place, ACCESS_READ, &err);
     if (status == 0)

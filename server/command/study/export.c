@@ -80,7 +80,7 @@ static int write_folder(struct access *access, const char *id, const struct resu
     const struct export_order order = {access, id, *out};
     int status = check_readme(out, err);
     if (status == 0)
-        status = output_prepare(out->path, err);
+        status = output_check(out->path, err);
     if (status == 0)
         status = export_folder(&order, &study, err);
     if (status == 0)

@@ -25,9 +25,9 @@ struct result_folder {
  * nothing. */
 int result_folder_check(const struct result_folder *folder, const char *id, const cJSON *document,
                         struct error *err);
-/* Writes study.json into the folder, which must be there. Before, it takes away what another study
- * wrote into it: pictures whose metadata name that one, the files of `rugo export` that do, and
- * kept nodes. What else is in the folder stays. */
+/* Checks likewise, makes the folder if it is missing, and writes study.json into it. Before, it
+ * takes away what another study wrote into it: pictures whose metadata name that one, the files of
+ * `rugo export` that do, and kept nodes. What else is in the folder stays. */
 int result_folder_take(const struct result_folder *folder, const char *id, const cJSON *document,
                        struct error *err);
 

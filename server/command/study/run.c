@@ -28,7 +28,7 @@ static const struct option_row OPTIONS[] = {
     {"workers", 0, OPTION_COUNT, 0, WORKERS_MOST, AT(threads), "N", "0",
      "threads; 0: as many processors as are allotted"},
     {"set", 0, OPTION_LIST, 0, 0, AT(sets), "PATH=VALUE", NULL, SET_HELP},
-    {"out", 0, OPTION_TEXT, 0, 0, AT(folder.path), "DIR", NULL,
+    {"out", 'o', OPTION_TEXT, 0, 0, AT(folder.path), "DIR", NULL,
      "write study.json, curves.json, curves.csv, an SVG a quantity, and nodes/ of what "
      "/contact/keep names"},
     REPLACE_ROW(AT(folder.replace)),
@@ -71,7 +71,7 @@ static int perform(struct run *run, struct error *err) {
     struct study_status now = {0};
     struct publish_counts counts = {0};
     const char *folder = run->submission.folder.path;
-    int status = folder != NULL ? output_prepare(folder, err) : 0;
+    int status = folder != NULL ? output_check(folder, err) : 0;
     if (status == 0)
         status = local_study_submit(&run->store, &run->submission, run->id, &run->faults, err);
     if (status == 0)

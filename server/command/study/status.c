@@ -47,7 +47,8 @@ static int print_change(const cJSON *document, const char *id, const struct opti
     return print(document, id, options, err);
 }
 
-/* Looks and prints until the study has ended or a signal comes: without a study, until that. */
+/* Looks and prints until the study has ended: ERROR_STOPPED where a signal comes before. Without a
+ * study, until a signal. */
 static int watch_study(struct watch *watch, const struct options *options, struct error *err) {
     char *last = NULL;
     bool ended = false;
@@ -60,7 +61,11 @@ static int watch_study(struct watch *watch, const struct options *options, struc
             status = print_change(document, watch->id, options, &last, err);
         ended = document != NULL && watch->id != NULL && watch_has_ended(document);
         cJSON_Delete(document);
-        ended = ended || status != 0 || !watch_pause();
+        if (status != 0 || ended || watch_pause())
+            continue;
+        ended = true;
+        if (watch->id != NULL)
+            status = error_set(err, ERROR_STOPPED, "stopped");
     }
     free(last);
     return status;

@@ -38,10 +38,7 @@ static int print_id(const cJSON *document, struct error *err) {
 
 /* As a server takes it. */
 static int check_key(const char *key, struct error *err) {
-    size_t length = 0;
-    while (key != NULL && key[length] > ' ' && key[length] < 0x7f)
-        length++;
-    if (key == NULL || (length != 0 && length <= KEY_MOST && key[length] == '\0'))
+    if (key == NULL || key_is_good(key))
         return 0;
     return error_set(err, ERROR_INPUT, "--key has 1 to %d visible ASCII characters", KEY_MOST);
 }

@@ -30,7 +30,7 @@ static const struct option_row OPTIONS[] = {
      "this quantity only; summit_joint_pdf is made only if named here"},
     {"format", 0, OPTION_CHOICE, 0, 0, AT(format), "text|json|csv|svg", "text",
      "what to print; svg: a picture of --quantity (summit_height_pdf)"},
-    {"out", 0, OPTION_TEXT, 0, 0, AT(folder.path), "DIR", NULL,
+    {"out", 'o', OPTION_TEXT, 0, 0, AT(folder.path), "DIR", NULL,
      "write study.json, curves.json, curves.csv and an SVG a quantity instead"},
     REPLACE_ROW(AT(folder.replace)),
     {0}};
@@ -92,11 +92,7 @@ static void tell_faces(const struct study *study) {
 static int write_folder(const struct study *study, const struct study_result *result,
                         const struct result_folder *folder, struct error *err) {
     cJSON *document = NULL;
-    int status = output_prepare(folder->path, err);
-    if (status == 0)
-        status = json_parse(study->source, strlen(study->source), NULL, &document, err);
-    if (status == 0)
-        status = result_folder_check(folder, FOLDER_OF_THEORY, document, err);
+    int status = json_parse(study->source, strlen(study->source), NULL, &document, err);
     if (status == 0)
         status = result_folder_take(folder, FOLDER_OF_THEORY, document, err);
     cJSON_Delete(document);

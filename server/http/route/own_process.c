@@ -152,7 +152,7 @@ static int follow(struct run *run) {
     while (run->near.output >= 0 || run->near.said >= 0) {
         int failure = exchange_bytes(run);
         if (failure == EFBIG)
-            run->result->end = OWN_PROCESS_BROKEN;
+            run->result->end = OWN_PROCESS_LARGE;
         else if (failure != 0)
             return failure;
         if (clock_ms() > until)

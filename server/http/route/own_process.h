@@ -23,7 +23,8 @@ enum own_process_end {
     OWN_PROCESS_DONE,    /* by itself: `status` is its exit status */
     OWN_PROCESS_STOPPED, /* as it was asked to */
     OWN_PROCESS_LATE,    /* it took too much time, of the processor or in all */
-    OWN_PROCESS_BROKEN,  /* by a signal, or for printing too much */
+    OWN_PROCESS_LARGE,   /* it printed more than it may */
+    OWN_PROCESS_BROKEN,  /* by a signal */
 };
 struct own_process_result {
     enum own_process_end end;

@@ -3,6 +3,7 @@
 #include "schema/near_name.h"
 #include "server/http/route/route.h"
 #include <errno.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -62,11 +63,37 @@ bool query_check(struct exchange *exchange, const char *const names[QUERY_NAMES_
     return !answered(exchange, &query.faults);
 }
 
+void query_refuse(struct exchange *exchange, const char *name, const char *format, ...) {
+    struct fault_list faults = {0};
+    char pointer[32], detail[160];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(detail, sizeof detail, format, arguments);
+    va_end(arguments);
+    snprintf(pointer, sizeof pointer, "?%.20s", name);
+    fault_add(&faults, pointer, "%s", detail);
+    (void)answered(exchange, &faults);
+}
+
+bool query_choice(struct exchange *exchange, const char *name, const char *const *choices,
+                  int count, const char *words, int *out) {
+    const char *text = exchange_query(exchange, name);
+    int n = 0;
+    if (text == NULL)
+        return true;
+    while (n < count && strcmp(choices[n], text) != 0)
+        n++;
+    if (n < count)
+        *out = n;
+    else
+        query_refuse(exchange, name, "%.40s is none of %s", text, words);
+    return n < count;
+}
+
 bool query_number(struct exchange *exchange, const char *name, int64_t least, int64_t most,
                   int64_t *value) {
     const char *text = exchange_query(exchange, name);
-    struct fault_list faults = {0};
-    char *end, pointer[32];
+    char *end;
     if (text == NULL)
         return true;
     errno = 0;
@@ -76,21 +103,17 @@ bool query_number(struct exchange *exchange, const char *name, int64_t least, in
         *value = number;
         return true;
     }
-    snprintf(pointer, sizeof pointer, "?%.20s", name);
-    fault_add(&faults, pointer, "%.40s is not in [%lld, %lld]", text, (long long)least,
-              (long long)most);
-    return !answered(exchange, &faults);
+    query_refuse(exchange, name, "%.40s is not in [%lld, %lld]", text, (long long)least,
+                 (long long)most);
+    return false;
 }
 
 bool query_true(struct exchange *exchange, const char *name, const char *purpose) {
     const char *text = exchange_query(exchange, name);
-    struct fault_list faults = {0};
-    char pointer[32];
     if (text == NULL || strcmp(text, "true") == 0)
         return true;
-    snprintf(pointer, sizeof pointer, "?%.20s", name);
-    fault_add(&faults, pointer, "%s is true, %s, or left out", pointer, purpose);
-    return !answered(exchange, &faults);
+    query_refuse(exchange, name, "?%s is true, %s, or left out", name, purpose);
+    return false;
 }
 
 bool check_body(struct exchange *exchange) {

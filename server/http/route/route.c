@@ -133,6 +133,7 @@ static void refuse_route(struct exchange *exchange) {
 #define LINE_END_FAULT "a line that does not end in CR LF, or a NUL, in the head"
 
 struct headers {
+    struct exchange *exchange; /* whose head it is */
     unsigned lengths, hosts, encodings, keys, authorizations;
     const char *next; /* where the line behind the last one seen begins; NULL before the first */
     bool unknown_encoding;
@@ -210,6 +211,7 @@ static enum MHD_Result see_header(void *context, enum MHD_ValueKind kind, const 
     }
     if (headers->fault == NULL)
         headers->fault = line_fault(headers, name, value);
+    exchange_join(headers->exchange, name, value);
     headers->next = value != NULL ? value + strlen(value) + 2 : NULL;
     return MHD_YES;
 }
@@ -217,8 +219,8 @@ static enum MHD_Result see_header(void *context, enum MHD_ValueKind kind, const 
 /* Returns what is wrong with the headers of a request, a static text; NULL where nothing is:
  * headers that let two readers, such as a proxy and this server, see different requests in the same
  * bytes (RFC 9112, 2.2, 5.1, 5.2 and 6.3). */
-static const char *headers_fault(const struct exchange *exchange) {
-    struct headers headers = {0};
+static const char *headers_fault(struct exchange *exchange) {
+    struct headers headers = {.exchange = exchange};
     MHD_get_connection_values(exchange->connection, MHD_HEADER_KIND, see_header, &headers);
     if (headers.fault != NULL)
         return headers.fault;
@@ -255,7 +257,7 @@ static bool check_headers(struct exchange *exchange) {
 /* A page of another site, or a name that somebody pointed at this address, may not use this
  * service. */
 static bool check_origin(struct exchange *exchange) {
-    const char *host = exchange_header(exchange, "Host");
+    const char *host = *exchange->host != '\0' ? exchange->host : exchange_header(exchange, "Host");
     const char *origin = exchange_header(exchange, "Origin");
     if (host != NULL && !exchange_host_allowed(exchange, host)) {
         answer_problem(exchange, 403, "the Host is no name of this server; see serve --allow-host",
@@ -271,8 +273,8 @@ static bool check_origin(struct exchange *exchange) {
     return true;
 }
 
-/* A slash of a name is one of the path once it is read: what follows would be what another study is
- * asked for. */
+/* An escaped slash, as of a study's name, is one of the path once it is read: what follows would be
+ * what another study is asked for. No other path has one. */
 static bool check_segment(struct exchange *exchange) {
     if (exchange->slashed_target)
         answer_problem(exchange, 404,

@@ -6,7 +6,10 @@
 #include "server/http/exchange.h"
 
 #define FORM_MEDIA "multipart/form-data" /* of several files */
-enum { SEGMENT_SIZE = 256, QUERY_NAMES_MOST = 32 };
+enum {
+    SEGMENT_SIZE = 801, /* a study's name has up to 200 characters, of up to 4 bytes */
+    QUERY_NAMES_MOST = 32
+};
 typedef void route_handler(struct exchange *exchange, const char *id);
 
 struct route {
@@ -45,6 +48,13 @@ cJSON *body_json(struct exchange *exchange);
 /* Returns whether the query holds nothing but these names (the rest NULL), each once and with a
  * value; false after a 422. */
 bool query_check(struct exchange *exchange, const char *const names[QUERY_NAMES_MOST]);
+/* Answers 422 with one fault, that of ?name. */
+__attribute__((format(printf, 3, 4))) void query_refuse(struct exchange *exchange, const char *name,
+                                                        const char *format, ...);
+/* One of `count` words of the query, all of which `words` has with | between: *out is its number,
+ * left alone where it is not there. False after a 422. */
+bool query_choice(struct exchange *exchange, const char *name, const char *const *choices,
+                  int count, const char *words, int *out);
 /* A switch of the query, true or left out; false after a 422, which says what it is for. */
 bool query_true(struct exchange *exchange, const char *name, const char *purpose);
 /* A whole number of the query: left alone where it is not there. False after a 422. */
@@ -55,7 +65,8 @@ bool query_number(struct exchange *exchange, const char *name, int64_t least, in
  */
 struct comparison;
 int query_difference(struct exchange *exchange, struct comparison *out, bool *asked);
-/* Answers 422 to a message of a worker that cannot be read, with what is wrong. */
+/* Answers 422 to a message of a worker that cannot be read, with what is wrong, and the pointer
+ * where the error begins with one (field.h). */
 void refuse_message(struct exchange *exchange, const struct error *err);
 /* Forgets the jobs of a claim whose answer arrived; gives them back where it did not. */
 void claim_settle(struct exchange *exchange, bool arrived);

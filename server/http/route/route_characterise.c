@@ -171,6 +171,13 @@ static void answer_end(struct exchange *exchange, struct own_process_result *res
                  CPU_SECONDS);
         answer_problem(exchange, 422, detail, NULL);
         break;
+    case OWN_PROCESS_LARGE:
+        snprintf(detail, sizeof detail,
+                 "the answer is longer than the %d MiB that it may have here: crop or resample the "
+                 "map, or use rugo characterise",
+                 ANSWER_MOST >> 20);
+        answer_problem(exchange, 422, detail, NULL);
+        break;
     case OWN_PROCESS_BROKEN:
         answer_broken(exchange);
         break;

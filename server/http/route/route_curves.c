@@ -1,6 +1,7 @@
 /* Curves and reports over HTTP. A study of ten thousand cases has gigabytes of them: as JSON they
  * are read and sent case by case, and end early when the server does. */
 #include "core/file/memory_file.h"
+#include "schema/program.h"
 #include "schema/result/bytes/bytes.h"
 #include "schema/result/csv.h"
 #include "schema/result/result_json.h"
@@ -257,13 +258,16 @@ static bool wants_csv(const struct exchange *exchange) {
     return accept_quality(accept, "text/csv") > accept_quality(accept, "application/json");
 }
 
-/* Every change of a study's results raises its revision: that, what of them is asked for, and the
- * form, is the answer's identity. So the tag of an answer is that of no query that has none. */
+/* Every change of a study's results raises its revision: that, what of them is asked for, the form,
+ * and the program that writes it, is the answer's identity. So the tag of an answer is that of no
+ * query that has none. */
 enum { TAG_SIZE = 96 };
 static void make_tag(const struct exchange *exchange, const char *id, uint64_t revision, bool csv,
                      char tag[TAG_SIZE]) {
     static const char *const NAMES[] = {"case", "quantity", "difference"};
-    uint64_t asked = HASH_START;
+    char program[PROGRAM_SIZE];
+    program_write(program);
+    uint64_t asked = hash_bytes(HASH_START, strlen(program) + 1, program);
     for (size_t n = 0; n < sizeof NAMES / sizeof *NAMES; n++) {
         const char *value = exchange_query(exchange, NAMES[n]);
         if (value == NULL)
@@ -287,13 +291,6 @@ static bool knows_any(const struct exchange *exchange) {
     return known != NULL && strcmp(known, "*") == 0;
 }
 
-/* In place of an answer that is made: whether there is one is known by then (RFC 9110, 13.2.1). */
-static void answer_unchanged(struct exchange *exchange) {
-    MHD_destroy_response(exchange->response);
-    exchange->response = NULL;
-    answer_empty(exchange, 304);
-}
-
 /* One case less another over HTTP. It is made and sent as a whole: two cases are never many. */
 
 /* Reads a whole number of 0 or more; *end is what follows. */
@@ -308,20 +305,17 @@ static bool read_case_number(const char *text, uint64_t *out, const char **end) 
 
 int query_difference(struct exchange *exchange, struct comparison *out, bool *asked) {
     const char *text = exchange_query(exchange, "difference"), *end;
-    struct fault_list faults = {0};
     *asked = text != NULL;
     if (text == NULL)
         return 0;
     if (exchange_query(exchange, "case") != NULL)
-        fault_add(&faults, "?case", "not together with difference");
+        query_refuse(exchange, "case", "not together with difference");
     else if (!read_case_number(text, &out->minuend, &end) || *end != ',' ||
              !read_case_number(end + 1, &out->subtrahend, &end) || *end != '\0')
-        fault_add(&faults, "?difference", "%.40s is not two cases, as 1,0", text);
-    bool faulty = faults.count > 0;
-    if (faulty)
-        answer_problem(exchange, 422, "the query is not valid", &faults);
-    fault_list_clear(&faults);
-    return faulty ? ERROR_INPUT : 0;
+        query_refuse(exchange, "difference", "%.40s is not two cases, as 1,0", text);
+    else
+        return 0;
+    return ERROR_INPUT;
 }
 
 /* Likewise with a difference. */
@@ -366,7 +360,7 @@ void handle_curves(struct exchange *exchange, const char *id) {
     int status = find_study(exchange, id, &study, &err);
     make_tag(exchange, id, study.revision, csv, tag);
     if (status == 0 && knows(exchange, tag))
-        answer_empty(exchange, 304);
+        answer_unchanged(exchange);
     else if (status == 0 && difference)
         status = send_difference(exchange, id, &comparison, csv, &err);
     else if (status == 0)
@@ -377,7 +371,7 @@ void handle_curves(struct exchange *exchange, const char *id) {
         answer_error(exchange, &err);
         return;
     }
-    if (knows_any(exchange))
+    if (knows_any(exchange)) /* whether there is an answer is known by now (RFC 9110, 13.2.1) */
         answer_unchanged(exchange);
     answer_header(exchange, "ETag", tag);
     answer_header(exchange, "Vary", "Accept");

@@ -4,12 +4,20 @@
 #include "worker/link/wire.h"
 #include "worker/link/wire_report.h"
 #include <errno.h>
+#include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 void refuse_message(struct exchange *exchange, const struct error *err) {
     struct fault_list faults = {0};
-    fault_add(&faults, "", "%s", err->text);
+    char pointer[64] = "";
+    const char *detail = err->text, *end = strstr(err->text, ": ");
+    if (*detail == '/' && end != NULL && end - detail < (ptrdiff_t)sizeof pointer) {
+        snprintf(pointer, sizeof pointer, "%.*s", (int)(end - detail), detail);
+        detail = end + strlen(": ");
+    }
+    fault_add(&faults, pointer, "%s", detail);
     answer_problem(exchange, err->code == ERROR_MEMORY ? 503 : 422, err->text, &faults);
     fault_list_clear(&faults);
 }

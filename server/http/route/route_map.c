@@ -11,7 +11,6 @@
 #include "server/show/map/map_png.h"
 #include "server/show/quantity.h"
 #include "worker/clock.h"
-#include <poll.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -49,30 +48,19 @@ static bool path_number(const struct exchange *exchange, const char *name, uint6
     return length <= 15 && end == at + length;
 }
 
-static void fault(struct exchange *exchange, const char *pointer, const char *detail) {
-    struct fault_list faults = {0};
-    fault_add(&faults, pointer, "%s", detail);
-    answer_problem(exchange, 422, "the query is not valid", &faults);
-    fault_list_clear(&faults);
-}
-
 /* Why a map would not be waited for any longer. */
 struct patience {
-    const struct exchange *exchange;
+    struct exchange *exchange;
     int64_t until_ms;
     const char *lost; /* static text; NULL while there is some */
 };
 
 static int is_lost(void *context) {
     struct patience *patience = context;
-    const struct exchange *exchange = patience->exchange;
-    struct pollfd peer = {.fd = exchange_socket(exchange), .events = POLLRDHUP};
-    if (atomic_load(&exchange->service->stopping))
-        patience->lost = "the server ends";
-    else if (clock_ms() > patience->until_ms)
+    if (clock_ms() > patience->until_ms)
         patience->lost = "the map takes longer than the 50 s that it may take here";
-    else if (poll(&peer, 1, 0) > 0)
-        patience->lost = "the peer has left";
+    else if (exchange_is_lost(patience->exchange) != 0)
+        patience->lost = "the server ends, or the peer has left";
     return patience->lost != NULL;
 }
 
@@ -92,24 +80,20 @@ static bool read_path(struct exchange *exchange, struct map_question *out) {
 
 /* Returns false after an answer. */
 static bool read_question(struct exchange *exchange, const char *id, struct map_question *out) {
-    const char *field = exchange_query(exchange, "field"), *load = exchange_query(exchange, "load");
+    const char *load = exchange_query(exchange, "load");
+    int field = MAP_HEIGHT;
     *out = (struct map_question){.id = id, .png = prefers_png(exchange)};
-    if (!read_path(exchange, out))
+    if (!read_path(exchange, out) || !query_choice(exchange, "field", MAP_FIELD_NAMES, MAP_FIELDS,
+                                                   "height|gap|pressure", &field))
         return false;
-    while (field != NULL && out->field < MAP_FIELDS &&
-           strcmp(MAP_FIELD_NAMES[out->field], field) != 0)
-        out->field++;
-    if (out->field == MAP_FIELDS) {
-        fault(exchange, "?field", "allowed: height, gap, pressure");
-        return false;
-    }
+    out->field = (enum map_field)field;
     char *end = NULL;
     out->load = load != NULL ? strtod(load, &end) : 0;
     bool good = load != NULL && *end == '\0' && out->load > 0;
     if (out->field != MAP_HEIGHT && !good)
-        fault(exchange, "?load", "a load p/(E* h') above 0 is needed for a gap or pressures");
+        query_refuse(exchange, "load", "a load p/(E* h') above 0 is needed for a gap or pressures");
     else if (out->field == MAP_HEIGHT && load != NULL)
-        fault(exchange, "?load", "heights have no load");
+        query_refuse(exchange, "load", "heights have no load");
     else
         return true;
     return false;
@@ -249,19 +233,19 @@ struct node_question {
 
 /* Returns false after an answer. */
 static bool read_nodes(struct exchange *exchange, const char *id, struct node_question *out) {
-    const char *load = exchange_query(exchange, "load"),
-               *format = exchange_query(exchange, "format");
+    static const char *const FORMATS[] = {"csv", "vtu"};
+    const char *load = exchange_query(exchange, "load");
+    int format = 0;
     out->realisation.id = id;
     out->model = exchange_query(exchange, "model");
-    if (!read_path(exchange, &out->realisation))
+    if (!read_path(exchange, &out->realisation) ||
+        !query_choice(exchange, "format", FORMATS, 2, "csv|vtu", &format))
         return false;
-    out->vtu = format != NULL && strcmp(format, "vtu") == 0;
-    if (format != NULL && !out->vtu && strcmp(format, "csv") != 0)
-        fault(exchange, "?format", "allowed: csv, vtu");
-    else if (load != NULL && !rising_numbers(load, NODE_LOADS_MOST, out->loads, &out->load_count))
-        fault(exchange, "?load", "rising loads p/(E* h') above 0, with commas between");
+    out->vtu = format != 0;
+    if (load != NULL && !rising_numbers(load, NODE_LOADS_MOST, out->loads, &out->load_count))
+        query_refuse(exchange, "load", "rising loads p/(E* h') above 0, with commas between");
     else if (out->vtu && out->load_count != 1)
-        fault(exchange, "?load", "a VTU file has one load: give it");
+        query_refuse(exchange, "load", "a VTU file has one load: give it");
     else
         return true;
     return false;

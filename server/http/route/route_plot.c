@@ -60,44 +60,8 @@ static int draw_plot(const struct origin *origin, const struct picture_request *
     return status;
 }
 
-static void refuse_without_quantity(struct exchange *exchange) {
-    struct fault_list faults = {0};
-    fault_add(&faults, "?quantity", "missing: the name of curves or of a scalar");
-    answer_problem(exchange, 422, "the query is not valid", &faults);
-    fault_list_clear(&faults);
-}
-
-/* Reads ?log=; false after a 422. */
-static bool read_axes(struct exchange *exchange, int *axes) {
-    const char *asked = exchange_query(exchange, "log");
-    struct fault_list faults = {0};
-    for (int a = AXES_AUTOMATIC; asked != NULL && a < AXES_COUNT; a++)
-        if (strcmp(AXES_NAMES[a], asked) == 0) {
-            *axes = a;
-            return true;
-        }
-    if (asked == NULL)
-        return true;
-    fault_add(&faults, "?log", "%.40s is none of " AXES_WORDS, asked);
-    answer_problem(exchange, 422, "the query is not valid", &faults);
-    fault_list_clear(&faults);
-    return false;
-}
-
-/* Reads ?total=; false after a 422. */
-static bool read_total(struct exchange *exchange, bool *without) {
-    const char *asked = exchange_query(exchange, "total");
-    struct fault_list faults = {0};
-    *without = asked != NULL && strcmp(asked, "no") == 0;
-    if (asked == NULL || *without || strcmp(asked, "yes") == 0)
-        return true;
-    fault_add(&faults, "?total", "%.40s is none of yes|no", asked);
-    answer_problem(exchange, 422, "the query is not valid", &faults);
-    fault_list_clear(&faults);
-    return false;
-}
-
 void handle_plot(struct exchange *exchange, const char *id) {
+    static const char *const TOTAL[] = {"yes", "no"};
     struct error err = {0};
     struct origin origin = {exchange, id};
     struct comparison comparison = {.quantity = exchange_query(exchange, "quantity")};
@@ -114,16 +78,19 @@ void handle_plot(struct exchange *exchange, const char *id) {
                                       .width = exchange_query(exchange, "width"),
                                       .case_number = -1};
     bool differs = false;
+    int total = 0;
     char *text;
     if (request.quantity == NULL) {
-        refuse_without_quantity(exchange);
+        query_refuse(exchange, "quantity", "missing: the name of curves or of a scalar");
         return;
     }
-    if (!read_axes(exchange, &request.axes) || !read_total(exchange, &request.without_total))
+    if (!query_choice(exchange, "log", AXES_NAMES, AXES_COUNT, AXES_WORDS, &request.axes) ||
+        !query_choice(exchange, "total", TOTAL, 2, "yes|no", &total))
         return;
     if (query_difference(exchange, &comparison, &differs) != 0 ||
         !query_number(exchange, "case", 0, INT64_MAX - 1, &request.case_number))
         return;
+    request.without_total = total != 0;
     request.difference = differs ? &comparison : NULL;
     if (draw_plot(&origin, &request, &text, &err) == 0)
         answer_text(exchange, 200, "image/svg+xml", text);
@@ -131,22 +98,13 @@ void handle_plot(struct exchange *exchange, const char *id) {
         answer_error(exchange, &err);
 }
 
-/* Reads ?format=, or else what the request likes best: JSON, unless it says so. -1 after a 422. */
-static int read_table_format(struct exchange *exchange) {
-    const char *asked = exchange_query(exchange, "format");
+/* The table's format where the query has none: what the request likes best, JSON unless it says so.
+ */
+static int liked_format(const struct exchange *exchange) {
     const char *accept = exchange_header(exchange, "Accept");
-    struct fault_list faults = {0};
-    for (int f = 0; asked != NULL && f < TABLE_FORMAT_COUNT; f++)
-        if (strcmp(TABLE_FORMAT_NAMES[f], asked) == 0)
-            return f;
-    if (asked == NULL)
-        return accept_quality(accept, "text/csv") > accept_quality(accept, "application/json")
-                   ? TABLE_CSV
-                   : TABLE_JSON;
-    fault_add(&faults, "?format", "%.40s is none of " TABLE_FORMATS, asked);
-    answer_problem(exchange, 422, "the query is not valid", &faults);
-    fault_list_clear(&faults);
-    return -1;
+    return accept_quality(accept, "text/csv") > accept_quality(accept, "application/json")
+               ? TABLE_CSV
+               : TABLE_JSON;
 }
 
 /* Makes the table as a text, which is the caller's to free. */
@@ -178,8 +136,9 @@ void handle_table(struct exchange *exchange, const char *id) {
     const char *const where[] = {exchange_query(exchange, "where"), NULL};
     const struct table_request request = {exchange_query(exchange, "columns"), where};
     char *text = NULL;
-    int format = read_table_format(exchange);
-    if (format < 0)
+    int format = liked_format(exchange);
+    if (!query_choice(exchange, "format", TABLE_FORMAT_NAMES, TABLE_FORMAT_COUNT, TABLE_FORMATS,
+                      &format))
         return;
     if (print_table(&origin, &request, format, &text, &err) != 0) {
         free(text);

@@ -2,12 +2,13 @@
 #include "jobs/clock.h"
 #include "jobs/kind.h"
 #include "schema/json/field.h"
+#include "schema/json/json.h"
 #include "schema/study/study.h"
-#include "schema/study/value.h"
 #include "server/command/access/api.h"
 #include "server/http/route/route.h"
 #include "server/show/summary/plan.h"
 #include "server/show/table/contents.h"
+#include "worker/link/client.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +16,6 @@
 
 /* --- changes, through the writer --- */
 
-enum { KEY_MOST = 200 };
 #ifdef RUGO_SANITIZED
 static const double CHECK_SECONDS = 20; /* under sanitizers all takes up to twenty times as long */
 #else
@@ -54,10 +54,7 @@ static void submit(struct exchange *exchange, const struct study *study) {
 /* Checks that the key is one that an answer can repeat. */
 static bool check_key(struct exchange *exchange) {
     const char *key = exchange_header(exchange, "Idempotency-Key");
-    size_t length = 0;
-    while (key != NULL && key[length] > ' ' && key[length] < 0x7f)
-        length++;
-    if (key == NULL || (length != 0 && length <= KEY_MOST && key[length] == '\0'))
+    if (key == NULL || key_is_good(key))
         return true;
     answer_problem(exchange, 400, "an Idempotency-Key has 1 to 200 visible ASCII characters", NULL);
     return false;
@@ -237,7 +234,7 @@ static void read_extension(const cJSON *body, uint64_t *realisations, struct fau
         *realisations = (uint64_t)number;
         return;
     }
-    value_describe(given, text, sizeof text);
+    json_describe(given, text, sizeof text);
     fault_add(faults, "/realisations", "%s is not %s", text, allowed);
 }
 

@@ -148,7 +148,14 @@ static void wrong_names_and_shares_are_told(void **state) {
         {"submit:a b:0123456789abcdef\n", "a=1", "line 1: in role:name:token, a name has 1 to 40"},
         {"submit:anna:short\n", "a=1", "a token of less than 16 characters"},
         {"submit:anna:0123456789abcdef\n", "anna", "--share anna is not NAME=WEIGHT"},
-        {"submit:anna:0123456789abcdef\n", "anna=-1", "a weight is above 0"}};
+        {"submit:anna:0123456789abcdef\n", "a b=2",
+         "--share a b=2 is not NAME=WEIGHT, where a name"},
+        {"submit:anna:0123456789abcdef\n", "=2", "--share =2 is not NAME=WEIGHT"},
+        {"submit:anna:0123456789abcdef\n", "anna=", "--share anna= is not NAME=WEIGHT"},
+        {"submit:anna:0123456789abcdef\n", "anna= 2", "--share anna= 2 is not NAME=WEIGHT"},
+        {"submit:anna:0123456789abcdef\n", "anna=0x2", "--share anna=0x2 is not NAME=WEIGHT"},
+        {"submit:anna:0123456789abcdef\n", "anna=1e999", "a weight is above 0, finite"},
+        {"submit:anna:0123456789abcdef\n", "anna=-1", "a weight is above 0, finite"}};
     for (size_t w = 0; w < sizeof WRONG / sizeof *WRONG; w++) {
         spit_secret("bad", WRONG[w].line);
         assert_int_equal(run_rugo("bad", (const char *[]){"serve", "--db", "bad.db", "--listen",

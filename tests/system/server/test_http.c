@@ -1,5 +1,6 @@
 /* Protects: the HTTP contract, request by request, against the real server. */
 #include "schema/json/json.h"
+#include "schema/result/bytes/bytes.h"
 #include "tests/support/check.h"
 #include "tests/support/process.h"
 #include "tests/support/small_studies.h"
@@ -331,6 +332,110 @@ static void members_of_results_are_described(void **state) {
     free(description);
 }
 
+/* The whole answer to a request with these lines behind its Host. */
+static char *whole_answer(const char *method, const char *target, const char *lines) {
+    char request[600];
+    snprintf(request, sizeof request,
+             "%s %s HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n%s\r\n", method, target,
+             lines);
+    return http_raw(port, request, strlen(request));
+}
+
+/* The ETag of an answer; NULL where it has none. Cuts the answer behind it. */
+static const char *tag_of(char *answer) {
+    char *tag = strstr(answer, "ETag: ");
+    if (tag == NULL)
+        return NULL;
+    tag[strcspn(tag, "\r")] = '\0';
+    return tag + strlen("ETag: ");
+}
+
+/* 304 has the fields that the answer would have, and no length, which would be that of nothing; an
+ * answer of another program is another one. */
+static void an_unchanged_answer_has_the_fields_of_the_answer(void **state) {
+    (void)state;
+    char id[17], path[96], hash[24], line[200], *answer, *program;
+    submit(ONE_CASE, id);
+    work(id);
+    path_of(path, sizeof path, id, "/curves");
+    assert_int_equal(ask("GET", path, NULL, &answer), 200);
+    program = part_between(answer, "\"program\":\"", "\",");
+    free(answer);
+    const char *written = program + strlen("\"program\":\"");
+    snprintf(hash, sizeof hash, "-%016llx-",
+             (unsigned long long)hash_bytes(HASH_START, strlen(written) + 1, written));
+    free(program);
+    answer = whole_answer("HEAD", path, "");
+    const char *tag = tag_of(answer);
+    assert_non_null(tag);
+    assert_non_null(strstr(tag, hash));
+    snprintf(line, sizeof line, "If-None-Match: %s\r\n", tag);
+    free(answer);
+    answer = whole_answer("GET", path, line);
+    assert_non_null(strstr(answer, "HTTP/1.1 304 "));
+    assert_null(strcasestr(answer, "Content-Length"));
+    assert_null(strcasestr(answer, "Transfer-Encoding"));
+    assert_non_null(strstr(answer, "Vary: Accept\r\n"));
+    assert_non_null(strstr(answer, "Vary: Accept-Encoding\r\n"));
+    assert_string_equal(strstr(answer, "\r\n\r\n"), "\r\n\r\n");
+    free(answer);
+}
+
+/* Several lines of a list are one (RFC 9110, 5.3). */
+static void lists_may_have_several_lines(void **state) {
+    (void)state;
+    static const struct {
+        const char *rest, *lines, *has;
+    } ASKED[] = {
+        {"/curves", "Accept: image/png\r\nAccept: text/csv\r\n", "Content-Type: text/csv"},
+        {"/curves", "Accept: text/csv;q=0.5\r\naccept: text/html\r\nAccept: application/json\r\n",
+         "Content-Type: application/json"},
+        {"/curves", "Accept-Encoding: br\r\nAccept-Encoding: gzip\r\n", "Content-Encoding: gzip"},
+        {"/curves", "If-None-Match: \"other\"\r\nIf-None-Match: TAG\r\n", "HTTP/1.1 304 "}};
+    char id[17], path[96], lines[300];
+    submit(ONE_CASE, id);
+    work(id);
+    path_of(path, sizeof path, id, "/curves");
+    char *known = whole_answer("HEAD", path, "");
+    const char *tag = tag_of(known);
+    assert_non_null(tag);
+    for (size_t a = 0; a < sizeof ASKED / sizeof *ASKED; a++) {
+        const char *place = strstr(ASKED[a].lines, "TAG");
+        size_t before = place != NULL ? (size_t)(place - ASKED[a].lines) : strlen(ASKED[a].lines);
+        snprintf(lines, sizeof lines, "%.*s%s%s", (int)before, ASKED[a].lines,
+                 place != NULL ? tag : "", place != NULL ? "\r\n" : "");
+        path_of(path, sizeof path, id, ASKED[a].rest);
+        char *answer = whole_answer("GET", path, lines);
+        if (strstr(answer, ASKED[a].has) == NULL)
+            fail_msg("%s: %.600s", lines, answer);
+        free(answer);
+    }
+    free(known);
+}
+
+/* A target may have scheme and host before its path, which go before the Host of the header. */
+static void a_target_may_be_in_absolute_form(void **state) {
+    (void)state;
+    static const struct {
+        const char *target, *answer;
+    } ASKED[] = {{"http://127.0.0.1:8080/healthz", "HTTP/1.1 200 "},
+                 {"HTTP://localhost/v1/studies?limit=1", "HTTP/1.1 200 "},
+                 {"http://localhost", "HTTP/1.1 200 "},
+                 {"http://localhost/v1/studies?limit=0", "HTTP/1.1 422 "},
+                 {"http://localhost/nowhere", "there is nothing at /nowhere"},
+                 {"http://evil.example/healthz", "HTTP/1.1 403 "},
+                 {"http://somebody@localhost/healthz", "HTTP/1.1 403 "},
+                 {"http:///healthz", "HTTP/1.1 404 "},
+                 {"ftp://localhost/healthz", "HTTP/1.1 404 "},
+                 {"/http://localhost/healthz", "HTTP/1.1 404 "}};
+    for (size_t a = 0; a < sizeof ASKED / sizeof *ASKED; a++) {
+        char *answer = whole_answer("GET", ASKED[a].target, "");
+        if (strstr(answer, ASKED[a].answer) == NULL)
+            fail_msg("%s: %.600s", ASKED[a].target, answer);
+        free(answer);
+    }
+}
+
 static void unchanged_curves_are_not_sent_again(void **state) {
     (void)state;
     char id[17], path[96], request[300], *reply, *tag;
@@ -507,6 +612,9 @@ int main(void) {
         cmocka_unit_test(a_case_less_another),
         cmocka_unit_test(curves_of_many_cases_are_sent_whole),
         cmocka_unit_test(members_of_results_are_described),
+        cmocka_unit_test(an_unchanged_answer_has_the_fields_of_the_answer),
+        cmocka_unit_test(lists_may_have_several_lines),
+        cmocka_unit_test(a_target_may_be_in_absolute_form),
         cmocka_unit_test(unchanged_curves_are_not_sent_again),
         cmocka_unit_test(what_is_wrong_is_not_unchanged),
         cmocka_unit_test(a_key_makes_submission_safe_to_repeat),

@@ -106,6 +106,18 @@ static void a_name_goes_before_first_digits(void **state) {
     check_both("status", digit, 0, named);
 }
 
+/* The longest name: 200 characters of 4 bytes, a mathematical lambda each. */
+static void a_long_name_is_found(void **state) {
+    (void)state;
+    char id[17], name[801] = "", document[1200];
+    for (int c = 0; c < 200; c++)
+        snprintf(name + 4 * c, sizeof name - 4 * (size_t)c, "\xf0\x9d\x9c\x86");
+    snprintf(document, sizeof document, NAMED("%s", "3"), name);
+    spit("long.json", document);
+    submit("long.json", id);
+    check_both("status", name, 0, id);
+}
+
 static void over_http_too(void **state) {
     (void)state;
     char *answer;
@@ -141,6 +153,7 @@ static void a_name_that_is_no_segment(void **state) {
     } ASKED[] = {{"GET", "/v1/studies/a%2Fb"},
                  {"DELETE", "/v1/studies/a%2fb"},
                  {"GET", "/v1/studies/one%2Freport"}, /* not the report of one */
+                 {"GET", "/v1/%73tudies/one%2Freport"},
                  {"GET", "/v1/studies/a%2Fb/curves?case=0"}};
     submit("path.json", id);
     assert_int_equal(run_rugo("near", (const char *[]){"status", "--db", "rugo.db", "a/b", NULL}),
@@ -184,6 +197,23 @@ static void waiting_ends_as_the_study_does(void **state) {
     assert_true(contains("waiting.err", "is cancelled"));
 }
 
+/* 130, as all commands end that are interrupted; of all studies there is no end to wait for. */
+static void watching_is_interrupted(void **state) {
+    (void)state;
+    char id[17];
+    struct process watching;
+    submit("one.json", id);
+    for (int one = 0; one < 2; one++) {
+        process_start(
+            &watching, "watching",
+            (const char *[]){"status", "--watch", "--server", url, one != 0 ? id : NULL, NULL});
+        wait_for_text("watching.out", "queued");
+        process_kill(&watching, SIGTERM);
+        assert_int_equal(process_wait(&watching, 20), one != 0 ? 130 : 0);
+    }
+    assert_int_equal(run_rugo("cancel", (const char *[]){"cancel", "--server", url, id, NULL}), 0);
+}
+
 /* The first loads are far above what the model reaches: each realisation leaves a note, and no
  * value.
  */
@@ -207,10 +237,12 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_study_has_several_names),
         cmocka_unit_test(none_of_several_is_lost),
+        cmocka_unit_test(a_long_name_is_found),
         cmocka_unit_test(over_http_too),
         cmocka_unit_test(a_name_goes_before_first_digits),
         cmocka_unit_test(a_name_that_is_no_segment),
         cmocka_unit_test(waiting_ends_as_the_study_does),
+        cmocka_unit_test(watching_is_interrupted),
         cmocka_unit_test(a_study_without_a_value_is_no_success),
     };
     return cmocka_run_group_tests(tests, start, stop);

@@ -231,14 +231,16 @@ static void maps_that_there_are_not(void **state) {
         {"/v1/studies/looked%20at/cases/1/realisations/3/map", 404, "cases have 3"},
         {"/v1/studies/looked%20at/cases/2/realisations/0/map", 404, "case"},
         {"/v1/studies/looked%20at/cases/1x/realisations/0/map", 404, "whole numbers"},
-        {"/v1/studies/looked%20at/cases/0/realisations/0/map?field=slope", 422, "height"},
+        {"/v1/studies/looked%20at/cases/0/realisations/0/map?field=slope", 422,
+         "slope is none of height|gap|pressure"},
         {"/v1/studies/looked%20at/cases/0/realisations/0/map?field=gap", 422, "load"},
         {"/v1/studies/looked%20at/cases/0/realisations/0/map?field=gap&load=nan", 422, "load"},
         {"/v1/studies/nothing/cases/0/realisations/0/map", 404, "nothing"},
         {"/v1/studies/looked%20at/cases/1/realisations/3/nodes", 404, "cases have 3"},
         {"/v1/studies/looked%20at/cases/0/realisations/0/nodes?load=0.2,0.1", 422, "rising loads"},
         {"/v1/studies/looked%20at/cases/0/realisations/0/nodes?load=inf", 422, "rising loads"},
-        {"/v1/studies/looked%20at/cases/0/realisations/0/nodes?format=xml", 422, "csv, vtu"},
+        {"/v1/studies/looked%20at/cases/0/realisations/0/nodes?format=xml", 422,
+         "xml is none of csv|vtu"},
         {"/v1/studies/looked%20at/cases/0/realisations/0/nodes?format=vtu", 422, "one load"},
         {"/v1/studies/looked%20at/cases/0/realisations/0/nodes?model=full", 422, "no model full"}};
     for (size_t w = 0; w < sizeof WRONG / sizeof *WRONG; w++) {

@@ -255,6 +255,12 @@ static void wrong_addresses_and_tokens_are_refused(void **state) {
         "http://h:1?q=1",
         "http://u:p@h:1",
         "http://h h:1",
+        "http://h:1#x",
+        "h:1/path",
+        "h:1#2",
+        "u:p@h:1",
+        "study.db",
+        "127.0.0.1:",
     };
     struct client *client = NULL;
     struct error err = {0};
@@ -262,8 +268,16 @@ static void wrong_addresses_and_tokens_are_refused(void **state) {
         if (client_create(&client, urls[n], NULL, NULL, &err) != ERROR_INPUT) {
             fail_msg("'%s' was taken", urls[n]);
         }
+        assert_non_null(strstr(err.text, urls[n]));
         assert_null(client);
     }
+    static const char *const alone[] = {"127.0.0.1:8080", "localhost:8080", "[::1]:8080"};
+    for (size_t n = 0; n < sizeof alone / sizeof alone[0]; n++) {
+        assert_int_equal(client_create(&client, alone[n], "a", NULL, &err), 0);
+        client_destroy(&client);
+    }
+    assert_int_equal(client_create(&client, "h.example:8080", "a", NULL, &err), ERROR_INPUT);
+    assert_non_null(strstr(err.text, "http://h.example:8080 would get the token in clear text"));
     assert_int_equal(client_create(&client, "http://h:1", "a\r\nX: y", NULL, &err), ERROR_INPUT);
     assert_int_equal(client_create(&client, "https://[::1]:8080/", "a", NULL, &err), 0);
     client_destroy(&client);

@@ -106,7 +106,7 @@ static void what_cannot_be_written_is_told(void **state) {
     struct error err = {0};
     struct nodal_step step = step_of(0.1, false);
     assert_int_equal(step_folder_open(&files, "no/such", NULL, &err), ERROR_SYSTEM);
-    assert_non_null(strstr(err.text, "cannot make no/such: No such file or directory"));
+    assert_non_null(strstr(err.text, "cannot make folder no/such: No such file or directory"));
     assert_int_equal(step_folder_open(&files, "half", "no/such.csv", &err), ERROR_SYSTEM);
     assert_non_null(strstr(err.text, "cannot open no/such.csv"));
     if (access("/dev/full", W_OK) != 0)
