@@ -12,7 +12,7 @@ enum { FRAME_LEFT = 80, FRAME_RIGHT = 700, FRAME_TOP = 40, FRAME_BOTTOM = 500 };
 struct plot_axis {
     double low, high;
     bool logarithmic;
-    bool one_plus;       /* as log(1 + value), of values above -1; not with logarithmic */
+    double plus; /* above 0: as log(plus + value), of values above -plus; not with logarithmic */
     size_t tick_count;   /* 0: ticks at round numbers */
     const double *ticks; /* borrowed: the only values with ticks */
 };
