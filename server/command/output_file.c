@@ -2,6 +2,7 @@
 #include "core/file/file.h"
 #include "core/file/memory_file.h"
 #include "server/command/rasterise.h"
+#include "server/command/tool.h"
 #include "server/show/map/map_png.h"
 #include <errno.h>
 #include <stdlib.h>
@@ -44,19 +45,37 @@ static int write_drawn(const char *path, const char *svg, size_t size, FILE *fil
     return 0;
 }
 
-static int write_file(const char *path, const char *svg, size_t size, struct error *err) {
+/* Copies a file of tool_file to where it is to be. */
+static int publish(const char *path, FILE *made, struct error *err) {
+    char block[1 << 14];
+    size_t size;
     FILE *file;
-    int status = output_file_check_drawn(path, err);
-    if (status == 0)
-        status = file_open(&file, path, err);
+    if (fflush(made) != 0 || ferror(made) != 0 || fseek(made, 0, SEEK_SET) != 0)
+        return error_set(err, ERROR_SYSTEM, "%s, in memory: %s", path, strerror(errno));
+    int status = file_open(&file, path, err);
     if (status != 0)
         return status;
-    status = write_drawn(path, svg, size, file, err);
-    if (status != 0)
-        error_context(err, "%s", path);
+    while ((size = fread(block, 1, sizeof block, made)) > 0)
+        (void)fwrite(block, 1, size, file); /* the file remembers a failure */
+    if (ferror(made) != 0)
+        status = error_set(err, ERROR_SYSTEM, "%s, in memory: %s", path, strerror(errno));
     status = file_close(file, path, status, err);
     if (status != 0)
         (void)unlink(path);
+    return status;
+}
+
+static int write_file(const char *path, const char *svg, size_t size, struct error *err) {
+    int status = output_file_check_drawn(path, err);
+    FILE *made = status == 0 ? tool_file(err) : NULL;
+    if (made == NULL)
+        return status != 0 ? status : ERROR_SYSTEM;
+    status = write_drawn(path, svg, size, made, err);
+    if (status != 0)
+        error_context(err, "%s", path);
+    else
+        status = publish(path, made, err);
+    (void)fclose(made);
     return status;
 }
 
@@ -78,10 +97,14 @@ int output_file_draw(const char *path, output_drawing *draw, const void *context
 
 /* A map in PNG has a pixel a point, which is no drawing of an SVG. */
 static int write_pixels(const char *path, const struct map_picture *picture, struct error *err) {
-    FILE *file;
-    int status = file_open(&file, path, err);
-    return status != 0 ? status
-                       : file_close(file, path, map_png(file, picture->grid, picture->z, err), err);
+    FILE *made = tool_file(err);
+    if (made == NULL)
+        return ERROR_SYSTEM;
+    int status = map_png(made, picture->grid, picture->z, err);
+    if (status == 0)
+        status = publish(path, made, err);
+    (void)fclose(made);
+    return status;
 }
 
 static int draw_map(const void *context, FILE *file, struct error *err) {

@@ -21,7 +21,9 @@ static int write_block(const struct mesh_file *mesh, FILE *file, const struct no
 int mesh_file_write(const struct mesh_file *mesh, const struct nodal_step *step,
                     struct error *err) {
     FILE *file;
-    int status = file_open(&file, mesh->path, err);
+    int status = file_ends_in(mesh->path, ".msh") ? mesh_msh_check(step->mesh, err) : 0;
+    if (status == 0)
+        status = file_open(&file, mesh->path, err);
     if (status != 0)
         return status;
     status = write_block(mesh, file, step, err);

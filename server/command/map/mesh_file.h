@@ -16,8 +16,9 @@ struct mesh_file {
 /* Notes a step of so many at most, which has a mesh; nothing without a path. ERROR_MEMORY. */
 int mesh_file_note(struct mesh_file *mesh, const struct nodal_step *step, size_t most,
                    struct error *err);
-/* Writes the block as it is in this step, with all that were noted, over what was there. No file is
- * left after a failure. */
+/* Writes the block as it is in this step, with all that were noted, over what was there. What was
+ * there stays where the format cannot hold the block; no file is left where it cannot be written.
+ */
 int mesh_file_write(const struct mesh_file *mesh, const struct nodal_step *step, struct error *err);
 void mesh_file_clear(struct mesh_file *mesh);
 

@@ -178,6 +178,24 @@ static void pictures_become_pixels(void **state) {
     assert_true(access("no.svg", F_OK) != 0);
 }
 
+/* A picture that cannot be drawn leaves the one that was there. */
+static void the_earlier_picture_stays(void **state) {
+    (void)state;
+    const char *const arguments[] = {"plot", "--db", "rugo.db", id,  "--quantity",
+                                     "psd",  "-o",   "old.png", NULL};
+    const char *before = getenv("PATH");
+    char *path = strdup(before != NULL ? before : "");
+    assert_non_null(path);
+    spit("old.png", "earlier");
+    assert_int_equal(setenv("PATH", "/nonexistent", 1), 0);
+    const int status = run_rugo("old", arguments);
+    assert_int_equal(setenv("PATH", path, 1), 0);
+    free(path);
+    assert_int_equal(status, 1);
+    assert_true(contains("old.err", "old.png: "));
+    assert_true(contains("old.png", "earlier"));
+}
+
 /* A density has a picture a case among the files, too. */
 static void files_have_densities(void **state) {
     (void)state;
@@ -246,6 +264,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plots_are_the_same_near_and_far),
         cmocka_unit_test(pictures_become_pixels),
+        cmocka_unit_test(the_earlier_picture_stays),
         cmocka_unit_test(files_have_densities),
         cmocka_unit_test(surfaces_are_drawn),
         cmocka_unit_test(maps_of_files_are_drawn),
