@@ -26,13 +26,24 @@ bool output_file_is_png(const char *path) {
     return file_ends_in(path, ".png");
 }
 
-int output_file_check_drawn(const char *path, struct error *err) {
-    static const char *const ENDINGS[] = {".svg", ".png", ".pdf", ".eps"};
-    for (size_t a = 0; a < sizeof ENDINGS / sizeof *ENDINGS; a++)
-        if (file_ends_in(path, ENDINGS[a]))
+int output_file_check_ending(const char *path, const char *what, const char *const *endings,
+                             struct error *err) {
+    char allowed[80] = "";
+    size_t used = 0;
+    for (size_t e = 0; endings[e] != NULL; e++) {
+        if (file_ends_in(path, endings[e]))
             return 0;
-    return error_set(err, ERROR_INPUT,
-                     "picture %.200s: its name ends in none of .svg, .png, .pdf, .eps", path);
+        if (used < sizeof allowed)
+            used += (size_t)snprintf(allowed + used, sizeof allowed - used, "%s%s",
+                                     e > 0 ? ", " : "", endings[e]);
+    }
+    return error_set(err, ERROR_INPUT, "%s %.200s: its name %s %s", what, path,
+                     endings[1] != NULL ? "ends in none of" : "does not end in", allowed);
+}
+
+int output_file_check_drawn(const char *path, struct error *err) {
+    static const char *const ENDINGS[] = {".svg", ".png", ".pdf", ".eps", NULL};
+    return output_file_check_ending(path, "picture", ENDINGS, err);
 }
 
 static int write_drawn(const char *path, const char *svg, size_t size, FILE *file,

@@ -13,7 +13,11 @@ bool output_file_is_png(const char *path);
 /* Writes a picture into a file of its own: a pixel a point where its name ends in .png, else as
  * output_file_draw. */
 int output_file_picture(const char *path, const struct map_picture *picture, struct error *err);
-/* Returns ERROR_INPUT for a name that ends in none of .svg, .png, .pdf and .eps. */
+/* Returns ERROR_INPUT for a name that ends in none of these, which end with NULL: the message calls
+ * the file `what`. */
+int output_file_check_ending(const char *path, const char *what, const char *const *endings,
+                             struct error *err);
+/* Likewise for one that ends in none of .svg, .png, .pdf and .eps. */
 int output_file_check_drawn(const char *path, struct error *err);
 /* Prints what is to be drawn, an SVG. context: as given to output_file_draw. */
 typedef int output_drawing(const void *context, FILE *file, struct error *err);

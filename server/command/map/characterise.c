@@ -128,12 +128,13 @@ static int draw(const char *path, const char *name, const struct height_map *map
     return output_file_picture(path, &picture, err);
 }
 
-/* A page under a name of another kind would not be what it seems. */
-static int check_report(const char *path, struct error *err) {
-    int status = path != NULL ? output_file_check_drawn(path, err) : 0;
-    if (status != 0)
-        error_context(err, "--report; --format svg prints the page");
-    return status;
+/* A picture or a page under a name of another kind would not be what it seems. */
+static int check_drawn(const struct characterise_options *options, struct error *err) {
+    int status = options->picture != NULL ? output_file_check_drawn(options->picture, err) : 0;
+    if (status != 0 || options->report == NULL)
+        return status;
+    status = output_file_check_drawn(options->report, err);
+    return status != 0 ? error_context(err, "--report; --format svg prints the page") : 0;
 }
 
 static int draw_page(const void *figure, FILE *file, struct error *err) {
@@ -351,7 +352,7 @@ static int study_together(const struct characterise_options *options, const char
 static int characterise_together(const struct characterise_options *options,
                                  const char *const *files, struct error *err) {
     struct named_values found = {0};
-    int status = check_report(options->report, err);
+    int status = check_drawn(options, err);
     if (status == 0)
         status = check_group(options, err);
     if (status == 0)
@@ -376,7 +377,7 @@ static int characterise_one(const struct characterise_options *options, const ch
     struct named_values found = {0};
     struct preparation_record record = {0};
     int status = files[1] == NULL
-                     ? check_report(options->report, err)
+                     ? check_drawn(options, err)
                      : error_set(err, ERROR_INPUT,
                                  "several files; --together fits them as maps of one surface");
     if (status == 0)

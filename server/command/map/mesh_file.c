@@ -2,6 +2,7 @@
 #include "core/file/file.h"
 #include "core/full/file/mesh_msh.h"
 #include "core/nodal/step_folder.h"
+#include "server/command/output_file.h"
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -16,6 +17,14 @@ static int write_block(const struct mesh_file *mesh, FILE *file, const struct no
     if (file_ends_in(mesh->path, ".inp"))
         return mesh_inp(file, step->lengths, &model, err);
     return step_vtu(file, step, err);
+}
+
+int mesh_file_check(const char *mesh, const char *nodes, struct error *err) {
+    static const char *const MESHES[] = {".vtu", ".msh", ".inp", NULL}, *const CSV[] = {".csv",
+                                                                                        NULL};
+    int status = mesh != NULL ? output_file_check_ending(mesh, "--mesh", MESHES, err) : 0;
+    return status == 0 && nodes != NULL ? output_file_check_ending(nodes, "--nodes", CSV, err)
+                                        : status;
 }
 
 int mesh_file_write(const struct mesh_file *mesh, const struct nodal_step *step,

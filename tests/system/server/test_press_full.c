@@ -175,7 +175,10 @@ static void what_has_no_meaning_is_refused(void **state) {
         {"--direction y", "--direction y is that of the tangential load, which --friction gives"},
         {"--model halfspace,full --mesh m.vtu", "--mesh: the model halfspace, the first, has no"},
         {"--model full --limit 0.001", "no map of this shape with 16 points along a side is small"},
-        {"--model full --mesh no/such.vtu", "cannot write no/such.vtu"}};
+        {"--model full --mesh no/such.vtu", "cannot write no/such.vtu"},
+        {"--model full --mesh b.stl", "--mesh b.stl: its name ends in none of .vtu, .msh, .inp"},
+        {"--vtu face.png", "--vtu face.png: its name does not end in .vtu"},
+        {"--nodes nodes.vtu", "--nodes nodes.vtu: its name does not end in .csv"}};
     char line[200];
     for (size_t n = 0; n < sizeof WRONG / sizeof *WRONG; n++) {
         snprintf(line, sizeof line, "$RUGO press z.npy --dx 0.125 %s", WRONG[n].options);
