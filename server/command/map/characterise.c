@@ -31,7 +31,8 @@ static const struct option_row OPTIONS[] = {
     MAP_EXTEND_ROW(struct characterise_options, map),
     MAP_BOUNDARY_ROW(struct characterise_options, map),
     {"trust-from", 0, OPTION_TEXT, 0, 0, AT(trust_from), "LENGTH", NULL,
-     "the longest waves whose spectrum is fitted, such as 50um (by the map)"},
+     "the longest waves whose spectrum is fitted, such as 50um (by the map); not with --format "
+     "study"},
     {"trust-to", 0, OPTION_TEXT, 0, 0, AT(trust_to), "LENGTH", NULL,
      "the shortest ones (by the map: where noise, or what the instrument takes, begins)"},
     {"format", 0, OPTION_CHOICE, 0, 0, AT(format), "text|json|svg|study", "text",
@@ -410,9 +411,6 @@ static int characterise_one(const struct characterise_options *options, const ch
 
 static int characterise_files(const struct characterise_options *options, const char *const *files,
                               struct error *err) {
-    if (options->hold && options->format != FORMAT_STUDY)
-        return error_set(err, ERROR_INPUT,
-                         "--hold goes with --format study, whose surfaces hold the map");
     return options->together ? characterise_together(options, files, err)
                              : characterise_one(options, files, err);
 }
@@ -455,10 +453,25 @@ static int characterise_sent(const struct characterise_options *options, const c
     return status;
 }
 
+/* The law of a study is fitted by the map, whatever its reader is to trust. */
+static int check_study(const struct characterise_options *options, struct error *err) {
+    const bool study = options->format == FORMAT_STUDY;
+    if (options->hold && !study)
+        return error_set(err, ERROR_INPUT,
+                         "--hold goes with --format study, whose surfaces hold the map");
+    if (study && (options->trust_from != NULL || options->trust_to != NULL))
+        return error_set(err, ERROR_INPUT,
+                         "--trust-from and --trust-to do not go with --format study, whose law is "
+                         "fitted to the waves that the map says");
+    return 0;
+}
+
 static int run(const void *values, const char *const *arguments) {
     const struct characterise_options *options = values;
     struct error err = {0};
-    int status = options->sent != NULL ? characterise_sent(options, arguments, &err)
+    int status = check_study(options, &err);
+    if (status == 0)
+        status = options->sent != NULL ? characterise_sent(options, arguments, &err)
                                        : characterise_files(options, arguments, &err);
     return status == 0 ? EXIT_DONE : command_fail("characterise", &err);
 }

@@ -424,6 +424,10 @@ static void groups_are_printed(void **state) {
     assert_true(contains("shell.err", "--group height: there is no group 'height'; the map has "));
     assert_true(contains("shell.err", ", grid, heights, "));
     assert_int_equal(run_shell("$RUGO characterise g.npy --group grid --all"), 2);
+    assert_int_equal(run_shell("$RUGO characterise g.npy --trust-to 1 --format study"), 2);
+    assert_true(contains("shell.err", "do not go with --format study"));
+    assert_int_equal(run_shell("$RUGO characterise absent.npy --picture x.jpg"), 2);
+    assert_true(contains("shell.err", "picture x.jpg: its name ends in none of .svg"));
     assert_int_equal(run_shell("$RUGO characterise g.npy --group grid --format svg"), 2);
     assert_true(contains("shell.err", "--group goes with --format text or json"));
 }
