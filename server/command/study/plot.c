@@ -49,7 +49,8 @@ static const struct option_row OPTIONS[] = {
      "for print: so many millimetres wide, or one (85) or two (178) columns; without the title"},
     {"out", 'o', OPTION_TEXT, 0, 0, AT(out), "FILE", NULL,
      "in place of standard output: .svg, or by rsvg-convert .png, .pdf or .eps"},
-    {"case", 0, OPTION_INDEX, 0, 0, AT(case_number), "K", NULL, "of curves: this case only"},
+    {"case", 0, OPTION_INDEX, 0, 0, AT(case_number), "K", NULL,
+     "of curves: this case only, without --where"},
     {"difference", 0, OPTION_PAIR, 0, 0, AT(difference), "A B", NULL,
      "of curves: case A less case B"},
     {0}};

@@ -124,6 +124,9 @@ static void what_cannot_be_drawn_is_refused(void **state) {
         {"?quantity=summit_joint_pdf&log=xy", 422, "log xy belongs to lines"},
         {"?quantity=summit_joint_pdf&total=no", 422, "summit_joint_pdf is a density; allowed"},
         {"?quantity=psd&case=2", 404, "has no case 2"},
+        {"?quantity=psd&case=0&where=hurst=0.8", 422,
+         "case 0 and where hurst=0.8: a picture is of"},
+        {"?quantity=summit_joint_pdf&case=0&where=hurst=0.8", 422, "or of those of where"},
         {"?quantity=psd&difference=1,0&x=hurst", 422, "takes no case, x or where"},
         {"?quantity=psd&size=3", 422, "?size"},
     };
