@@ -80,6 +80,12 @@ double frame_set(struct frame *frame, const double x[2], const double y[2], bool
     return ratio / shown;
 }
 
+bool frame_stretch_text(double stretched, char *text, size_t size) {
+    snprintf(text, size, "not to scale: %c stretched %.3g times", stretched > 1 ? 'y' : 'x',
+             stretched > 1 ? stretched : 1 / stretched);
+    return fabs(stretched - 1) > 1e-3;
+}
+
 /* Zero belongs to an axis that begins near it. */
 static void axis_begin_at_zero(struct plot_axis *axis) {
     if (!axis->logarithmic && axis->low > 0 && axis->low < axis->high / 2)

@@ -39,6 +39,9 @@ void frame_include_point(struct frame *frame, double x, double y);
  * its sides. Returns how many times as long it is: 1 but for sides of a larger ratio. */
 #define FRAME_RATIO_MOST 8.0
 double frame_set(struct frame *frame, const double x[2], const double y[2], bool same_lengths);
+/* Writes what a picture says of a map with lengths of y so many times as long as those of x: "not
+ * to scale: y stretched 5 times". Returns false where they are as long, to what is seen. */
+bool frame_stretch_text(double stretched, char *text, size_t size);
 
 /* Returns where a value stands on the picture. */
 double frame_x(const struct frame *frame, double x);
