@@ -256,9 +256,18 @@ static void maps_of_files_are_drawn(void **state) {
         run_rugo("map", (const char *[]){"plot", "pressures.csv", "--out", "p.svg", NULL}), 0);
     assert_true(contains("p.svg", ">blank: 0<"));
     assert_false(contains("map.svg", "blank: 0"));
-    assert_int_equal(run_rugo("map", (const char *[]){"plot", "map.csv", "--width", "one", NULL}),
-                     2);
-    assert_true(contains("map.err", "--width belongs to curves"));
+    static const char *const OF_STUDIES[][2] = {
+        {"--width", "one"},      {"--x", "hurst"},    {"--where", "hurst=0.8"},
+        {"--log", "xy"},         {"--total", "no"},   {"--case", "0"},
+        {"--difference", "1,0"}, {"--db", "rugo.db"}, {"--server", "http://[::1]:1"}};
+    for (size_t o = 0; o < sizeof OF_STUDIES / sizeof *OF_STUDIES; o++) {
+        char words[64];
+        snprintf(words, sizeof words, "%s belongs to the --quantity of a study", OF_STUDIES[o][0]);
+        assert_int_equal(run_rugo("map", (const char *[]){"plot", "map.csv", OF_STUDIES[o][0],
+                                                          OF_STUDIES[o][1], NULL}),
+                         2);
+        assert_true(contains("map.err", words));
+    }
     assert_int_equal(run_rugo("nomap", (const char *[]){"plot", "nowhere.npy", NULL}), 2);
     assert_true(contains("nomap.err", "nowhere.npy"));
 }
