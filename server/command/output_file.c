@@ -2,6 +2,7 @@
 #include "core/file/file.h"
 #include "core/file/memory_file.h"
 #include "server/command/rasterise.h"
+#include "server/command/tool.h"
 #include "server/show/map/map_png.h"
 #include <errno.h>
 #include <stdlib.h>
@@ -25,13 +26,24 @@ bool output_file_is_png(const char *path) {
     return file_ends_in(path, ".png");
 }
 
-int output_file_check_drawn(const char *path, struct error *err) {
-    static const char *const ENDINGS[] = {".svg", ".png", ".pdf", ".eps"};
-    for (size_t a = 0; a < sizeof ENDINGS / sizeof *ENDINGS; a++)
-        if (file_ends_in(path, ENDINGS[a]))
+int output_file_check_ending(const char *path, const char *what, const char *const *endings,
+                             struct error *err) {
+    char allowed[80] = "";
+    size_t used = 0;
+    for (size_t e = 0; endings[e] != NULL; e++) {
+        if (file_ends_in(path, endings[e]))
             return 0;
-    return error_set(err, ERROR_INPUT,
-                     "picture %.200s: its name ends in none of .svg, .png, .pdf, .eps", path);
+        if (used < sizeof allowed)
+            used += (size_t)snprintf(allowed + used, sizeof allowed - used, "%s%s",
+                                     e > 0 ? ", " : "", endings[e]);
+    }
+    return error_set(err, ERROR_INPUT, "%s %.200s: its name %s %s", what, path,
+                     endings[1] != NULL ? "ends in none of" : "does not end in", allowed);
+}
+
+int output_file_check_drawn(const char *path, struct error *err) {
+    static const char *const ENDINGS[] = {".svg", ".png", ".pdf", ".eps", NULL};
+    return output_file_check_ending(path, "picture", ENDINGS, err);
 }
 
 static int write_drawn(const char *path, const char *svg, size_t size, FILE *file,
@@ -44,19 +56,37 @@ static int write_drawn(const char *path, const char *svg, size_t size, FILE *fil
     return 0;
 }
 
-static int write_file(const char *path, const char *svg, size_t size, struct error *err) {
+/* Copies a file of tool_file to where it is to be. */
+static int publish(const char *path, FILE *made, struct error *err) {
+    char block[1 << 14];
+    size_t size;
     FILE *file;
-    int status = output_file_check_drawn(path, err);
-    if (status == 0)
-        status = file_open(&file, path, err);
+    if (fflush(made) != 0 || ferror(made) != 0 || fseek(made, 0, SEEK_SET) != 0)
+        return error_set(err, ERROR_SYSTEM, "%s, in memory: %s", path, strerror(errno));
+    int status = file_open(&file, path, err);
     if (status != 0)
         return status;
-    status = write_drawn(path, svg, size, file, err);
-    if (status != 0)
-        error_context(err, "%s", path);
+    while ((size = fread(block, 1, sizeof block, made)) > 0)
+        (void)fwrite(block, 1, size, file); /* the file remembers a failure */
+    if (ferror(made) != 0)
+        status = error_set(err, ERROR_SYSTEM, "%s, in memory: %s", path, strerror(errno));
     status = file_close(file, path, status, err);
     if (status != 0)
         (void)unlink(path);
+    return status;
+}
+
+static int write_file(const char *path, const char *svg, size_t size, struct error *err) {
+    int status = output_file_check_drawn(path, err);
+    FILE *made = status == 0 ? tool_file(err) : NULL;
+    if (made == NULL)
+        return status != 0 ? status : ERROR_SYSTEM;
+    status = write_drawn(path, svg, size, made, err);
+    if (status != 0)
+        error_context(err, "%s", path);
+    else
+        status = publish(path, made, err);
+    (void)fclose(made);
     return status;
 }
 
@@ -78,10 +108,14 @@ int output_file_draw(const char *path, output_drawing *draw, const void *context
 
 /* A map in PNG has a pixel a point, which is no drawing of an SVG. */
 static int write_pixels(const char *path, const struct map_picture *picture, struct error *err) {
-    FILE *file;
-    int status = file_open(&file, path, err);
-    return status != 0 ? status
-                       : file_close(file, path, map_png(file, picture->grid, picture->z, err), err);
+    FILE *made = tool_file(err);
+    if (made == NULL)
+        return ERROR_SYSTEM;
+    int status = map_png(made, picture->grid, picture->z, err);
+    if (status == 0)
+        status = publish(path, made, err);
+    (void)fclose(made);
+    return status;
 }
 
 static int draw_map(const void *context, FILE *file, struct error *err) {

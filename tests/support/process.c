@@ -1,5 +1,6 @@
 #include "tests/support/process.h"
 #include "tests/support/check.h"
+#include "tests/support/count_files.h"
 #include <arpa/inet.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -66,6 +67,15 @@ int process_wait(struct process *process, int seconds) {
     }
     process->pid = 0;
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+void process_wait_for_file(const struct process *process, const char *pattern) {
+    siginfo_t end = {0};
+    for (int tries = 0; count_files(pattern) == 0 && end.si_pid == 0; tries++) {
+        assert_true(tries < 120000);
+        usleep(500);
+        assert_int_equal(waitid(P_PID, (id_t)process->pid, &end, WEXITED | WNOHANG | WNOWAIT), 0);
+    }
 }
 
 int run_rugo(const char *name, const char *const *arguments) {

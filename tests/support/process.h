@@ -19,6 +19,8 @@ struct process {
 void process_start(struct process *process, const char *name, const char *const *arguments);
 /* Waits for its end (at most `seconds`, then the test fails); exit status, or 128 + the signal. */
 int process_wait(struct process *process, int seconds);
+/* Waits until there is a file of such a name (glob), a minute at most, or the process has ended. */
+void process_wait_for_file(const struct process *process, const char *pattern);
 /* Start and wait. */
 int run_rugo(const char *name, const char *const *arguments);
 /* Runs a line of the shell, in which $RUGO is the executable, and returns its exit status likewise;

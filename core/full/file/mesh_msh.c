@@ -134,14 +134,21 @@ static void write_links(struct msh_writer *w) {
     fputs("$EndPeriodic\n", w->file);
 }
 
-int mesh_msh(FILE *file, const struct mesh *mesh, struct error *err) {
-    struct msh_writer w = {.file = file, .mesh = mesh};
+int mesh_msh_check(const struct mesh *mesh, struct error *err) {
     for (size_t k = 0; k < mesh->layers; k++)
         if (mesh_widens(mesh, k))
             return error_set(err, ERROR_INPUT,
                              "columns of elements widen with depth, which files of Gmsh cannot "
                              "hold: \"transition_depth\": 1e9, of rugo press --transition-depth "
                              "1e9, keeps them as wide as those of the surface");
+    return 0;
+}
+
+int mesh_msh(FILE *file, const struct mesh *mesh, struct error *err) {
+    struct msh_writer w = {.file = file, .mesh = mesh};
+    int status = mesh_msh_check(mesh, err);
+    if (status != 0)
+        return status;
     errno = 0;
     write_names(&w);
     fprintf(file, "$Nodes\n%zu\n", mesh_points_count(mesh));

@@ -12,6 +12,8 @@
 #include <stdio.h>
 
 /* ERROR_INPUT for a mesh whose columns widen: the format has no points that hang between others. */
+int mesh_msh_check(const struct mesh *mesh, struct error *err);
+/* Writes it; errors as of mesh_msh_check, and ERROR_SYSTEM. */
 int mesh_msh(FILE *file, const struct mesh *mesh, struct error *err);
 
 #endif

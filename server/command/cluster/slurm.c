@@ -251,7 +251,8 @@ static int prepare(struct slurm_run *run, struct error *err) {
 
 /* The command as a job: it is followed, and what became of the study is read from the store. */
 static int perform_inside(struct slurm_run *run, const char *file, struct error *err) {
-    const struct inside_command command = {OPTIONS, run->options, file, "inside"};
+    static const char *const WITHOUT[] = {"inside", "print", NULL};
+    const struct inside_command command = {OPTIONS, run->options, file, WITHOUT};
     const struct options *options = run->options;
     struct study_status now = {0};
     struct inside inside;
@@ -288,11 +289,11 @@ static int run_study(const void *values, const char *const *arguments) {
         return usage_error("slurm", "--inside takes a time as of sbatch, such as 1-00:00:00");
     signals_catch();
     int status = prepare(&run, &err);
-    if (status == 0 && options->print)
-        status = pilots_print(run.pilots.script, &err);
     if (status == 0 && options->inside != NULL)
         status = perform_inside(&run, arguments[0], &err);
-    else if (status == 0 && !options->print)
+    else if (status == 0 && options->print)
+        status = pilots_print(run.pilots.script, &err);
+    else if (status == 0)
         status = perform(&run, arguments[0], &err);
     int result = command_end("slurm", status, arguments[0], &run.faults, &err);
     store_close(&run.store);

@@ -10,7 +10,7 @@
 
 enum { LOOK_MS = 5000, END_S = 120 /* signalled so long before its limit of time */ };
 
-/* Prints an option as it would be typed, where it has a value. */
+/* Prints an option as it would be typed, where it has a value or is set. */
 static void print_option(FILE *file, const struct option_row *row, const void *values) {
     const void *value = (const char *)values + row->at;
     const char *alone[2] = {NULL, NULL}, *const *texts = alone;
@@ -22,6 +22,8 @@ static void print_option(FILE *file, const struct option_row *row, const void *v
         alone[0] = *(const char *const *)value;
     } else if (row->type == OPTION_LIST) {
         texts = *(const char *const *const *)value;
+    } else if (row->type == OPTION_FLAG && *(const bool *)value) {
+        fprintf(file, " --%s", row->name);
     }
     for (; *texts != NULL; texts++) {
         fprintf(file, " --%s=", row->name);
@@ -29,15 +31,23 @@ static void print_option(FILE *file, const struct option_row *row, const void *v
     }
 }
 
+static bool is_left_out(const char *name, const char *const *without) {
+    while (*without != NULL && strcmp(name, *without) != 0)
+        without++;
+    return *without != NULL;
+}
+
 static void print_script(const struct slurm_folder *folder, const struct inside *inside,
                          const struct pilot_options *options, const char *program, const char *time,
                          const struct inside_command *command, FILE *file) {
     fprintf(file, "#!/bin/sh\n#SBATCH --job-name=%s\n#SBATCH --output=\"", inside->name);
     script_print_path(folder->path, file);
-    fprintf(file,
-            "/inside.log\"\n#SBATCH --open-mode=append\n#SBATCH --requeue\n#SBATCH --ntasks=1\n"
-            "#SBATCH --signal=B:TERM@%d\n#SBATCH --time=%s\n",
-            END_S, time);
+    fputs("/inside.log\"\n#SBATCH --open-mode=append\n#SBATCH --requeue\n", file);
+    for (const char **option = options->sbatch; *option != NULL; option++)
+        fprintf(file, "#SBATCH %s\n", *option);
+    /* Behind those of --sbatch, which sbatch lets them overrule. */
+    fprintf(file, "#SBATCH --ntasks=1\n#SBATCH --signal=B:TERM@%d\n#SBATCH --time=%s\n", END_S,
+            time);
     if (options->partition != NULL)
         fprintf(file, "#SBATCH --partition=%s\n", options->partition);
     if (options->account != NULL)
@@ -46,7 +56,7 @@ static void print_script(const struct slurm_folder *folder, const struct inside 
     script_print_word(program, file);
     fputs(" slurm", file);
     for (const struct option_row *row = command->rows; row->name != NULL; row++)
-        if (strcmp(row->name, command->without) != 0)
+        if (!is_left_out(row->name, command->without))
             print_option(file, row, command->values);
     fputs(" -- ", file);
     script_print_word(command->file, file);

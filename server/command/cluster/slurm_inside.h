@@ -8,9 +8,10 @@
 /* The command line of the job; all is borrowed. */
 struct inside_command {
     const struct option_row *rows;
-    const void *values;  /* of the rows */
-    const char *file;    /* the study's */
-    const char *without; /* the option that is not handed on: the one that asked for this job */
+    const void *values;         /* of the rows */
+    const char *file;           /* the study's */
+    const char *const *without; /* NULL-terminated: options that are not handed on, as the one
+                                   that asked for this job */
 };
 struct inside {
     char name[SLURM_NAME_SIZE + 8]; /* of the job */

@@ -31,7 +31,8 @@ static const struct option_row OPTIONS[] = {
     MAP_EXTEND_ROW(struct characterise_options, map),
     MAP_BOUNDARY_ROW(struct characterise_options, map),
     {"trust-from", 0, OPTION_TEXT, 0, 0, AT(trust_from), "LENGTH", NULL,
-     "the longest waves whose spectrum is fitted, such as 50um (by the map)"},
+     "the longest waves whose spectrum is fitted, such as 50um (by the map); not with --format "
+     "study"},
     {"trust-to", 0, OPTION_TEXT, 0, 0, AT(trust_to), "LENGTH", NULL,
      "the shortest ones (by the map: where noise, or what the instrument takes, begins)"},
     {"format", 0, OPTION_CHOICE, 0, 0, AT(format), "text|json|svg|study", "text",
@@ -128,12 +129,13 @@ static int draw(const char *path, const char *name, const struct height_map *map
     return output_file_picture(path, &picture, err);
 }
 
-/* A page under a name of another kind would not be what it seems. */
-static int check_report(const char *path, struct error *err) {
-    int status = path != NULL ? output_file_check_drawn(path, err) : 0;
-    if (status != 0)
-        error_context(err, "--report; --format svg prints the page");
-    return status;
+/* A picture or a page under a name of another kind would not be what it seems. */
+static int check_drawn(const struct characterise_options *options, struct error *err) {
+    int status = options->picture != NULL ? output_file_check_drawn(options->picture, err) : 0;
+    if (status != 0 || options->report == NULL)
+        return status;
+    status = output_file_check_drawn(options->report, err);
+    return status != 0 ? error_context(err, "--report; --format svg prints the page") : 0;
 }
 
 static int draw_page(const void *figure, FILE *file, struct error *err) {
@@ -351,7 +353,7 @@ static int study_together(const struct characterise_options *options, const char
 static int characterise_together(const struct characterise_options *options,
                                  const char *const *files, struct error *err) {
     struct named_values found = {0};
-    int status = check_report(options->report, err);
+    int status = check_drawn(options, err);
     if (status == 0)
         status = check_group(options, err);
     if (status == 0)
@@ -376,7 +378,7 @@ static int characterise_one(const struct characterise_options *options, const ch
     struct named_values found = {0};
     struct preparation_record record = {0};
     int status = files[1] == NULL
-                     ? check_report(options->report, err)
+                     ? check_drawn(options, err)
                      : error_set(err, ERROR_INPUT,
                                  "several files; --together fits them as maps of one surface");
     if (status == 0)
@@ -409,9 +411,6 @@ static int characterise_one(const struct characterise_options *options, const ch
 
 static int characterise_files(const struct characterise_options *options, const char *const *files,
                               struct error *err) {
-    if (options->hold && options->format != FORMAT_STUDY)
-        return error_set(err, ERROR_INPUT,
-                         "--hold goes with --format study, whose surfaces hold the map");
     return options->together ? characterise_together(options, files, err)
                              : characterise_one(options, files, err);
 }
@@ -454,10 +453,25 @@ static int characterise_sent(const struct characterise_options *options, const c
     return status;
 }
 
+/* The law of a study is fitted by the map, whatever its reader is to trust. */
+static int check_study(const struct characterise_options *options, struct error *err) {
+    const bool study = options->format == FORMAT_STUDY;
+    if (options->hold && !study)
+        return error_set(err, ERROR_INPUT,
+                         "--hold goes with --format study, whose surfaces hold the map");
+    if (study && (options->trust_from != NULL || options->trust_to != NULL))
+        return error_set(err, ERROR_INPUT,
+                         "--trust-from and --trust-to do not go with --format study, whose law is "
+                         "fitted to the waves that the map says");
+    return 0;
+}
+
 static int run(const void *values, const char *const *arguments) {
     const struct characterise_options *options = values;
     struct error err = {0};
-    int status = options->sent != NULL ? characterise_sent(options, arguments, &err)
+    int status = check_study(options, &err);
+    if (status == 0)
+        status = options->sent != NULL ? characterise_sent(options, arguments, &err)
                                        : characterise_files(options, arguments, &err);
     return status == 0 ? EXIT_DONE : command_fail("characterise", &err);
 }

@@ -7,6 +7,7 @@
 #include "jobs/surface/surface_case.h"
 #include "server/command/command.h"
 #include "server/command/map/generate_steps.h"
+#include "server/command/map/mesh_file.h"
 #include "server/command/output_file.h"
 #include "server/show/map/map_report.h"
 #include "server/show/plot/plot_map.h"
@@ -262,6 +263,13 @@ static int generate(const struct generate_order *order, const struct study *stud
     return status;
 }
 
+/* A name that says another kind of file than it would hold is refused before anything is made. */
+static int check_files(const struct generate_options *options, struct error *err) {
+    int status = mesh_file_check(options->steps.mesh, options->steps.nodes, err);
+    return status == 0 && options->picture != NULL ? output_file_check_drawn(options->picture, err)
+                                                   : status;
+}
+
 static int run(const void *values, const char *const *arguments) {
     struct generate_order order;
     struct fault_list faults = {0};
@@ -270,7 +278,9 @@ static int run(const void *values, const char *const *arguments) {
     const struct generate_options *options = values;
     if (read_order(&order, options, arguments[0]) != 0)
         return EXIT_USAGE;
-    int status = study_file_read(&study, order.study, options->overrides, &faults, &err);
+    int status = check_files(options, &err);
+    if (status == 0)
+        status = study_file_read(&study, order.study, options->overrides, &faults, &err);
     if (status == 0)
         status = generate(&order, study, &err);
     int result = command_end("generate", status, order.study, &faults, &err);

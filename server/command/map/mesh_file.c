@@ -2,6 +2,7 @@
 #include "core/file/file.h"
 #include "core/full/file/mesh_msh.h"
 #include "core/nodal/step_folder.h"
+#include "server/command/output_file.h"
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -18,10 +19,20 @@ static int write_block(const struct mesh_file *mesh, FILE *file, const struct no
     return step_vtu(file, step, err);
 }
 
+int mesh_file_check(const char *mesh, const char *nodes, struct error *err) {
+    static const char *const MESHES[] = {".vtu", ".msh", ".inp", NULL}, *const CSV[] = {".csv",
+                                                                                        NULL};
+    int status = mesh != NULL ? output_file_check_ending(mesh, "--mesh", MESHES, err) : 0;
+    return status == 0 && nodes != NULL ? output_file_check_ending(nodes, "--nodes", CSV, err)
+                                        : status;
+}
+
 int mesh_file_write(const struct mesh_file *mesh, const struct nodal_step *step,
                     struct error *err) {
     FILE *file;
-    int status = file_open(&file, mesh->path, err);
+    int status = file_ends_in(mesh->path, ".msh") ? mesh_msh_check(step->mesh, err) : 0;
+    if (status == 0)
+        status = file_open(&file, mesh->path, err);
     if (status != 0)
         return status;
     status = write_block(mesh, file, step, err);

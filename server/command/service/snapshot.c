@@ -52,7 +52,7 @@ static int remove_file(const char *folder, const char *name, struct error *err) 
 }
 
 /* Removes all but the newest one and keep - 1 others, of which names show the age, and what was
- * killed before it was verified. */
+ * killed before it was verified. Returns the first failure, after which it goes on. */
 static int remove_oldest(const struct series *series, const char *newest, size_t keep,
                          struct error *err) {
     struct dirent **entries = NULL;
@@ -64,8 +64,10 @@ static int remove_oldest(const struct series *series, const char *newest, size_t
         const char *name = entries[count]->d_name;
         if (kept_name_is(name, series->stem, ".db" UNVERIFIED) ||
             (kept_name_is(name, series->stem, ".db") && strcmp(name, newest) != 0 &&
-             kept++ >= keep))
-            status = remove_file(series->folder, name, err);
+             kept++ >= keep)) {
+            int removed = remove_file(series->folder, name, status == 0 ? err : NULL);
+            status = status == 0 ? removed : status;
+        }
         free(entries[count]);
     }
     free(entries);

@@ -10,7 +10,7 @@
 
 enum { TOKEN_DIGITS = 48 };
 
-/* Makes a token and the line that stands for it. */
+/* Makes a token and the line that stands for it, of words that were checked. */
 static int make(const char *role, const char *name, char token[TOKEN_DIGITS + 1], char line[256],
                 struct error *err) {
     unsigned char digest[DIGEST_SIZE];
@@ -20,7 +20,7 @@ static int make(const char *role, const char *name, char token[TOKEN_DIGITS + 1]
         return status;
     digest_text(token, digest);
     digest_print(digest, text);
-    snprintf(line, 256, "%.16s:%.64s:%s\n", role, name, text);
+    snprintf(line, 256, "%s:%s:%s\n", role, name, text);
     return 0;
 }
 
@@ -31,11 +31,6 @@ static int read_whole(const char *file, char **text, size_t *size, struct error 
     *size = 0;
     *text = calloc(1, 1);
     return *text != NULL ? 0 : error_memory(err, 1, "a file of tokens");
-}
-
-/* What a word is good for is what a reader says of the line. */
-static int check(void *context, const struct token_line *line, struct error *err) {
-    return token_line_check(line, context, err);
 }
 
 static int append(const char *file, const char *line, struct error *err) {
@@ -61,15 +56,10 @@ static int append(const char *file, const char *line, struct error *err) {
 
 int token_file_add(const char *file, const char *role, const char *name, char **token,
                    struct error *err) {
-    char fresh[TOKEN_DIGITS + 1], line[256], shown[256];
-    char where[] = "the new token";
-    int status = make(role, name, fresh, line, err);
-    if (status == 0) {
-        memcpy(shown, line, sizeof shown);
-        status = token_lines_visit(shown, check, where, err);
-    }
-    if (status == 0 && (strlen(role) > 16 || strlen(name) > 64 || *name == '\0'))
-        status = error_set(err, ERROR_INPUT, "\"%.80s\" is no name for a token", name);
+    char fresh[TOKEN_DIGITS + 1], line[256];
+    int status = token_words_check(role, name, err);
+    if (status == 0)
+        status = make(role, name, fresh, line, err);
     if (status == 0 && (*token = strdup(fresh)) == NULL)
         status = error_memory(err, sizeof fresh, "a token");
     if (status == 0 && (status = append(file, line, err)) != 0) {

@@ -101,6 +101,18 @@ bool token_name_is_good(const char *text) {
                length;
 }
 
+int token_words_check(const char *role, const char *name, struct error *err) {
+    if (roles_of(role, strlen(role)) == ROLE_NONE)
+        return error_set(err, ERROR_INPUT,
+                         "\"%.40s\" is no role; roles are read, submit, work and admin", role);
+    if (!is_name(name))
+        return error_set(err, ERROR_INPUT,
+                         "\"%.80s\" is no name for a token, which has 1 to %d letters, digits, "
+                         ". _ @ or -",
+                         name, OWNER_SIZE - 1);
+    return 0;
+}
+
 int token_line_check(const struct token_line *line, const char *file, struct error *err) {
     if (line->roles == ROLE_NONE)
         return error_set(err, ERROR_INPUT,

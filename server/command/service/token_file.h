@@ -41,12 +41,15 @@ bool token_name_is_good(const char *text);
  */
 int token_line_check(const struct token_line *line, const char *file, struct error *err);
 
+/* ERROR_INPUT where no line role:name:token can have this role and name. */
+int token_words_check(const char *role, const char *name, struct error *err);
+
 /* The token with which a client asks: of the file (NULL: RUGO_TOKEN, whole) the first one that has
  * the role, else the first one; *token is NULL where there is none. Caller frees. */
 int token_read(const char *file, enum role role, char **token, struct error *err);
 
 /* Makes a token, puts a line with its digest at the end of a file, which is made where there is
- * none, and gives the token, which the caller frees. */
+ * none, and gives the token, which the caller frees. ERROR_INPUT as of token_words_check. */
 int token_file_add(const char *file, const char *role, const char *name, char **token,
                    struct error *err);
 /* Takes the lines of a name out of a file: *count of them; ERROR_ABSENT where there is none. */

@@ -124,7 +124,7 @@ static int pack(struct access *access, const char *id, const char *folder,
     return status == 0 ? output_flush(err) : status;
 }
 
-/* The files of an archive are written beside it first. */
+/* The files of an archive are written beside it first, and removed also after an interruption. */
 static int write_archive(struct access *access, const char *id, const struct result_folder *out,
                          struct error *err) {
     char folder[PATH_SIZE];
@@ -136,6 +136,7 @@ static int write_archive(struct access *access, const char *id, const struct res
     if (snprintf(folder, sizeof folder, "%.*s.rugo-export-XXXXXX", before,
                  out->path != NULL ? out->path : "") >= (int)sizeof folder)
         return error_set(err, ERROR_INPUT, "the path %.100s... is too long", out->path);
+    signals_catch();
     if (mkdtemp(folder) == NULL)
         return error_set(err, ERROR_SYSTEM, "cannot make folder %s: %s", folder, strerror(errno));
     status = pack(access, id, folder, out, err);

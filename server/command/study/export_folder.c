@@ -6,6 +6,7 @@
 #include "schema/result/provenance.h"
 #include "schema/result/result_json.h"
 #include "server/command/access/access_source.h"
+#include "server/command/command.h"
 #include "server/show/output.h"
 #include "server/show/plot/plot_cost.h"
 #include "server/show/summary/summary.h"
@@ -185,6 +186,11 @@ static int print_readme(const struct exported *from, FILE *file, struct error *e
 
 /* --- all of them --- */
 
+/* What an interrupted command has not begun it leaves. */
+static int go_on(struct error *err) {
+    return stop_is_requested(NULL) ? error_set(err, ERROR_STOPPED, "stopped") : 0;
+}
+
 static int gather(struct exported *out, struct error *err) {
     const struct export_order *order = out->order;
     const struct result_filter all = {.case_number = -1, .complete = true};
@@ -208,9 +214,14 @@ static int write_files(const struct exported *from, struct error *err) {
     const struct result_folder *folder = &from->order->folder;
     int status = result_folder_take(folder, from->order->id, from->document, err);
     if (status == 0)
+        status = go_on(err);
+    if (status == 0)
         status = output_write(from->study, folder->path, err);
-    for (size_t r = 0; r < sizeof ROWS / sizeof *ROWS && status == 0; r++)
-        status = write_file(from, ROWS[r].name, ROWS[r].print, err);
+    for (size_t r = 0; r < sizeof ROWS / sizeof *ROWS && status == 0; r++) {
+        status = go_on(err);
+        if (status == 0)
+            status = write_file(from, ROWS[r].name, ROWS[r].print, err);
+    }
     return status;
 }
 

@@ -10,7 +10,8 @@ struct export_order {
     const char *id;
     struct result_folder folder; /* is there */
 };
-/* Writes the files. *study gets the results, which the caller clears also after a failure. */
+/* Writes the files. *study gets the results, which the caller clears also after a failure.
+ * ERROR_STOPPED, between two files, where stop_requested is set. */
 int export_folder(const struct export_order *order, struct study_result *study, struct error *err);
 
 #endif

@@ -49,7 +49,8 @@ static const struct option_row OPTIONS[] = {
      "for print: so many millimetres wide, or one (85) or two (178) columns; without the title"},
     {"out", 'o', OPTION_TEXT, 0, 0, AT(out), "FILE", NULL,
      "in place of standard output: .svg, or by rsvg-convert .png, .pdf or .eps"},
-    {"case", 0, OPTION_INDEX, 0, 0, AT(case_number), "K", NULL, "of curves: this case only"},
+    {"case", 0, OPTION_INDEX, 0, 0, AT(case_number), "K", NULL,
+     "of curves: this case only, without --where"},
     {"difference", 0, OPTION_PAIR, 0, 0, AT(difference), "A B", NULL,
      "of curves: case A less case B"},
     {0}};
@@ -146,6 +147,35 @@ static int draw_map(const char *path, const struct options *options, struct erro
     return status;
 }
 
+/* Returns whether an option of the table was given, which has none of other types; of a choice,
+ * whether it is not the first. */
+static bool is_given(const struct option_row *row, const struct options *options) {
+    const void *value = (const char *)options + row->at;
+    if (row->type == OPTION_FLAG)
+        return *(const bool *)value;
+    if (row->type == OPTION_CHOICE)
+        return *(const int *)value != 0;
+    if (row->type == OPTION_INDEX || row->type == OPTION_PAIR)
+        return *(const int64_t *)value >= 0;
+    if (row->type == OPTION_LIST)
+        return **(const char *const *const *)value != NULL;
+    return *(const char *const *)value != NULL;
+}
+
+/* A map has one look, and is in a file: returns 0, or EXIT_USAGE after a word on standard error. */
+static int check_map(const char *path, const struct options *options) {
+    if (height_map_format_of(path) == HEIGHT_MAP_FORMATS)
+        return usage_error("plot", "--quantity is missing: the name of curves or of a scalar; a "
+                                   "map is drawn from a file in .npy, .csv or .xyz");
+    for (const struct option_row *row = OPTIONS; row->name != NULL; row++)
+        if (row->at != AT(out) && is_given(row, options))
+            return usage_error("plot",
+                               "--%s belongs to the --quantity of a study, which is missing; a map "
+                               "in a file takes --out alone",
+                               row->name);
+    return 0;
+}
+
 static int run(const void *values, const char *const *arguments) {
     const struct options *options = values;
     struct error err = {0};
@@ -154,13 +184,8 @@ static int run(const void *values, const char *const *arguments) {
     if (access_options_check("plot", &options->place) != 0)
         return EXIT_USAGE;
     if (options->quantity == NULL) {
-        if (height_map_format_of(arguments[0]) == HEIGHT_MAP_FORMATS)
-            return usage_error("plot",
-                               "--quantity is missing: the name of curves or of a scalar; a "
-                               "map is drawn from a file in .npy, .csv or .xyz");
-        if (options->width != NULL)
-            return usage_error("plot", "--width belongs to curves and densities of a study; maps "
-                                       "are drawn for screens");
+        if (check_map(arguments[0], options) != 0)
+            return EXIT_USAGE;
         return draw_map(arguments[0], options, &err) != 0 ? command_fail("plot", &err) : EXIT_DONE;
     }
     int status = access_open(&access, &options->place, ACCESS_READ, &err);

@@ -1,4 +1,5 @@
 #include "server/command/study/zip_folder.h"
+#include "server/command/command.h"
 #include <dirent.h>
 #include <errno.h>
 #include <stdbool.h>
@@ -74,6 +75,11 @@ static int add_all(zip_t *zip, const char *folder, const char *top, size_t *coun
     return status;
 }
 
+static int is_stopped(zip_t *zip, void *context) {
+    (void)zip;
+    return stop_is_requested(context);
+}
+
 int zip_folder(const char *folder, const char *top, const char *path, size_t *count,
                struct error *err) {
     int code = 0;
@@ -87,11 +93,15 @@ int zip_folder(const char *folder, const char *top, const char *path, size_t *co
         return status;
     }
     int status = add_all(zip, folder, top, count, err);
+    if (status == 0 && zip_register_cancel_callback_with_state(zip, is_stopped, NULL, NULL) != 0)
+        status = refuse(zip, path, err);
     /* Closing writes it beside its path, and renames it when it is whole. */
     if (status == 0 && zip_close(zip) == 0)
         return 0;
     if (status == 0)
-        status = refuse(zip, path, err);
+        status = zip_error_code_zip(zip_get_error(zip)) == ZIP_ER_CANCELLED
+                     ? error_set(err, ERROR_STOPPED, "stopped")
+                     : refuse(zip, path, err);
     zip_discard(zip);
     return status;
 }

@@ -237,6 +237,11 @@ static bool is_scalar(const struct case_table *table, const char *quantity) {
 
 static int draw_cases(struct drawing *drawing, struct error *err) {
     const struct picture_request *request = drawing->request;
+    if (request->case_number >= 0 && request->where != NULL)
+        return error_set(
+            err, ERROR_INPUT,
+            "case %lld and where %.60s: a picture is of one case, or of those of where",
+            (long long)request->case_number, request->where[0]);
     int status = case_table_open(&drawing->table, drawing->source, request->where, err);
     if (status != 0)
         return status;

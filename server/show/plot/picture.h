@@ -19,7 +19,7 @@ struct picture_request {
     const char *width;                  /* on paper (plot_layout.h); NULL: for screens */
     int axes;                           /* enum plot_axes */
     bool without_total;                 /* standard errors alone */
-    int64_t case_number; /* of curves; -1: all, of a density the first that has begun */
+    int64_t case_number; /* of curves, without where; -1: all, of a density the first begun */
     const struct comparison *difference; /* of curves, in place of cases; NULL: none */
 };
 /* Draws the picture. ERROR_ABSENT for a name that no case has, ERROR_INPUT for a part of the

@@ -281,7 +281,7 @@ static bool fit(struct plot *plot, const struct study_result *study) {
             add_tick(plot, plot->lines->list[n].curve->x[k]);
     set_logarithmic(plot, study, &x, &y);
     frame_start(frame, x, y);
-    frame->y.one_plus = is_one_plus(plot);
+    frame->y.plus = is_one_plus(plot) ? 1 : 0;
     for (size_t n = 0; n < plot->lines->count; n++)
         if (plot->lines->list[n].at[CHANNEL_PANEL] < plot->panels)
             include(frame, plot, plot->lines->list[n].curve);

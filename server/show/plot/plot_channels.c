@@ -2,6 +2,7 @@
 #include "server/show/plot/plot_lines.h"
 #include "server/show/table/shown_cases.h"
 #include "server/show/view.h"
+#include "server/show/word_list.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -300,12 +301,6 @@ int plot_channels_set(struct plot_lines *lines, const struct lines_request *requ
 
 /* --- labels --- */
 
-static void append(char *out, size_t size, const char *text) {
-    size_t used = strlen(out);
-    if (used < size)
-        snprintf(out + used, size - used, "%s%s", used > 0 ? ", " : "", text);
-}
-
 /* Returns what a series shows, where all lines of a value of a channel agree in it, or NULL. */
 static const char *shown_series(const struct plot_lines *lines, enum plot_channel_type channel,
                                 size_t v) {
@@ -352,7 +347,7 @@ void channel_label(const struct plot_lines *lines, enum plot_channel_type channe
         else
             snprintf(text, sizeof text, "%.60s = %.5g", plot_symbol(lines->kind, factor->pointer),
                      value.number);
-        append(out, size, text);
+        word_list_append(out, size, ", ", text);
     }
 }
 
@@ -361,8 +356,8 @@ void channel_name(const struct plot_lines *lines, enum plot_channel_type channel
     const struct plot_channel *own = &lines->channels[channel];
     *out = '\0';
     for (size_t f = 0; f < own->factor_count; f++)
-        append(out, size,
-               own->factors[f]->attribute != NULL
-                   ? own->factors[f]->attribute->key
-                   : plot_symbol(lines->kind, own->factors[f]->pointer));
+        word_list_append(out, size, ", ",
+                         own->factors[f]->attribute != NULL
+                             ? own->factors[f]->attribute->key
+                             : plot_symbol(lines->kind, own->factors[f]->pointer));
 }

@@ -163,7 +163,7 @@ static void find_limits(const struct plot_axis *axis, double part, bool whole, d
     } else if (!whole && low >= 0) {
         *least = fmax(*least, 0);
     }
-    if (axis->one_plus)
+    if (axis->plus > 0)
         *least = low;
 }
 

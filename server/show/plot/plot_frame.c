@@ -5,7 +5,8 @@
 #include <string.h>
 
 static bool axis_has(const struct plot_axis *axis, double value) {
-    return isfinite(value) && (!axis->logarithmic || value > 0) && (!axis->one_plus || value > -1);
+    return isfinite(value) && (!axis->logarithmic || value > 0) &&
+           (axis->plus == 0 || value > -axis->plus);
 }
 
 static void axis_include(struct plot_axis *axis, double value) {
@@ -18,8 +19,9 @@ static void axis_include(struct plot_axis *axis, double value) {
 static double axis_place(const struct plot_axis *axis, double value) {
     if (axis->logarithmic)
         return log(value / axis->low) / log(axis->high / axis->low);
-    if (axis->one_plus)
-        return log((1 + value) / (1 + axis->low)) / log((1 + axis->high) / (1 + axis->low));
+    if (axis->plus > 0)
+        return log((axis->plus + value) / (axis->plus + axis->low)) /
+               log((axis->plus + axis->high) / (axis->plus + axis->low));
     return (value - axis->low) / (axis->high - axis->low);
 }
 
@@ -78,6 +80,12 @@ double frame_set(struct frame *frame, const double x[2], const double y[2], bool
     return ratio / shown;
 }
 
+bool frame_stretch_text(double stretched, char *text, size_t size) {
+    snprintf(text, size, "not to scale: %c stretched %.3g times", stretched > 1 ? 'y' : 'x',
+             stretched > 1 ? stretched : 1 / stretched);
+    return fabs(stretched - 1) > 1e-3;
+}
+
 /* Zero belongs to an axis that begins near it. */
 static void axis_begin_at_zero(struct plot_axis *axis) {
     if (!axis->logarithmic && axis->low > 0 && axis->low < axis->high / 2)
@@ -107,10 +115,11 @@ static void leave_margin(struct plot_axis *axis) {
         axis->low /= 1.5;
         return;
     }
-    if (axis->one_plus) {
-        double factor = pow((1 + axis->high) / (1 + axis->low), 0.06);
-        axis->high = (1 + axis->high) * factor - 1;
-        axis->low = axis->low < 0 ? (1 + axis->low) / factor - 1 : axis->low;
+    if (axis->plus > 0) {
+        const double plus = axis->plus,
+                     factor = pow((plus + axis->high) / (plus + axis->low), 0.06);
+        axis->high = (plus + axis->high) * factor - plus;
+        axis->low = axis->low < 0 ? (plus + axis->low) / factor - plus : axis->low;
         return;
     }
     axis->high += margin;
@@ -242,7 +251,7 @@ static void draw_logarithmic_ticks(FILE *file, const struct frame *frame, bool h
 }
 
 /* Round numbers from 0 on, those that do not crowd: 0, 0.2, 0.5, 1, 2, 5, 10 ... */
-static void draw_one_plus_ticks(FILE *file, const struct frame *frame, bool horizontal) {
+static void draw_plus_ticks(FILE *file, const struct frame *frame, bool horizontal) {
     static const double ROOM = 30; /* of a number */
     const struct plot_axis *axis = horizontal ? &frame->x : &frame->y;
     static const double STEPS[] = {1, 2, 5};
@@ -273,8 +282,8 @@ static void draw_ticks(FILE *file, const struct frame *frame, bool horizontal) {
         draw_logarithmic_ticks(file, frame, horizontal);
         return;
     }
-    if (axis->one_plus) {
-        draw_one_plus_ticks(file, frame, horizontal);
+    if (axis->plus > 0) {
+        draw_plus_ticks(file, frame, horizontal);
         return;
     }
     double room = floor(length_of(frame, horizontal) / PART_ROOM);
@@ -300,8 +309,10 @@ void frame_draw(FILE *file, const struct frame *frame, const char *x_label, cons
 
 /* Returns the axis in other units, with ticks at round numbers of these. */
 static struct plot_axis second_axis(const struct plot_axis *axis, double factor) {
-    return (struct plot_axis){
-        .low = axis->low * factor, .high = axis->high * factor, .logarithmic = axis->logarithmic};
+    return (struct plot_axis){.low = axis->low * factor,
+                              .high = axis->high * factor,
+                              .logarithmic = axis->logarithmic,
+                              .plus = axis->plus * factor};
 }
 
 void frame_draw_second(FILE *file, const struct frame *frame, const double factors[2],

@@ -12,7 +12,7 @@ enum { FRAME_LEFT = 80, FRAME_RIGHT = 700, FRAME_TOP = 40, FRAME_BOTTOM = 500 };
 struct plot_axis {
     double low, high;
     bool logarithmic;
-    bool one_plus;       /* as log(1 + value), of values above -1; not with logarithmic */
+    double plus; /* above 0: as log(plus + value), of values above -plus; not with logarithmic */
     size_t tick_count;   /* 0: ticks at round numbers */
     const double *ticks; /* borrowed: the only values with ticks */
 };
@@ -39,6 +39,9 @@ void frame_include_point(struct frame *frame, double x, double y);
  * its sides. Returns how many times as long it is: 1 but for sides of a larger ratio. */
 #define FRAME_RATIO_MOST 8.0
 double frame_set(struct frame *frame, const double x[2], const double y[2], bool same_lengths);
+/* Writes what a picture says of a map with lengths of y so many times as long as those of x: "not
+ * to scale: y stretched 5 times". Returns false where they are as long, to what is seen. */
+bool frame_stretch_text(double stretched, char *text, size_t size);
 
 /* Returns where a value stands on the picture. */
 double frame_x(const struct frame *frame, double x);

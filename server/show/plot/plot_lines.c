@@ -1,5 +1,6 @@
 #include "server/show/plot/plot_lines.h"
 #include "server/show/summary/summary_cells.h"
+#include "server/show/word_list.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -107,34 +108,17 @@ static unsigned attributes_of(const struct curve *curve) {
            (!isnan(curve->level) ? HAS_LEVEL : 0u);
 }
 
-static void append(char *text, size_t size, const char *between, const char *word) {
-    size_t used = strlen(text);
-    if (used + strlen(between) + strlen(word) + 1 < size)
-        snprintf(text + used, size - used, "%s%s", used > 0 ? between : "", word);
-}
-
-/* Returns whether a word is one of those with "; " between them. */
-static bool is_listed(const char *words, const char *word) {
-    size_t length = strlen(word);
-    for (const char *at = words; at != NULL; at = strchr(at, ';')) {
-        at += strspn(at, "; ");
-        if (strncmp(at, word, length) == 0 && (at[length] == '\0' || at[length] == ';'))
-            return true;
-    }
-    return false;
-}
-
 /* Writes those of the attributes that a curve has: "halfspace edges 8". */
 static void describe(const struct curve *curve, unsigned attributes, char *text, size_t size) {
     char word[40];
     *text = '\0';
     if ((attributes & HAS_MODEL) != 0)
-        append(text, size, " ", curve->model != NULL ? curve->model : "-");
+        word_list_append(text, size, " ", curve->model != NULL ? curve->model : "-");
     if ((attributes & HAS_SERIES) != 0)
-        append(text, size, " ", is_named_series(curve) ? curve->series : curve->quantity);
+        word_list_append(text, size, " ", is_named_series(curve) ? curve->series : curve->quantity);
     snprintf(word, sizeof word, isnan(curve->level) ? "-" : "%.4g", curve->level);
     if ((attributes & HAS_LEVEL) != 0)
-        append(text, size, " ", word);
+        word_list_append(text, size, " ", word);
 }
 
 /* Writes what the request chooses by: "model full, level 8". */
@@ -147,7 +131,7 @@ static void describe_request(const struct lines_request *request, char *text, si
         snprintf(word, sizeof word, "%s %.40s", chosen[n][0],
                  chosen[n][1] != NULL ? chosen[n][1] : "");
         if (chosen[n][1] != NULL)
-            append(text, size, ", ", word);
+            word_list_append(text, size, ", ", word);
     }
 }
 
@@ -188,12 +172,11 @@ static int refuse(const struct study_result *study, const struct lines_request *
                          request->quantity, asked);
     for (size_t c = 0, a = 0; (curve = next_candidate(study, &choosing, &c, &a)) != NULL;) {
         describe(curve, attributes, word, sizeof word);
-        if (!is_listed(words, word))
-            append(words, sizeof words, "; ", word);
+        word_list_add(words, sizeof words, "; ", word);
     }
     for (unsigned n = 0; n < sizeof NAMES / sizeof *NAMES; n++)
         if ((attributes & 1u << n) != 0)
-            append(names, sizeof names, " ", NAMES[n]);
+            word_list_append(names, sizeof names, " ", NAMES[n]);
     return error_set(err, ERROR_INPUT, "no curve of %.60s is of %s; there is (%s): %s",
                      request->quantity, asked, names, words);
 }

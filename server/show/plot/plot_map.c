@@ -210,11 +210,8 @@ static void name_surface(struct map_plot *plot, const struct heat_scale *scale, 
                  step < grid->nx ? step : grid->nx, step < grid->ny ? step : grid->ny);
         pen_note(&plot->pen, text);
     }
-    if (fabs(stretched - 1) > 1e-3) {
-        snprintf(text, sizeof text, "not to scale: %c stretched %.3g times",
-                 stretched > 1 ? 'y' : 'x', stretched > 1 ? stretched : 1 / stretched);
+    if (frame_stretch_text(stretched, text, sizeof text))
         pen_note(&plot->pen, text);
-    }
 }
 
 static int draw_surface(struct map_plot *plot, struct error *err) {

@@ -3,6 +3,7 @@
 #include "server/show/plot/plot_words.h"
 #include "server/show/table/shown_cases.h"
 #include "server/show/table/table_words.h"
+#include "server/show/word_list.h"
 
 enum { CONDITIONS_MOST = 32 };
 
@@ -51,7 +52,7 @@ static int refuse_parameter(const struct study_result *study, const char *name, 
     const cJSON *swept;
     cJSON_ArrayForEach(swept, study->swept) if (cJSON_IsString(swept)) {
         plot_near_parameter(&near, study->kind, swept->valuestring);
-        table_words_add(names, sizeof names, last_name(swept->valuestring));
+        word_list_add(names, sizeof names, ", ", last_name(swept->valuestring));
     }
     for (size_t c = 0; c < study->case_count; c++)
         for (size_t p = 0; p < study->cases[c].parameter_count; p++)
@@ -104,16 +105,13 @@ static int refuse(const struct conditions *all, const struct study_result *study
                   struct error *err) {
     for (size_t n = 0; n < all->count; n++) {
         const struct condition *one = &all->list[n];
-        char values[320] = "", text[64], last[64] = "";
+        char values[320] = "", text[64];
         bool any = false;
         for (size_t c = 0; c < study->case_count; c++) {
             const struct result_parameter *value = result_parameter(&study->cases[c], one->pointer);
-            size_t used = strlen(values);
             any = any || fits(value, one->value);
             describe(value, text, sizeof text);
-            if (strcmp(text, last) != 0 && strstr(values, text) == NULL)
-                snprintf(values + used, sizeof values - used, "%s%s", used > 0 ? ", " : "", text);
-            snprintf(last, sizeof last, "%s", text);
+            word_list_add(values, sizeof values, ", ", text);
         }
         if (!any)
             return error_set(err, ERROR_INPUT,

@@ -8,6 +8,7 @@
 #include "server/show/table/shown_cases.h"
 #include "server/show/table/table_words.h"
 #include "server/show/view.h"
+#include "server/show/word_list.h"
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -166,7 +167,7 @@ static int refuse_scalar(const struct case_table *table, const struct table_wish
     for (size_t c = 0; c < table->study.case_count && *names == '\0'; c++)
         for (size_t s = 0; s < table->study.cases[c].scalar_count; s++) {
             const char *scalar = table->study.cases[c].scalars[s].name;
-            table_words_add(names, sizeof names, scalar);
+            word_list_add(names, sizeof names, ", ", scalar);
             near_name_see(&near, scalar);
         }
     return error_set(err, ERROR_INPUT,
@@ -294,12 +295,6 @@ static struct table_value value_at(const struct curve *curve, size_t k, const st
 
 /* --- what there is not --- */
 
-static void append(char *text, size_t size, const char *word) {
-    size_t used = strlen(text);
-    if (word != NULL && *word != '\0' && strstr(text, word) == NULL)
-        snprintf(text + used, size - used, "%s%s", used > 0 ? ", " : "", word);
-}
-
 static int refuse_words(const struct study_result *study, const struct table_wish *wish,
                         struct error *err) {
     const struct table_wish plain = {.quantity = wish->quantity};
@@ -311,11 +306,11 @@ static int refuse_words(const struct study_result *study, const struct table_wis
             if (!is_wished(curve, &plain))
                 continue;
             any = true;
-            append(words, sizeof words, curve->model);
-            append(words, sizeof words, curve->kinematics);
-            append(words, sizeof words, curve->series);
+            word_list_add(words, sizeof words, ", ", curve->model);
+            word_list_add(words, sizeof words, ", ", curve->kinematics);
+            word_list_add(words, sizeof words, ", ", curve->series);
             snprintf(number, sizeof number, "%g", curve->level);
-            append(words, sizeof words, isnan(curve->level) ? NULL : number);
+            word_list_add(words, sizeof words, ", ", isnan(curve->level) ? NULL : number);
         }
     if (any && *words == '\0')
         return error_set(err, ERROR_INPUT, "%s: %.60s has no such curve; its curves have no words",

@@ -164,6 +164,8 @@ static void several_maps_are_sent_as_a_form(void **state) {
     refused("together=true&hold=true&format=study&fill=true", FORM, form, 422, "hold one map");
     refused("together=true&hold=true&fill=true", FORM, form, 422,
             "--hold goes with --format study");
+    refused("trust_from=5&format=study&name=a.csv", "Content-Type: application/octet-stream\r\n",
+            csv, 422, "--trust-from and --trust-to do not go with --format study");
     refused("together=true", "Content-Type: multipart/form-data\r\n", form, 422, "boundary");
     refused("together=true", "Content-Type: multipart/form-data; boundary=b1\r\n", form, 422,
             "without files by the boundary");

@@ -2,6 +2,7 @@
  * and from wherever it is written; CITATION.cff names this version. */
 #include "core/rugo.h"
 #include "tests/support/check.h"
+#include "tests/support/count_files.h"
 #include "tests/support/process.h"
 #include "tests/support/small_studies.h"
 #include <signal.h>
@@ -97,6 +98,26 @@ static void nothing_is_written_over(void **state) {
     assert_int_equal(run_shell("ls -a | grep rugo-export"), 1); /* nothing is left beside it */
 }
 
+/* Ctrl-C in the midst leaves neither the files of the archive nor a part of it. */
+static void a_stopped_export_leaves_nothing(void **state) {
+    (void)state;
+    static const char *const STEPS[] = {".rugo-export-*", ".rugo-export-*/README.txt",
+                                        "stop.zip.*"};
+    for (size_t s = 0; s < sizeof STEPS / sizeof *STEPS; s++) {
+        struct process process;
+        process_start(&process, "stop",
+                      (const char *[]){"export", "one", "--db", "rugo.db", "-o", "stop.zip", NULL});
+        process_wait_for_file(&process, STEPS[s]);
+        process_kill(&process, SIGINT);
+        int status = process_wait(&process, 20);
+        assert_true(status == 0 || status == 130);
+        assert_int_equal(count_files(".rugo-export-*") + count_files("stop.zip.*"), 0);
+        assert_int_equal(count_files("stop.zip"), status == 0);
+        print_message("interrupted at %s: %d\n", STEPS[s], status);
+        (void)unlink("stop.zip");
+    }
+}
+
 static void the_citation_has_this_version(void **state) {
     (void)state;
     char path[512];
@@ -107,8 +128,11 @@ static void the_citation_has_this_version(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_same_archive_again),        cmocka_unit_test(what_the_archive_holds),
-        cmocka_unit_test(a_folder_repeats_the_study),    cmocka_unit_test(nothing_is_written_over),
+        cmocka_unit_test(the_same_archive_again),
+        cmocka_unit_test(what_the_archive_holds),
+        cmocka_unit_test(a_folder_repeats_the_study),
+        cmocka_unit_test(nothing_is_written_over),
+        cmocka_unit_test(a_stopped_export_leaves_nothing),
         cmocka_unit_test(the_citation_has_this_version),
     };
     return cmocka_run_group_tests(tests, start, stop);

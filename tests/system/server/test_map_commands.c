@@ -481,6 +481,10 @@ static void groups_are_printed(void **state) {
     assert_true(contains("shell.err", "--group height: there is no group 'height'; the map has "));
     assert_true(contains("shell.err", ", grid, heights, "));
     assert_int_equal(run_shell("$RUGO characterise g.npy --group grid --all"), 2);
+    assert_int_equal(run_shell("$RUGO characterise g.npy --trust-to 1 --format study"), 2);
+    assert_true(contains("shell.err", "do not go with --format study"));
+    assert_int_equal(run_shell("$RUGO characterise absent.npy --picture x.jpg"), 2);
+    assert_true(contains("shell.err", "picture x.jpg: its name ends in none of .svg"));
     assert_int_equal(run_shell("$RUGO characterise g.npy --group grid --format svg"), 2);
     assert_true(contains("shell.err", "--group goes with --format text or json"));
 }
@@ -636,6 +640,9 @@ static void wrong_steps_and_ranges_are_refused(void **state) {
         {"--steps s --pressure 0.2,0.1", "--pressure 0.2,0.1: not up to 1000 rising numbers"},
         {"--steps s --model layered", "the case has no model layered"},
         {"--mesh m.msh --set contact.model=[\\\"halfspace\\\"]", "--mesh needs \"full\" among"},
+        {"--mesh m.stl", "--mesh m.stl: its name ends in none of .vtu, .msh, .inp"},
+        {"--nodes n.vtu", "--nodes n.vtu: its name does not end in .csv"},
+        {"--picture n.jpg --nodes early.csv", "its name ends in none of .svg, .png, .pdf, .eps"},
     };
     char line[200];
     for (size_t w = 0; w < sizeof WRONG / sizeof *WRONG; w++) {
@@ -643,6 +650,7 @@ static void wrong_steps_and_ranges_are_refused(void **state) {
         assert_int_equal(run_shell(line), 2);
         assert_true(contains("shell.err", WRONG[w].error));
     }
+    assert_int_equal(access("early.csv", F_OK), -1);
     assert_int_equal(run_shell("$RUGO generate one.json --nodes n.csv"), 2);
     assert_true(contains("shell.err", "--nodes needs a study of kind contact"));
     assert_int_equal(run_shell("$RUGO generate pressed.json --nodes no/such.csv"), 1);

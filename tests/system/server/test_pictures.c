@@ -124,6 +124,9 @@ static void what_cannot_be_drawn_is_refused(void **state) {
         {"?quantity=summit_joint_pdf&log=xy", 422, "log xy belongs to lines"},
         {"?quantity=summit_joint_pdf&total=no", 422, "summit_joint_pdf is a density; allowed"},
         {"?quantity=psd&case=2", 404, "has no case 2"},
+        {"?quantity=psd&case=0&where=hurst=0.8", 422,
+         "case 0 and where hurst=0.8: a picture is of"},
+        {"?quantity=summit_joint_pdf&case=0&where=hurst=0.8", 422, "or of those of where"},
         {"?quantity=psd&difference=1,0&x=hurst", 422, "takes no case, x or where"},
         {"?quantity=psd&size=3", 422, "?size"},
     };
@@ -176,6 +179,24 @@ static void pictures_become_pixels(void **state) {
                                           "no.svg", NULL}),
         0);
     assert_true(access("no.svg", F_OK) != 0);
+}
+
+/* A picture that cannot be drawn leaves the one that was there. */
+static void the_earlier_picture_stays(void **state) {
+    (void)state;
+    const char *const arguments[] = {"plot", "--db", "rugo.db", id,  "--quantity",
+                                     "psd",  "-o",   "old.png", NULL};
+    const char *before = getenv("PATH");
+    char *path = strdup(before != NULL ? before : "");
+    assert_non_null(path);
+    spit("old.png", "earlier");
+    assert_int_equal(setenv("PATH", "/nonexistent", 1), 0);
+    const int status = run_rugo("old", arguments);
+    assert_int_equal(setenv("PATH", path, 1), 0);
+    free(path);
+    assert_int_equal(status, 1);
+    assert_true(contains("old.err", "old.png: "));
+    assert_true(contains("old.png", "earlier"));
 }
 
 /* A density has a picture a case among the files, too. */
@@ -235,9 +256,18 @@ static void maps_of_files_are_drawn(void **state) {
         run_rugo("map", (const char *[]){"plot", "pressures.csv", "--out", "p.svg", NULL}), 0);
     assert_true(contains("p.svg", ">blank: 0<"));
     assert_false(contains("map.svg", "blank: 0"));
-    assert_int_equal(run_rugo("map", (const char *[]){"plot", "map.csv", "--width", "one", NULL}),
-                     2);
-    assert_true(contains("map.err", "--width belongs to curves"));
+    static const char *const OF_STUDIES[][2] = {
+        {"--width", "one"},      {"--x", "hurst"},    {"--where", "hurst=0.8"},
+        {"--log", "xy"},         {"--total", "no"},   {"--case", "0"},
+        {"--difference", "1,0"}, {"--db", "rugo.db"}, {"--server", "http://[::1]:1"}};
+    for (size_t o = 0; o < sizeof OF_STUDIES / sizeof *OF_STUDIES; o++) {
+        char words[64];
+        snprintf(words, sizeof words, "%s belongs to the --quantity of a study", OF_STUDIES[o][0]);
+        assert_int_equal(run_rugo("map", (const char *[]){"plot", "map.csv", OF_STUDIES[o][0],
+                                                          OF_STUDIES[o][1], NULL}),
+                         2);
+        assert_true(contains("map.err", words));
+    }
     assert_int_equal(run_rugo("nomap", (const char *[]){"plot", "nowhere.npy", NULL}), 2);
     assert_true(contains("nomap.err", "nowhere.npy"));
 }
@@ -246,6 +276,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plots_are_the_same_near_and_far),
         cmocka_unit_test(pictures_become_pixels),
+        cmocka_unit_test(the_earlier_picture_stays),
         cmocka_unit_test(files_have_densities),
         cmocka_unit_test(surfaces_are_drawn),
         cmocka_unit_test(maps_of_files_are_drawn),

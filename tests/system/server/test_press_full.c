@@ -111,6 +111,10 @@ static void the_block_is_written(void **state) {
                 "MeshFormat b.msh && sh ./press --model full --loads 0.1 --error none --mesh b.vtu "
                 ">/dev/null && grep -q 'Name=\"stress\"' b.vtu && grep -q 'Name=\"displacement\"' "
                 "b.vtu");
+    /* what Gmsh cannot hold leaves the file that was there */
+    assert_int_equal(run_shell("sh ./press --model full --loads 0.1 --error none --mesh b.msh"), 2);
+    assert_true(contains("shell.err", "columns of elements widen with depth"));
+    assert_true(contains("b.msh", "MeshFormat"));
     check_shell("sh ./press --model full --loads 0.1 --error none --modulus 2GPa --mesh pa.inp "
                 ">/dev/null && sed -n 2p pa.inp");
     assert_true(contains("shell.out", "lengths in the map's unit; stresses in E*\n"));
@@ -171,7 +175,10 @@ static void what_has_no_meaning_is_refused(void **state) {
         {"--direction y", "--direction y is that of the tangential load, which --friction gives"},
         {"--model halfspace,full --mesh m.vtu", "--mesh: the model halfspace, the first, has no"},
         {"--model full --limit 0.001", "no map of this shape with 16 points along a side is small"},
-        {"--model full --mesh no/such.vtu", "cannot write no/such.vtu"}};
+        {"--model full --mesh no/such.vtu", "cannot write no/such.vtu"},
+        {"--model full --mesh b.stl", "--mesh b.stl: its name ends in none of .vtu, .msh, .inp"},
+        {"--vtu face.png", "--vtu face.png: its name does not end in .vtu"},
+        {"--nodes nodes.vtu", "--nodes nodes.vtu: its name does not end in .csv"}};
     char line[200];
     for (size_t n = 0; n < sizeof WRONG / sizeof *WRONG; n++) {
         snprintf(line, sizeof line, "$RUGO press z.npy --dx 0.125 %s", WRONG[n].options);

@@ -146,6 +146,12 @@ static void a_folder_keeps_the_newest(void **state) {
     assert_int_equal(count_files("f/*"), 4); /* three are no snapshots of this store */
     check_shell("$RUGO restore --dry-run f/s-2*Z*.db --db s.db");
     check_shell_refused("$RUGO snapshot --db s.db copy.db --keep 2", "--keep is for a folder");
+    /* one that cannot be removed is reported, and older ones go all the same */
+    check_shell("mkdir f/s-20210101T000000Z.db && touch f/s-20200101T000000Z.db");
+    check_shell_refused("$RUGO snapshot --db s.db f --keep 1",
+                        "the older snapshot f/s-20210101T000000Z.db is not removed");
+    assert_int_equal(count_files("f/s-2*.db"), 2);
+    check_shell("rmdir f/s-20210101T000000Z.db");
     end(SIGTERM);
     /* a store with a flaw makes no snapshot, and takes none */
     sql_change("s.db", "UPDATE study_case SET seal = 0");

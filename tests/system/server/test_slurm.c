@@ -100,19 +100,25 @@ static void the_command_as_a_job_is_itself_again(void **state) {
         "\n#SBATCH --signal=B:TERM@120\n#SBATCH --time=1-0\n#SBATCH --partition=long\nexec '/",
         " slurm --nodes='3' ",
         " --sbatch='--mem=2G' --sbatch='--comment=it'\\''s' ",
-        " --set='seed=9' --dir='inside' --lease='60' -- 'study.json'\n",
+        " --set='seed=9' --out='results' --replace --dir='inside' --lease='60' -- 'study.json'\n",
+        "\n#SBATCH --mem=2G\n#SBATCH --comment=it's\n#SBATCH --ntasks=1\n",
     };
     assert_int_equal(
-        run_rugo("inside", (const char *[]){"slurm", "study.json", "--print", "--nodes", "3",
-                                            "--dir", "inside", "--inside", "1-0", "--partition",
-                                            "long", "--sbatch", "--mem=2G", "--sbatch",
-                                            "--comment=it's", "--set", "seed=9", NULL}),
+        run_rugo("inside",
+                 (const char *[]){"slurm", "study.json", "--print",  "--nodes",  "3",
+                                  "--dir", "inside",     "--inside", "1-0",      "--partition",
+                                  "long",  "--sbatch",   "--mem=2G", "--sbatch", "--comment=it's",
+                                  "--set", "seed=9",     "--out",    "results",  "--replace",
+                                  NULL}),
         0);
     for (size_t l = 0; l < sizeof LINES / sizeof *LINES; l++)
         check_told("inside.out", LINES[l]);
     char *kept = slurp("inside/inside.sh");
     assert_null(strstr(kept, "--inside"));
     assert_null(strstr(kept, "--print"));
+    char *printed = slurp("inside.out"); /* that of the pilots is not printed */
+    assert_string_equal(printed, kept);
+    free(printed);
     free(kept);
 }
 

@@ -11,7 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 enum { KILLS = 16, MEGABYTES = 60 };
@@ -52,16 +51,6 @@ static bool is_whole(const char *path) {
     return whole;
 }
 
-/* Waits until a process is in the midst of a copy, or has ended. */
-static void wait_for_part(const struct process *process, const char *pattern) {
-    siginfo_t end = {0};
-    for (int tries = 0; count_files(pattern) == 0 && end.si_pid == 0; tries++) {
-        assert_true(tries < 120000);
-        usleep(500);
-        assert_int_equal(waitid(P_PID, (id_t)process->pid, &end, WEXITED | WNOHANG | WNOWAIT), 0);
-    }
-}
-
 static void killed_snapshots_leave_no_half(void **state) {
     static const char *const SNAPSHOT[] = {"snapshot", "--db", "kept.db", "copy.db", NULL};
     (void)state;
@@ -73,7 +62,7 @@ static void killed_snapshots_leave_no_half(void **state) {
         struct process process;
         process_start(&process, "snapshot", SNAPSHOT);
         if (left == 0)
-            wait_for_part(&process, "copy.db.part-*");
+            process_wait_for_file(&process, "copy.db.part-*");
         else
             usleep((useconds_t)(next_word(&seed) % 120000));
         process_kill(&process, SIGKILL);
@@ -99,7 +88,7 @@ static void stopped_snapshot_leaves_nothing(void **state) {
     (void)state;
     process_start(&process, "stop",
                   (const char *[]){"snapshot", "--db", "kept.db", "copy.db", NULL});
-    wait_for_part(&process, "copy.db.part-*");
+    process_wait_for_file(&process, "copy.db.part-*");
     process_kill(&process, SIGINT);
     int status = process_wait(&process, 20);
     assert_true(status == 0 || status == 130);

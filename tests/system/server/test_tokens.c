@@ -313,9 +313,11 @@ static void a_client_needs_the_token(void **state) {
     assert_int_equal(stat("client", &about), 0);
     assert_int_equal(about.st_mode & 0777, 0600);
     assert_true(contains("client", "work:w:"));
-    static const char *const WRONG[][2] = {{"boss", "w"}, {"read", "a b"}, {"read", ""}};
+    static const char *const WRONG[][2] = {
+        {"boss", "w"},        {"read", "a b"},      {"read", ""},          {"#x", "anna"},
+        {"submit", "carl:x"}, {"submit:x", "anna"}, {"submit", "sha256:x"}};
     char *before = slurp("file");
-    for (size_t w = 0; w < 3; w++)
+    for (size_t w = 0; w < sizeof WRONG / sizeof *WRONG; w++)
         assert_int_equal(
             run_rugo("wrong", (const char *[]){"token", "new", WRONG[w][0], WRONG[w][1],
                                                "--token-file", "file", NULL}),

@@ -1,6 +1,7 @@
 /* Protects: the table of cases: which rows and columns a request stands for, that every number
  * stands in its row and column in each format, and the message on a name or point that there is
  * not. */
+#include "server/show/table/case_rows.h"
 #include "server/show/table/case_table.h"
 #include "tests/support/check.h"
 #include "tests/support/result_builder.h"
@@ -271,12 +272,29 @@ static void without_names_the_view_chooses(void **state) {
     assert_non_null(strstr(err.text, "contact_area")); /* of which this source knows nothing */
 }
 
+/* A value that is part of another one is listed, too. */
+static void all_values_are_told(void **state) {
+    (void)state;
+    static const double VALUES[] = {0.85, 0.8, 0.5};
+    const char *const where[] = {"hurst=0.9", NULL};
+    struct study_result study = built_study("statistics", "three", 3);
+    const struct case_result *rows[3];
+    struct error err = {0};
+    size_t count;
+    for (size_t c = 0; c < 3; c++)
+        built_parameter(&study.cases[c], "/surface/hurst", NULL, VALUES[c]);
+    assert_int_equal(case_rows_choose(&study, where, rows, &count, &err), ERROR_INPUT);
+    assert_non_null(strstr(err.text, "there is 0.85, 0.8, 0.5"));
+    study_result_clear(&study);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(names_choose_columns),
         cmocka_unit_test(errors_stand_beside_values),
         cmocka_unit_test(conditions_choose_rows),
         cmocka_unit_test(what_there_is_not_is_told),
+        cmocka_unit_test(all_values_are_told),
         cmocka_unit_test(each_format_has_every_number),
         cmocka_unit_test(what_stands_beside_a_value_is_a_column),
         cmocka_unit_test(units_stand_beside_values),

@@ -237,8 +237,13 @@ static void holes_profiles_and_flat_maps_are_drawn(void **state) {
     assert_int_equal(count_of(page.text, "all heights are the same"), 0);
     assert_int_equal(count_of(page.text, "the map has too few points"), 2);
     clear(&page);
-    make(&page, 512, 4, 1, ""); /* far from square */
+    make(&page, 512, 4, 1, ""); /* far from square: 20 units high in place of 330 4/512 */
     draw(&page);
+    assert_int_equal(count_of(page.text, ">not to scale: y stretched 7.76 times<"), 1);
+    clear(&page);
+    make(&page, 40, 20, 1, "");
+    draw(&page);
+    assert_int_equal(count_of(page.text, "not to scale"), 0);
     clear(&page);
 }
 

@@ -496,8 +496,7 @@ static void one_plus_shows_peaks_beside_low_parts(void **state) {
     struct plot_request request = {.lines = {.quantity = "summit_height_pdf"},
                                    .axes = AXES_ONE_PLUS};
     char *text = picture_of(&study, &request);
-    struct frame frame = {
-        .y = {.high = 9, .one_plus = true}, .top = FRAME_TOP, .bottom = FRAME_BOTTOM};
+    struct frame frame = {.y = {.high = 9, .plus = 1}, .top = FRAME_TOP, .bottom = FRAME_BOTTOM};
     const double height = FRAME_BOTTOM - FRAME_TOP;
     assert_true(fabs(frame_y(&frame, 0) - FRAME_BOTTOM) < 1e-9);
     assert_true(fabs(frame_y(&frame, 1) - (FRAME_BOTTOM - height * log10(2))) < 1e-9);
@@ -515,6 +514,25 @@ static void one_plus_shows_peaks_beside_low_parts(void **state) {
     assert_int_equal(count_of(text, ">difference of density<"), 1);
     free(text);
     study_result_clear(&study);
+}
+
+/* A second axis shows the heights of one-plus in its unit: 2 stands where the other has 1. */
+static void second_axes_of_one_plus_agree(void **state) {
+    (void)state;
+    const struct frame frame = {.y = {.high = 9, .plus = 1},
+                                .top = FRAME_TOP,
+                                .right = FRAME_RIGHT,
+                                .bottom = FRAME_BOTTOM,
+                                .scale = 1};
+    char *text = NULL, tick[64];
+    size_t size;
+    FILE *file = open_memstream(&text, &size);
+    assert_non_null(file);
+    frame_draw_second(file, &frame, (const double[]){0, 2}, NULL, "z");
+    assert_int_equal(fclose(file), 0);
+    snprintf(tick, sizeof tick, "y=\"%.1f\">2</text>", frame_y(&frame, 1) + 4);
+    assert_int_equal(count_of(text, tick), 1);
+    free(text);
 }
 
 /* Pits of one distribution are the summits of its mirror image, and are called so where all lines
@@ -747,6 +765,7 @@ int main(void) {
         cmocka_unit_test(lines_stay_large),
         cmocka_unit_test(the_view_sets_logarithmic_axes),
         cmocka_unit_test(one_plus_shows_peaks_beside_low_parts),
+        cmocka_unit_test(second_axes_of_one_plus_agree),
         cmocka_unit_test(pits_are_named_after_their_distribution),
         cmocka_unit_test(axes_have_words),
         cmocka_unit_test(numbers_are_set),

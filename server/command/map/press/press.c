@@ -147,7 +147,7 @@ static const struct option_row OPTIONS[] = {
      "where there is contact (1, else 0), likewise"},
     {"vtu", 0, OPTION_TEXT, 0, 0, AT(paths.face), "FILE.vtu", NULL,
      "the surface with all three on it, for ParaView"},
-    {"mesh", 0, OPTION_TEXT, 0, 0, AT(paths.mesh), "FILE", NULL,
+    {"mesh", 0, OPTION_TEXT, 0, 0, AT(paths.mesh), "FILE.vtu|FILE.msh|FILE.inp", NULL,
      "the block of the model full under the last load: .vtu with displacements and stresses, .msh "
      "for Gmsh, .inp for CalculiX and Abaqus with a step a load; the model is named first"},
     {"steps", 0, OPTION_TEXT, 0, 0, AT(paths.steps), "DIR", NULL,

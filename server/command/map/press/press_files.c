@@ -9,7 +9,10 @@
 int press_files_check(const struct press_paths *paths, struct error *err) {
     const char *const maps[] = {paths->pressures, paths->gap, paths->contact};
     const char *const others[] = {paths->face, paths->mesh, paths->nodes};
-    int status = 0;
+    static const char *const VTU[] = {".vtu", NULL};
+    int status = mesh_file_check(paths->mesh, paths->nodes, err);
+    if (status == 0 && paths->face != NULL)
+        status = output_file_check_ending(paths->face, "--vtu", VTU, err);
     for (size_t f = 0; f < sizeof others / sizeof *others && status == 0; f++)
         if (others[f] != NULL)
             status = output_file_check(others[f], err);

@@ -137,7 +137,8 @@ static void draw_scale(const struct figure_page *page, const struct cells *cells
     fputs("</text>\n", file);
 }
 
-/* A length of 1, 2 or 5 times a power of ten, about a quarter of the side. */
+/* A length of 1, 2 or 5 times a power of ten, about a quarter of the side; below it what is not
+ * seen as it is. */
 static void draw_length(const struct figure_page *page, const struct cells *cells) {
     const struct grid *grid = &page->figure->map->grid;
     FILE *file = page->pen.file;
@@ -158,6 +159,11 @@ static void draw_length(const struct figure_page *page, const struct cells *cell
     if (cells->clipped)
         fprintf(file, "%g %% beyond each end of the colours%s", 100 * TAIL, holes ? "; " : "");
     fprintf(file, "%s</text>\n", holes ? "hatched: not measured" : "");
+    char text[PLOT_LABEL_SIZE];
+    const double height = cells->side_y * (double)cells->ny;
+    if (frame_stretch_text(height / width * (grid->lx / grid->ly), text, sizeof text))
+        fprintf(file, "<text x=\"%.1f\" y=\"%.1f\" class=\"note\">%s</text>\n", cells->left, y + 36,
+                text);
 }
 
 static int draw_surface(struct figure_page *page, struct error *err) {
