@@ -105,7 +105,7 @@ int token_words_check(const char *role, const char *name, struct error *err) {
     if (roles_of(role, strlen(role)) == ROLE_NONE)
         return error_set(err, ERROR_INPUT,
                          "\"%.40s\" is no role; roles are read, submit, work and admin", role);
-    if (!is_name(name))
+    if (!token_name_is_good(name))
         return error_set(err, ERROR_INPUT,
                          "\"%.80s\" is no name for a token, which has 1 to %d letters, digits, "
                          ". _ @ or -",
