@@ -183,6 +183,7 @@ double full_bytes(const struct grid *grid, const struct block *block,
 void full_set_stop(struct full *f, int (*stop)(void *context), void *context) {
     f->newton.stop = stop;
     f->newton.context = context;
+    contact_set_stop(f->linear, stop, context);
 }
 
 void full_set_overhangs(struct full *f, bool allowed) {
@@ -193,14 +194,19 @@ void full_set_overhangs(struct full *f, bool allowed) {
 static int take_heights(struct full *f, const double *z, struct error *err) {
     size_t n = f->mesh->face;
     struct sum sum = {0}, square = {0};
+    double largest = 0;
     for (size_t i = 0; i < n; i++) {
         f->z[i] = z[i] / f->mesh->unit;
+        largest = fmax(largest, fabs(z[i]));
         if (!isfinite(f->z[i]))
             return error_set(err, ERROR_INPUT, "height %zu of the surface = %g is not finite", i,
                              z[i]);
         sum_add(&sum, f->z[i]);
     }
     double mean = sum_value(&sum) / (double)n, highest = -INFINITY;
+    if (!isfinite(mean))
+        return error_set(err, ERROR_INPUT,
+                         "heights of the surface of up to %g: their sum is not finite", largest);
     for (size_t i = 0; i < n; i++) {
         f->z[i] -= mean;
         highest = fmax(highest, f->z[i]);
@@ -236,16 +242,20 @@ int full_begin(struct full *f, const double *z, struct error *err) {
 /* --- load steps --- */
 
 /* Predicts the active set at a load: the set of the last load, changed where the linear model's
- * contact changes between the two loads. Where the linear model fails, the last set is kept. */
-static void predict(struct full *f, double load) {
+ * contact changes between the two loads. Where the linear model fails, the last set is kept; it may
+ * be stopped. */
+static int predict(struct full *f, double load, struct error *err) {
     struct contact_state state;
-    struct error ignored;
-    bool known = contact_press(f->linear, load, &state, &ignored) == 0;
+    const int status = contact_press(f->linear, load, &state, err);
+    const bool known = status == 0;
+    if (status == ERROR_STOPPED)
+        return status;
     for (size_t node = 0; node < f->mesh->face; node++) {
         f->touches[node] = known ? state.p[node] > 0 : f->guess[node];
         if (known && (f->load == 0 || f->touches[node] != f->guess[node]))
             f->newton.active[node] = f->touches[node];
     }
+    return 0;
 }
 
 /* The state between loads has arrays of its own for what carries it through a whole series. */
@@ -319,9 +329,10 @@ static int solve(const struct loading *loading, double load, const double *befor
 static int step_to(void *solver, double load, double *change, struct error *err) {
     const struct loading *loading = solver;
     struct full *f = loading->full;
-    if (!f->careful)
-        predict(f, load);
-    int status = solve(loading, load, f->kept, change, err);
+    int status = f->careful ? 0 : predict(f, load, err);
+    *change = 0;
+    if (status == 0)
+        status = solve(loading, load, f->kept, change, err);
     if (status != 0)
         restore(f);
     else {
@@ -545,7 +556,7 @@ static int fill_state(struct full *f, const struct newton_end *end, struct conta
         return 0;
     f->newton.limit = (struct full_limit){0};
     int status = newton_compliance(&f->newton, &compliance, f->tangent, err);
-    if (status != 0)
+    if (status == ERROR_NUMERIC)
         error_context(err,
                       "the stiffness of contact on the true geometry under a mean pressure of %g "
                       "E*, which was reached, was not found",

@@ -86,9 +86,10 @@ size_t full_degrees_of_freedom(const struct grid *grid, const struct block *bloc
 double full_bytes(const struct grid *grid, const struct block *block,
                   const struct full_options *options, double iterations, bool overhangs);
 
-/* Sets stop, which is called before each iteration of Newton's method. When it returns non-zero,
- * full_press ends with ERROR_STOPPED and leaves the solver as after a load that was not reached.
- * NULL, the initial value, never stops. */
+/* Sets stop, which is called before each iteration of Newton's method and of its linear equations,
+ * and every few iterations of the linear model. When it returns non-zero, full_press ends with
+ * ERROR_STOPPED and leaves the solver as after a load that was not reached; during those of the
+ * stiffness, as after one that was. NULL, the initial value, never stops. */
 void full_set_stop(struct full *full, int (*stop)(void *context), void *context);
 
 /* Lets faces overhang and meet themselves where they do not go on otherwise; the
