@@ -164,7 +164,8 @@ double full_bytes(const struct grid *grid, const struct block *block,
         return NAN;
     enum {
         VECTORS = 6,
-        OVERHANG_VECTORS = 3, /* two states, and what drags */
+        OVERHANG_STATES = 2,
+        OVERHANG_VECTORS = OVERHANG_STATES + 1, /* and what drags */
         FACES = 9
     }; /* arrays of newton.h and this file by unknown and by node of the face, and one of areas */
     struct material material = material_of(block->poisson, options->kinematics);
@@ -176,6 +177,9 @@ double full_bytes(const struct grid *grid, const struct block *block,
         tangent_bytes(mesh, pressures) +
         gmres_bytes(mesh, &material, iterations, overhangs && mesh->dimension == 3) +
         contact_bytes(grid, block, &CONTACT_DEFAULTS) + compliance_bytes(grid, block);
+    if (overhangs)
+        bytes += self_contact_bytes(mesh) +
+                 sizeof(struct self_pair) * OVERHANG_STATES * PAIRS_A_NODE * (double)mesh->face;
     mesh_destroy(&mesh);
     return bytes;
 }

@@ -81,8 +81,7 @@ size_t full_degrees_of_freedom(const struct grid *grid, const struct block *bloc
                                const struct full_options *options);
 /* Bytes of a solver that takes this many iterations of the linear equations in each iteration of
  * Newton's method, without a factorisation; NaN where the block cannot be meshed. overhangs: with
- * the vectors that a face takes which may overhang, but without its pairs and patches, which are
- * made where it does. */
+ * the vectors, pairs and patches that a face takes which may overhang. */
 double full_bytes(const struct grid *grid, const struct block *block,
                   const struct full_options *options, double iterations, bool overhangs);
 

@@ -1,6 +1,6 @@
 /* Protects what callers of the model full rely on beside its values: a stop is heard during linear
- * equations, too; heights whose sum overflows are refused; and the tolerance holds for the
- * stiffness. */
+ * equations, too; heights whose sum overflows are refused; the tolerance holds for the stiffness;
+ * and overhangs count in the memory. */
 #include "core/full/full.h"
 #include "core/random.h"
 #include "tests/support/check.h"
@@ -122,10 +122,31 @@ static void the_tolerance_holds_for_the_stiffness(void **state) {
     }
 }
 
+/* A face that may overhang has the vectors of two states and of what drags, pairs of both, and what
+ * finds them. */
+static void overhangs_take_memory(void **state) {
+    (void)state;
+    const struct grid *const grids[] = {&PROFILE, &SURFACE};
+    const struct block block = {.poisson = 0.3, .height = SIDE, .layer_growth = 1.5};
+    for (size_t g = 0; g < 2; g++) {
+        struct mesh *mesh = NULL;
+        struct error err = {0};
+        must(mesh_create(&mesh, grids[g], &block, FULL_DEFAULTS.transition, &err), &err);
+        const double more = full_bytes(grids[g], &block, &FULL_DEFAULTS, 20, true) -
+                            full_bytes(grids[g], &block, &FULL_DEFAULTS, 20, false);
+        const double pairs = 2.0 * PAIRS_A_NODE * NODES * sizeof(struct self_pair);
+        const double vectors = 3.0 * sizeof(double) * (double)mesh_degrees_of_freedom(mesh);
+        const double least = self_contact_bytes(mesh) + pairs + vectors;
+        assert_true(more >= least && (g == 1 || more < 1.01 * least));
+        mesh_destroy(&mesh);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_stop_is_heard_in_each_iteration),
         cmocka_unit_test(heights_that_overflow_are_refused),
+        cmocka_unit_test(overhangs_take_memory),
         cmocka_unit_test(the_tolerance_holds_for_the_stiffness),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
