@@ -177,7 +177,8 @@ static void edges_bend_beside_narrow_gaps(void **state) {
 }
 
 /* A surface and the one with x and y exchanged have one law of areas. Solutions of double sines are
- * within 1e-8 of the pressure; what moves with the place of the sine on the grid is up to 0.1. */
+ * within 1e-8 of the pressure; patches of one position differ by 0.1 from those of
+ * another. */
 static void area_laws_are_symmetric(void **state) {
     (void)state;
     static const double RATIOS[] = {1, 1.7, 5};
