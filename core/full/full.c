@@ -23,7 +23,6 @@ struct full_state {
 
 /* All lengths in this file are in units of dx, the mesh's unit. */
 struct full {
-    struct grid grid;
     struct full_options options;
     struct mesh *mesh;
     struct newton newton;
@@ -93,7 +92,6 @@ int full_create(struct full **out, const struct grid *grid, const struct block *
     struct material material = material_of(block->poisson, options->kinematics);
     linear.model = MODEL_LAYERED;
     loose.tolerance = 1e-5;
-    f->grid = *grid;
     f->options = *options;
     status = mesh_create(&f->mesh, grid, block, options->transition, err);
     if (status == 0)
@@ -179,7 +177,7 @@ double full_bytes(const struct grid *grid, const struct block *block,
         contact_bytes(grid, block, &CONTACT_DEFAULTS) + compliance_bytes(grid, block);
     if (overhangs)
         bytes += self_contact_bytes(mesh) +
-                 sizeof(struct self_pair) * OVERHANG_STATES * PAIRS_A_NODE * (double)mesh->face;
+                 sizeof(struct self_pair) * OVERHANG_STATES * (double)self_pairs_most(mesh);
     mesh_destroy(&mesh);
     return bytes;
 }
@@ -438,7 +436,7 @@ static int state_create(struct full_state *state, const struct newton *n, struct
         return 0;
     state->u = array_create(newton_unknowns(n), sizeof *state->u);
     state->active = array_create(n->mesh->face, sizeof *state->active);
-    state->pair = array_create(PAIRS_A_NODE * n->mesh->face, sizeof *state->pair);
+    state->pair = array_create(self_pairs_most(n->mesh), sizeof *state->pair);
     if (state->u != NULL && state->active != NULL && state->pair != NULL)
         return 0;
     state_clear(state);
@@ -520,15 +518,15 @@ static void fill_report(struct full *f, const struct newton_end *end,
     memcpy(report->history, end->history, sizeof report->history);
 }
 
-/* Returns the mean gap, and turns the gaps of nodes, where it is not the usual one. */
-static double measure_gap(struct full *f) {
-    const struct full_options *options = &f->options;
+double full_mean_gap(const struct full_options *options, const struct mesh *mesh, const double *u,
+                     const bool *touches, const double *columns, double *gap) {
+    const bool deforms = options->kinematics != KINEMATICS_SMALL;
     if (!options->current_areas && !options->normal_gaps)
-        return newton_mean_gap(&f->newton) * f->mesh->unit;
+        return face_mean_gap(mesh, deforms ? u : NULL, columns) * mesh->unit;
     if (options->normal_gaps)
-        face_turn_gaps(f->mesh, f->newton.u, f->newton.active, f->gap);
-    return options->current_areas ? face_mean_gap_current(f->mesh, f->newton.u, f->gap)
-                                  : face_mean_gap(f->mesh, f->newton.u, f->gap);
+        face_turn_gaps(mesh, u, touches, gap);
+    return options->current_areas ? face_mean_gap_current(mesh, u, gap)
+                                  : face_mean_gap(mesh, u, gap);
 }
 
 static int fill_state(struct full *f, const struct newton_end *end, struct contact_state *out,
@@ -551,7 +549,7 @@ static int fill_state(struct full *f, const struct newton_end *end, struct conta
                          "the face overhangs under a mean pressure of %g E*: its normals do not "
                          "all meet the flat, and gaps along them are none",
                          out->pressure);
-    out->mean_gap = measure_gap(f);
+    out->mean_gap = full_mean_gap(&f->options, f->mesh, n->u, n->active, n->gap, f->gap);
     out->approach = out->unload_stiffness = NAN;
     out->penetration = end->penetration / height_scale(f);
     out->violation = fmax(end->inside, end->penetration) / height_scale(f);

@@ -108,6 +108,11 @@ int full_press(struct full *full, double pressure, struct contact_state *out,
  * node is at node*dimension + k. Valid until the next call. */
 const struct mesh *full_mesh(const struct full *full);
 const double *full_displacement(struct full *full);
+/* Returns the mean gap under displacements u as the options measure it, in the grid's unit of
+ * length. By node of the face: whether it touches, its vertical gap in columns, and the same in the
+ * grid's unit, which normal_gaps turns into that along the normal where the node does not touch. */
+double full_mean_gap(const struct full_options *options, const struct mesh *mesh, const double *u,
+                     const bool *touches, const double *columns, double *gap);
 /* The equilibrium of the last state (core/full/friction goes on from there). Valid until the next
  * call. */
 const struct newton *full_newton(const struct full *full);

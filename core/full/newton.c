@@ -454,10 +454,6 @@ static const double *face_displacement(const struct newton *n) {
     return n->material.kinematics != KINEMATICS_SMALL ? n->u : NULL;
 }
 
-double newton_mean_gap(const struct newton *n) {
-    return face_mean_gap(n->mesh, face_displacement(n), n->gap);
-}
-
 /* Computes the forces at the nodes in contact under the displacements in change, scaled to a mean
  * of 1. */
 static void tangent_pressures(struct newton *n, double *tangent) {

@@ -122,9 +122,6 @@ void newton_measure_gaps(struct newton *newton);
 /* Returns the tributary area of a node in squares (profiles: steps) of the mesh's unit; all nodes
  * have the same. */
 double newton_node_area(const struct newton *newton);
-/* Returns the mean of the gaps last measured over the face under load (face.h); over the undeformed
- * face where strains are small. */
-double newton_mean_gap(const struct newton *newton);
 /* Computes -d(mean gap)/d(pressure) >= 0 from the tangent at u, of the gaps last measured, and, by
  * node of the face, the derivative of its pressure by the mean pressure: mean 1, 0 where open. The
  * linear equations are solved to 1000 times the tolerance and to 1e-6; where they stall, to 1e-4.
