@@ -222,8 +222,8 @@ static const double PROFILE_TENS = 0.65, PROFILE_BULK = 60, SURFACE_TENS = 2.2, 
 /* Equations of profiles that need more iterations are factorised (core/full/newton.h). */
 static const double FACTORED_ITERATIONS = 30;
 /* Nanoseconds a degree of freedom: of an iteration of Newton's method without its linear equations,
- * of an iteration of these, for each iteration before it, of the pressures in it, and of an
- * iteration of Newton's method with a factorisation. */
+ * of an iteration of these, more of it for each of them in a step, of the pressures in it, and of
+ * an iteration of Newton's method with a factorisation. */
 struct full_fit {
     double newton, linear, each, pressures, factored;
 };
