@@ -3,7 +3,6 @@
 #include "core/statistics/heights/roughness.h"
 #include "core/statistics/summits/refined.h"
 #include <gsl/gsl_cdf.h>
-#include <math.h>
 
 /* --- surfaces --- */
 
@@ -223,8 +222,8 @@ static const double PROFILE_TENS = 0.65, PROFILE_BULK = 60, SURFACE_TENS = 2.2, 
 /* Equations of profiles that need more iterations are factorised (core/full/newton.h). */
 static const double FACTORED_ITERATIONS = 30;
 /* Nanoseconds a degree of freedom: of an iteration of Newton's method without its linear equations,
- * of an iteration of these, for each iteration before it, of the pressures in it, and of an
- * iteration of Newton's method with a factorisation. */
+ * of an iteration of these, more of it for each of them in a step, of the pressures in it, and of
+ * an iteration of Newton's method with a factorisation. */
 struct full_fit {
     double newton, linear, each, pressures, factored;
 };
@@ -357,11 +356,16 @@ double cost_full_loads(const struct grid *grid, const struct full_size *size, do
 }
 
 /* Returns what so many jumps take in the mean: each of these seconds, with a variance of `spread`
- * times their square, and no more than a limit. */
-static struct cost_jumps jumps_of(double number, double seconds, double spread, double limit) {
-    const double each = limit > 0 ? fmin(seconds, limit) : seconds;
-    return (struct cost_jumps){.seconds = number * each,
-                               .variance = (1 + spread) * number * each * each};
+ * times their square, and all no more than `most`. What lies between 0 and `most` has a variance of
+ * a quarter of its square at most. */
+static struct cost_jumps jumps_of(double number, double seconds, double spread, double most) {
+    const double each = fmin(seconds, most);
+    if (!(number > 0))
+        return (struct cost_jumps){0};
+    return (struct cost_jumps){.seconds = fmin(number * each, most),
+                               .variance =
+                                   fmin((1 + spread) * number * each * each, most * most / 4),
+                               .most = most};
 }
 
 /* Returns how many cells of JUMP_WAVES shortest waves a cell is worth, each of so many nodes. */
@@ -370,7 +374,7 @@ static double cell_share(const struct grid *grid, double wave) {
 }
 
 struct cost_jumps cost_full_jumps(const struct grid *grid, const struct full_size *size,
-                                  double wave, double rms_slope, double pressure, double limit) {
+                                  double wave, double rms_slope, double pressure, double most) {
     const struct jump_fit *fit = grid_is_profile(grid) ? &PROFILE_JUMP : &SURFACE_JUMP;
     const double slope = rms_slope + JUMP_LOAD * log(pressure / USUAL_LOAD);
     const double least = size->pressures ? fit->pressures_slope : fit->slope;
@@ -383,7 +387,7 @@ struct cost_jumps cost_full_jumps(const struct grid *grid, const struct full_siz
     return jumps_of(number > RARE && size->folds ? number : 0,
                     fit->newton * (each.newton + within.linear * each.linear) +
                         fit->factored * each.factored,
-                    JUMP_SPREAD, limit);
+                    JUMP_SPREAD, most);
 }
 
 double cost_full_contact(const struct grid *grid, const struct full_size *size, double loads) {
@@ -450,7 +454,7 @@ double cost_friction_steps(const struct friction_work *of, double steps) {
                     step.factored * each.factored);
 }
 
-struct cost_jumps cost_friction_jumps(const struct friction_work *of, double slid, double limit) {
+struct cost_jumps cost_friction_jumps(const struct friction_work *of, double slid, double most) {
     const double steep =
         of->coefficient * of->rms_slope * pow(of->pressure / USUAL_LOAD, SLIDE_JUMP_LOAD);
     const double share = gsl_cdf_ugaussian_P((steep - SLIDE_JUMP) / SLIDE_JUMP_WIDTH);
@@ -459,7 +463,7 @@ struct cost_jumps cost_friction_jumps(const struct friction_work *of, double sli
     const double newton = each.newton + cost_friction_size(of).linear * each.linear +
                           SLIDE_JUMP_FACTORED * each.factored;
     return jumps_of(jump ? share * slid * cell_share(of->grid, of->wave) : 0,
-                    SLIDE_JUMP_NEWTON * newton, SLIDE_SPREAD, limit);
+                    SLIDE_JUMP_NEWTON * newton, SLIDE_SPREAD, most);
 }
 
 double cost_friction_bytes(const struct grid *grid, const struct block *block,

@@ -7,6 +7,7 @@
 #include "core/full/full.h"
 #include "core/statistics/summits/summits.h"
 #include "core/surface/surface.h"
+#include <math.h>
 
 /* Nanoseconds a point and realisation to generate a surface, non-Gaussian ones by the number of
  * iterations expected for their tolerance and heights. */
@@ -68,17 +69,24 @@ double cost_full_contact(const struct grid *grid, const struct full_size *size, 
  * far from the one before are reached in several steps on steep faces. NULL: all are near. */
 double cost_full_loads(const struct grid *grid, const struct full_size *size, double rms_slope,
                        size_t count, const double *loads);
-/* What jumps of steep faces take of a realisation: CPU seconds in the mean, and the variance of it
- * between realisations, of which some jump. Each jump takes the limit at most, unless it is 0. */
+/* What jumps of steep faces take of a realisation: CPU seconds in the mean and at most, and their
+ * variance between realisations, of which some jump. */
 struct cost_jumps {
-    double seconds, variance;
+    double seconds, variance, most;
 };
 static inline struct cost_jumps cost_jumps_sum(struct cost_jumps a, struct cost_jumps b) {
-    return (struct cost_jumps){a.seconds + b.seconds, a.variance + b.variance};
+    return (struct cost_jumps){a.seconds + b.seconds, a.variance + b.variance, a.most + b.most};
 }
-/* wave: nodes of a shortest wave; pressure: the highest load, in E* h'. */
+/* Returns what a limit leaves to jumps beside what all realisations take: their `most`. INFINITY
+ * for a limit of 0, which is none. */
+static inline double cost_jumps_most(double limit, double seconds) {
+    if (!(limit > 0))
+        return INFINITY;
+    return limit > seconds ? limit - seconds : 0;
+}
+/* wave: nodes of a shortest wave; pressure: the highest load, in E* h'; most: cost_jumps_most. */
 struct cost_jumps cost_full_jumps(const struct grid *grid, const struct full_size *size,
-                                  double wave, double rms_slope, double pressure, double limit);
+                                  double wave, double rms_slope, double pressure, double most);
 /* What iterations on a mesh of this size count of a limit of so many of these seconds. */
 struct full_limit cost_full_limit(const struct grid *grid, const struct full_size *size,
                                   double seconds);
@@ -109,7 +117,7 @@ struct friction_size cost_friction_size(const struct friction_work *of);
 double cost_friction_steps(const struct friction_work *of, double steps);
 /* As cost_full_jumps, of a path; slid: how far all of the flat slides there, over the RMS height.
  */
-struct cost_jumps cost_friction_jumps(const struct friction_work *of, double slid, double limit);
+struct cost_jumps cost_friction_jumps(const struct friction_work *of, double slid, double most);
 /* As cost_full_limit. */
 struct full_limit cost_friction_limit(const struct friction_work *of, double seconds);
 double cost_friction_bytes(const struct grid *grid, const struct block *block,

@@ -5,7 +5,8 @@
 #include <stdlib.h>
 
 /* The double sine has about WAVE_STEPS points a wave and is pressed at several positions on the
- * grid. At the lower loads its patches are as large as those of a rough surface with 8 points a
+ * grid, on unequal spacings also with x and y exchanged, so that it does not matter which is which.
+ * At the lower loads its patches are as large as those of a rough surface with 8 points a
  * shortest wave. */
 enum { WAVE_STEPS = 20, POSITIONS = 16, LOADS = 5 };
 /* Pressures over that of full contact, and the contact fractions there: limits of a half-space's at
@@ -74,11 +75,13 @@ static int double_sine_open(struct double_sine *wave, const struct edge_law *law
 }
 
 /* Fills z with the wave of amplitude dx at one of its positions, which fill a cell of the grid
- * evenly. */
+ * evenly, and are followed by these with x and y exchanged. */
 static void wave_shift(struct double_sine *wave, size_t which) {
     const struct grid *grid = &wave->grid;
-    double x = 0.37 + 0.6180339887498949 * (double)which,
-           y = 0.21 + 0.7548776662466927 * (double)which;
+    const double position = (double)(which % POSITIONS);
+    const double first = 0.37 + 0.6180339887498949 * position,
+                 second = 0.21 + 0.7548776662466927 * position;
+    const double x = which < POSITIONS ? first : second, y = which < POSITIONS ? second : first;
     for (size_t j = 0; j < grid->ny; j++)
         for (size_t i = 0; i < grid->nx; i++)
             wave->z[j * grid->nx + i] = grid_dx(grid) *
@@ -133,7 +136,9 @@ int area_law_make(const struct grid *grid, const struct block *block, struct are
     if (grid_is_profile(grid))
         return block_is_coated(block) ? make_edges(out, grid, block, err) : 0;
     status = double_sine_open(&wave, &out->edge, grid, &bare, err);
-    for (size_t a = 0; status == 0 && a < POSITIONS; a++) {
+    /* On equal spacings exchanged positions would add the same again. */
+    const size_t positions = grid_dx(grid) == grid_dy(grid) ? POSITIONS : 2 * POSITIONS;
+    for (size_t a = 0; status == 0 && a < positions; a++) {
         wave_shift(&wave, a);
         status = add_loads(&wave, out, &squares, err);
     }

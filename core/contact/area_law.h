@@ -20,9 +20,10 @@ struct area_law {
         weighting; /* fraction of the weighting's error of the gap that counts; 1 for a profile */
 };
 
-/* Takes some ten milliseconds for a surface, times the larger of its spacings over the smaller; a
- * few for a profile. ERROR_INPUT where that ratio is above 100; ERROR_NUMERIC where a solution for
- * it fails; ERROR_MEMORY. */
+/* Does not depend on which of two spacings is along x. Takes some ten milliseconds for a surface,
+ * of unequal spacings twice as many times the larger over the smaller; a few for a profile.
+ * ERROR_INPUT where that ratio is above 100; ERROR_NUMERIC where a solution for it fails;
+ * ERROR_MEMORY. */
 int area_law_make(const struct grid *grid, const struct block *block, struct area_law *out,
                   struct error *err);
 

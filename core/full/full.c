@@ -23,7 +23,6 @@ struct full_state {
 
 /* All lengths in this file are in units of dx, the mesh's unit. */
 struct full {
-    struct grid grid;
     struct full_options options;
     struct mesh *mesh;
     struct newton newton;
@@ -93,7 +92,6 @@ int full_create(struct full **out, const struct grid *grid, const struct block *
     struct material material = material_of(block->poisson, options->kinematics);
     linear.model = MODEL_LAYERED;
     loose.tolerance = 1e-5;
-    f->grid = *grid;
     f->options = *options;
     status = mesh_create(&f->mesh, grid, block, options->transition, err);
     if (status == 0)
@@ -164,7 +162,8 @@ double full_bytes(const struct grid *grid, const struct block *block,
         return NAN;
     enum {
         VECTORS = 6,
-        OVERHANG_VECTORS = 3, /* two states, and what drags */
+        OVERHANG_STATES = 2,
+        OVERHANG_VECTORS = OVERHANG_STATES + 1, /* and what drags */
         FACES = 9
     }; /* arrays of newton.h and this file by unknown and by node of the face, and one of areas */
     struct material material = material_of(block->poisson, options->kinematics);
@@ -176,6 +175,9 @@ double full_bytes(const struct grid *grid, const struct block *block,
         tangent_bytes(mesh, pressures) +
         gmres_bytes(mesh, &material, iterations, overhangs && mesh->dimension == 3) +
         contact_bytes(grid, block, &CONTACT_DEFAULTS) + compliance_bytes(grid, block);
+    if (overhangs)
+        bytes += self_contact_bytes(mesh) +
+                 sizeof(struct self_pair) * OVERHANG_STATES * (double)self_pairs_most(mesh);
     mesh_destroy(&mesh);
     return bytes;
 }
@@ -183,6 +185,7 @@ double full_bytes(const struct grid *grid, const struct block *block,
 void full_set_stop(struct full *f, int (*stop)(void *context), void *context) {
     f->newton.stop = stop;
     f->newton.context = context;
+    contact_set_stop(f->linear, stop, context);
 }
 
 void full_set_overhangs(struct full *f, bool allowed) {
@@ -193,14 +196,19 @@ void full_set_overhangs(struct full *f, bool allowed) {
 static int take_heights(struct full *f, const double *z, struct error *err) {
     size_t n = f->mesh->face;
     struct sum sum = {0}, square = {0};
+    double largest = 0;
     for (size_t i = 0; i < n; i++) {
         f->z[i] = z[i] / f->mesh->unit;
+        largest = fmax(largest, fabs(z[i]));
         if (!isfinite(f->z[i]))
             return error_set(err, ERROR_INPUT, "height %zu of the surface = %g is not finite", i,
                              z[i]);
         sum_add(&sum, f->z[i]);
     }
     double mean = sum_value(&sum) / (double)n, highest = -INFINITY;
+    if (!isfinite(mean))
+        return error_set(err, ERROR_INPUT,
+                         "heights of the surface of up to %g: their sum is not finite", largest);
     for (size_t i = 0; i < n; i++) {
         f->z[i] -= mean;
         highest = fmax(highest, f->z[i]);
@@ -236,16 +244,20 @@ int full_begin(struct full *f, const double *z, struct error *err) {
 /* --- load steps --- */
 
 /* Predicts the active set at a load: the set of the last load, changed where the linear model's
- * contact changes between the two loads. Where the linear model fails, the last set is kept. */
-static void predict(struct full *f, double load) {
+ * contact changes between the two loads. Where the linear model fails, the last set is kept; it may
+ * be stopped. */
+static int predict(struct full *f, double load, struct error *err) {
     struct contact_state state;
-    struct error ignored;
-    bool known = contact_press(f->linear, load, &state, &ignored) == 0;
+    const int status = contact_press(f->linear, load, &state, err);
+    const bool known = status == 0;
+    if (status == ERROR_STOPPED)
+        return status;
     for (size_t node = 0; node < f->mesh->face; node++) {
         f->touches[node] = known ? state.p[node] > 0 : f->guess[node];
         if (known && (f->load == 0 || f->touches[node] != f->guess[node]))
             f->newton.active[node] = f->touches[node];
     }
+    return 0;
 }
 
 /* The state between loads has arrays of its own for what carries it through a whole series. */
@@ -319,9 +331,10 @@ static int solve(const struct loading *loading, double load, const double *befor
 static int step_to(void *solver, double load, double *change, struct error *err) {
     const struct loading *loading = solver;
     struct full *f = loading->full;
-    if (!f->careful)
-        predict(f, load);
-    int status = solve(loading, load, f->kept, change, err);
+    int status = f->careful ? 0 : predict(f, load, err);
+    *change = 0;
+    if (status == 0)
+        status = solve(loading, load, f->kept, change, err);
     if (status != 0)
         restore(f);
     else {
@@ -423,7 +436,7 @@ static int state_create(struct full_state *state, const struct newton *n, struct
         return 0;
     state->u = array_create(newton_unknowns(n), sizeof *state->u);
     state->active = array_create(n->mesh->face, sizeof *state->active);
-    state->pair = array_create(PAIRS_A_NODE * n->mesh->face, sizeof *state->pair);
+    state->pair = array_create(self_pairs_most(n->mesh), sizeof *state->pair);
     if (state->u != NULL && state->active != NULL && state->pair != NULL)
         return 0;
     state_clear(state);
@@ -505,15 +518,15 @@ static void fill_report(struct full *f, const struct newton_end *end,
     memcpy(report->history, end->history, sizeof report->history);
 }
 
-/* Returns the mean gap, and turns the gaps of nodes, where it is not the usual one. */
-static double measure_gap(struct full *f) {
-    const struct full_options *options = &f->options;
+double full_mean_gap(const struct full_options *options, const struct mesh *mesh, const double *u,
+                     const bool *touches, const double *columns, double *gap) {
+    const bool deforms = options->kinematics != KINEMATICS_SMALL;
     if (!options->current_areas && !options->normal_gaps)
-        return newton_mean_gap(&f->newton) * f->mesh->unit;
+        return face_mean_gap(mesh, deforms ? u : NULL, columns) * mesh->unit;
     if (options->normal_gaps)
-        face_turn_gaps(f->mesh, f->newton.u, f->newton.active, f->gap);
-    return options->current_areas ? face_mean_gap_current(f->mesh, f->newton.u, f->gap)
-                                  : face_mean_gap(f->mesh, f->newton.u, f->gap);
+        face_turn_gaps(mesh, u, touches, gap);
+    return options->current_areas ? face_mean_gap_current(mesh, u, gap)
+                                  : face_mean_gap(mesh, u, gap);
 }
 
 static int fill_state(struct full *f, const struct newton_end *end, struct contact_state *out,
@@ -536,7 +549,7 @@ static int fill_state(struct full *f, const struct newton_end *end, struct conta
                          "the face overhangs under a mean pressure of %g E*: its normals do not "
                          "all meet the flat, and gaps along them are none",
                          out->pressure);
-    out->mean_gap = measure_gap(f);
+    out->mean_gap = full_mean_gap(&f->options, f->mesh, n->u, n->active, n->gap, f->gap);
     out->approach = out->unload_stiffness = NAN;
     out->penetration = end->penetration / height_scale(f);
     out->violation = fmax(end->inside, end->penetration) / height_scale(f);
@@ -545,7 +558,7 @@ static int fill_state(struct full *f, const struct newton_end *end, struct conta
         return 0;
     f->newton.limit = (struct full_limit){0};
     int status = newton_compliance(&f->newton, &compliance, f->tangent, err);
-    if (status != 0)
+    if (status == ERROR_NUMERIC)
         error_context(err,
                       "the stiffness of contact on the true geometry under a mean pressure of %g "
                       "E*, which was reached, was not found",

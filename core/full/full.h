@@ -81,14 +81,14 @@ size_t full_degrees_of_freedom(const struct grid *grid, const struct block *bloc
                                const struct full_options *options);
 /* Bytes of a solver that takes this many iterations of the linear equations in each iteration of
  * Newton's method, without a factorisation; NaN where the block cannot be meshed. overhangs: with
- * the vectors that a face takes which may overhang, but without its pairs and patches, which are
- * made where it does. */
+ * the vectors, pairs and patches that a face takes which may overhang. */
 double full_bytes(const struct grid *grid, const struct block *block,
                   const struct full_options *options, double iterations, bool overhangs);
 
-/* Sets stop, which is called before each iteration of Newton's method. When it returns non-zero,
- * full_press ends with ERROR_STOPPED and leaves the solver as after a load that was not reached.
- * NULL, the initial value, never stops. */
+/* Sets stop, which is called before each iteration of Newton's method and of its linear equations,
+ * and every few iterations of the linear model. When it returns non-zero, full_press ends with
+ * ERROR_STOPPED and leaves the solver as after a load that was not reached; during those of the
+ * stiffness, as after one that was. NULL, the initial value, never stops. */
 void full_set_stop(struct full *full, int (*stop)(void *context), void *context);
 
 /* Lets faces overhang and meet themselves where they do not go on otherwise; the
@@ -108,6 +108,11 @@ int full_press(struct full *full, double pressure, struct contact_state *out,
  * node is at node*dimension + k. Valid until the next call. */
 const struct mesh *full_mesh(const struct full *full);
 const double *full_displacement(struct full *full);
+/* Returns the mean gap under displacements u as the options measure it, in the grid's unit of
+ * length. By node of the face: whether it touches, its vertical gap in columns, and the same in the
+ * grid's unit, which normal_gaps turns into that along the normal where the node does not touch. */
+double full_mean_gap(const struct full_options *options, const struct mesh *mesh, const double *u,
+                     const bool *touches, const double *columns, double *gap);
 /* The equilibrium of the last state (core/full/friction goes on from there). Valid until the next
  * call. */
 const struct newton *full_newton(const struct full *full);

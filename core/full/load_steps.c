@@ -8,7 +8,9 @@
  * rise where a round fails, and fall after small changes of the face. From the largest drag
  * over the mean force of a node of DRAG_SMALL on, and after each fall by DRAG_FALL, equilibrium
  * without drag is tried. Rounds balance to DRAG_TOLERANCE, and from DRAG_REST on to the tolerance
- * of a load, at which a drag counts as none. */
+ * of a load, at which a drag counts as none. Also under larger tolerances: rounds that balanced to
+ * one of 1e-4 saved 1 % of the iterations of 12 jumps, and to one of 1e-2 a profile jumped 424
+ * times in place of 2. */
 static const double DRAG_FIRST = 0.02, DRAG_MOST = 10, DRAG_RISE = 4, DRAG_FALL = 0.25;
 static const double DRAG_TOLERANCE = 1e-5, DRAG_SMALL = 1e-2, DRAG_REST = 1e-4;
 /* Rounds; and rounds after one that failed in which its drag, and up to twice as much, is not tried

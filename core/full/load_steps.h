@@ -34,7 +34,7 @@ struct load_solver {
     /* ERROR_NUMERIC where a limit is used up. */
     int (*check)(void *solver, struct error *err);
     /* Solves from the state held, each displacement from which is dragged, to this residual over
-     * the largest contact force, at least the solver's own tolerance. */
+     * the largest contact force, whatever the solver's own tolerance. */
     int (*drag)(void *solver, double load, double drag, double tolerance, struct dragged *out,
                 struct error *err);
     void (*hold)(void *solver); /* the present state */

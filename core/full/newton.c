@@ -9,10 +9,12 @@
 #include <string.h>
 
 /* Residuals at which iterations of the linear equations end: LINEAR_PART times Newton's residual,
- * at most LINEAR_MOST; LINEAR_EXACT with a factorisation; LINEAR_STIFFNESS for newton_compliance,
- * the second where the first is not reached. */
+ * at most LINEAR_MOST; LINEAR_EXACT with a factorisation. For newton_compliance
+ * STIFFNESS_TOLERANCES times the tolerance, at most the first of LINEAR_STIFFNESS, and these where
+ * it is not reached. */
 static const double LINEAR_MOST = 1e-2, LINEAR_EXACT = 1e-10;
-static const double LINEAR_STIFFNESS[] = {1e-6, 1e-4};
+static const double STIFFNESS_TOLERANCES = 1e3, LINEAR_STIFFNESS[] = {1e-6, 1e-4};
+
 int newton_create(struct newton *out, const struct mesh *mesh, const struct material *material,
                   enum gap_weighting weighting, enum equation_solver solver, struct error *err) {
     *out = (struct newton){.mesh = mesh, .material = *material, .solver = solver};
@@ -249,7 +251,9 @@ static struct linear_system system_of(const struct newton *n, struct factorisati
                                   .pinned = is_pinned(n),
                                   .drag = factorisation == NULL ? n->drag : 0,
                                   .lengthy = n->overhangs,
-                                  .most = full_limit_linear(&n->limit, used_by(n, end))};
+                                  .most = full_limit_linear(&n->limit, used_by(n, end)),
+                                  .stop = n->stop,
+                                  .context = n->context};
 }
 
 /* Replaces the forces in change by displacements, using a factorisation. */
@@ -450,10 +454,6 @@ static const double *face_displacement(const struct newton *n) {
     return n->material.kinematics != KINEMATICS_SMALL ? n->u : NULL;
 }
 
-double newton_mean_gap(const struct newton *n) {
-    return face_mean_gap(n->mesh, face_displacement(n), n->gap);
-}
-
 /* Computes the forces at the nodes in contact under the displacements in change, scaled to a mean
  * of 1. */
 static void tangent_pressures(struct newton *n, double *tangent) {
@@ -479,9 +479,12 @@ static int solve_held(struct newton *n, bool factored, double tolerance, struct 
 }
 
 int newton_compliance(struct newton *n, double *out, double *tangent, struct error *err) {
-    int status = solve_held(n, n->factored, LINEAR_STIFFNESS[0], err);
+    const double goal = fmin(LINEAR_STIFFNESS[0], STIFFNESS_TOLERANCES * n->tolerance);
+    int status = solve_held(n, n->factored, goal, err);
     if (status == ERROR_NUMERIC && !n->factored && factorable(n->mesh))
-        status = solve_held(n, true, LINEAR_STIFFNESS[0], err);
+        status = solve_held(n, true, goal, err);
+    if (status == ERROR_NUMERIC && goal < LINEAR_STIFFNESS[0])
+        status = solve_held(n, false, LINEAR_STIFFNESS[0], err);
     if (status == ERROR_NUMERIC)
         status = solve_held(n, false, LINEAR_STIFFNESS[1], err);
     if (status != 0)

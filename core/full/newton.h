@@ -80,7 +80,8 @@ struct newton {
     double tolerance;        /* largest residual, over the largest contact force */
     size_t max_iterations;
     struct full_limit limit;    /* of the next solution */
-    int (*stop)(void *context); /* called before each iteration, non-zero stops; may be NULL */
+    int (*stop)(void *context); /* called before each iteration, also of the linear equations;
+                                   non-zero stops; may be NULL */
     void *context;
 };
 
@@ -121,11 +122,10 @@ void newton_measure_gaps(struct newton *newton);
 /* Returns the tributary area of a node in squares (profiles: steps) of the mesh's unit; all nodes
  * have the same. */
 double newton_node_area(const struct newton *newton);
-/* Returns the mean of the gaps last measured over the face under load (face.h); over the undeformed
- * face where strains are small. */
-double newton_mean_gap(const struct newton *newton);
 /* Computes -d(mean gap)/d(pressure) >= 0 from the tangent at u, of the gaps last measured, and, by
- * node of the face, the derivative of its pressure by the mean pressure: mean 1, 0 where open. */
+ * node of the face, the derivative of its pressure by the mean pressure: mean 1, 0 where open. The
+ * linear equations are solved to 1000 times the tolerance and to 1e-6; where they stall, to 1e-4.
+ * ERROR_STOPPED when stop returned non-zero. */
 int newton_compliance(struct newton *newton, double *out, double *tangent, struct error *err);
 
 #endif

@@ -21,9 +21,9 @@ int self_contact_create(struct self_contact *out, const struct mesh *mesh, struc
             self_contact_clear(out);
         return status;
     }
-    out->pair = array_create(PAIRS_A_NODE * face, sizeof *out->pair);
-    out->old = array_create(PAIRS_A_NODE * face, sizeof *out->old);
-    out->link = array_create(PAIRS_A_NODE * face, sizeof *out->link);
+    out->pair = array_create(self_pairs_most(mesh), sizeof *out->pair);
+    out->old = array_create(self_pairs_most(mesh), sizeof *out->old);
+    out->link = array_create(self_pairs_most(mesh), sizeof *out->link);
     out->bin = array_create(face, sizeof *out->bin);
     out->next = array_create(face, sizeof *out->next);
     out->turning = array_create(2 * face, sizeof *out->turning);
@@ -59,8 +59,9 @@ int self_contact_add_friction(struct self_contact *self, double friction, struct
 
 double self_contact_bytes(const struct mesh *mesh) {
     size_t pair = 2 * sizeof(struct self_pair) + sizeof(struct tangent_link);
-    size_t node = PAIRS_A_NODE * pair + 2 * sizeof(double) + 2 * sizeof(size_t);
-    return mesh->dimension == 2 ? (double)(mesh->face * node) : self_contact_surface_bytes(mesh);
+    size_t node = 2 * sizeof(double) + 2 * sizeof(size_t);
+    return mesh->dimension == 2 ? (double)(mesh->face * node + self_pairs_most(mesh) * pair)
+                                : self_contact_surface_bytes(mesh);
 }
 
 /* --- the curve --- */

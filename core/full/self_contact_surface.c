@@ -205,8 +205,8 @@ void self_contact_surface_project(const struct mesh *mesh, const double *u,
 
 int self_contact_surface_create(struct self_contact *out, struct error *err) {
     size_t face = out->mesh->face;
-    out->pair = array_create(PAIRS_A_NODE * face, sizeof *out->pair);
-    out->old = array_create(PAIRS_A_NODE * face, sizeof *out->old);
+    out->pair = array_create(self_pairs_most(out->mesh), sizeof *out->pair);
+    out->old = array_create(self_pairs_most(out->mesh), sizeof *out->old);
     out->patch = array_create(face, sizeof *out->patch);
     out->bin = array_create(face, sizeof *out->bin);
     out->next = array_create(face, sizeof *out->next);
@@ -219,9 +219,8 @@ int self_contact_surface_create(struct self_contact *out, struct error *err) {
 }
 
 double self_contact_surface_bytes(const struct mesh *mesh) {
-    size_t node = 2 * PAIRS_A_NODE * sizeof(struct self_pair) + sizeof(struct tangent_patch) +
-                  3 * sizeof(double) + 2 * sizeof(size_t);
-    return (double)(mesh->face * node);
+    size_t node = sizeof(struct tangent_patch) + 3 * sizeof(double) + 2 * sizeof(size_t);
+    return (double)(mesh->face * node + self_pairs_most(mesh) * 2 * sizeof(struct self_pair));
 }
 
 double self_contact_surface_area(const struct mesh *mesh, const double *u, size_t node) {

@@ -6,7 +6,7 @@
 #include "core/full/tangent.h"
 
 /* SIDEWAYS: directions along a face, of which profiles have the first alone. */
-enum { ARC_NODES = 3, PAIRS_A_NODE = 3, SIDEWAYS = 2 };
+enum { ARC_NODES = 3, SIDEWAYS = 2 };
 
 /* Of the search, in columns: distance within which a node and an arc or a patch are a pair;
  * distance to its middle; and width of a bin. Neighbours within reach are in the same bin or beside
@@ -27,6 +27,10 @@ enum { SELF_PROJECTIONS = 20 };
 /* What a pair is: a node of the left or the right flank and an arc of the other one, or two lips
  * on the flat. */
 enum self_kind { SELF_LEFT, SELF_RIGHT, SELF_LIPS, SELF_KINDS };
+/* Returns the pairs of a face at most: of a profile's node one of each kind, of a surface's one. */
+static inline size_t self_pairs_most(const struct mesh *mesh) {
+    return (mesh->dimension == 2 ? SELF_KINDS : 1) * mesh->face;
+}
 struct self_pair {
     size_t node, arc; /* of the face: the node, and that around which the arc is */
     enum self_kind kind;

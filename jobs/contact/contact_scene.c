@@ -441,6 +441,7 @@ void contact_case_estimate(const struct contact_case *one_case, struct study_cos
         }
     out->rare_seconds = jumps.seconds;
     out->rare_variance = jumps.variance;
+    out->rare_most = jumps.most;
     out->seconds += companions_seconds(one_case);
     out->result_bytes = contact_rows_bytes(one_case);
     out->runs_most = RUNS_MOST;

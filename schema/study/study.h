@@ -33,9 +33,9 @@ struct study_cost {
     size_t nx, ny;       /* grid of one realisation (the finest) */
     double memory_bytes; /* peak of one worker thread; of a kind: without result_bytes */
     double seconds;      /* CPU seconds a realisation on a 3 GHz core */
-    /* Of these, what only some realisations take, in the mean, and its variance between
-     * realisations; 0: all take about the same. */
-    double rare_seconds, rare_variance;
+    /* Of these, what only some realisations take: in the mean, its variance between realisations,
+     * and at most, INFINITY without a limit; 0: all take about the same. */
+    double rare_seconds, rare_variance, rare_most;
     double case_seconds;               /* the same of a case besides: merging and publishing it */
     double early_seconds[STUDY_EARLY]; /* the same of each of the first realisations besides */
     double result_bytes;   /* of a realisation in a job's result, where they grow with these */

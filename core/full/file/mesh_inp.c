@@ -3,7 +3,6 @@
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Penalty: pressure in E* over penetration in columns of the face. */
 static const double PENALTY = 1e3;
@@ -228,7 +227,5 @@ int mesh_inp(FILE *file, const char *lengths, const struct inp_model *model, str
     for (size_t s = 0; s < model->step_count; s++)
         write_step(&w, &model->steps[s]);
     free(w.point_of);
-    if (fflush(file) != 0 || ferror(file) != 0)
-        return error_set(err, ERROR_SYSTEM, "cannot write the mesh: %s", strerror(errno));
-    return 0;
+    return mesh_file_end(file, err);
 }

@@ -1,7 +1,6 @@
 #include "core/full/file/mesh_msh.h"
 #include "core/full/file/mesh_points.h"
 #include <errno.h>
-#include <string.h>
 
 enum { MSH_LINE = 1, MSH_QUAD = 3, MSH_HEXAHEDRON = 5 };
 
@@ -159,7 +158,5 @@ int mesh_msh(FILE *file, const struct mesh *mesh, struct error *err) {
         mesh_cells_each(mesh, put_side, &w);
     fputs("$EndElements\n", file);
     write_links(&w);
-    if (fflush(file) != 0 || ferror(file) != 0)
-        return error_set(err, ERROR_SYSTEM, "cannot write the mesh: %s", strerror(errno));
-    return 0;
+    return mesh_file_end(file, err);
 }

@@ -1,4 +1,6 @@
 #include "core/full/file/mesh_points.h"
+#include <errno.h>
+#include <string.h>
 
 static size_t plane_columns(const struct mesh *mesh, size_t level) {
     return mesh->level[level].nx + 1;
@@ -102,4 +104,10 @@ void mesh_cells_each(const struct mesh *mesh,
             }
         first = next;
     }
+}
+
+int mesh_file_end(FILE *file, struct error *err) {
+    if (fflush(file) != 0 || ferror(file) != 0)
+        return error_set(err, ERROR_SYSTEM, "cannot write the mesh: %s", strerror(errno));
+    return 0;
 }

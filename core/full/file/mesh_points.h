@@ -8,6 +8,7 @@
 #define RUGO_CORE_FULL_FILE_MESH_POINTS_H
 
 #include "core/full/mesh.h"
+#include <stdio.h>
 
 struct mesh_point {
     size_t number;
@@ -35,5 +36,9 @@ struct mesh_cell {
 };
 void mesh_cells_each(const struct mesh *mesh,
                      void (*put)(void *context, const struct mesh_cell *cell), void *context);
+
+/* Writes out what is left. ERROR_SYSTEM, with the reason that errno has, where that or anything
+ * before it failed. */
+int mesh_file_end(FILE *file, struct error *err);
 
 #endif

@@ -2,7 +2,6 @@
 #include "core/full/element.h"
 #include "core/full/file/mesh_points.h"
 #include <errno.h>
-#include <string.h>
 
 enum { VTK_QUAD = 9, VTK_HEXAHEDRON = 12 };
 
@@ -200,7 +199,5 @@ int mesh_vtu(FILE *file, const char *title, const struct mesh *mesh, const struc
     write_elements(&w);
     write_element_data(&w);
     fputs("    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n", file);
-    if (fflush(file) != 0 || ferror(file) != 0)
-        return error_set(err, ERROR_SYSTEM, "cannot write the mesh: %s", strerror(errno));
-    return 0;
+    return mesh_file_end(file, err);
 }

@@ -65,7 +65,7 @@ static int point_create(struct point *point, const struct friction *f, bool pair
         point->node = array_create(f->face, sizeof *point->node);
     }
     if (pairs && point->pair == NULL)
-        point->pair = array_create(PAIRS_A_NODE * f->face, sizeof *point->pair);
+        point->pair = array_create(self_pairs_most(f->mesh), sizeof *point->pair);
     if (point->u != NULL && point->traction != NULL && point->direction != NULL &&
         point->node != NULL && (!pairs || point->pair != NULL))
         return 0;
@@ -549,20 +549,6 @@ static void fill_nodes(struct friction *f, struct friction_state *out) {
     out->stick_load = sum_value(&stuck) / sum_value(&all);
 }
 
-/* Returns the mean gap, after it has turned the gaps of nodes where they are along the normal; as
- * full_press. */
-static double measure_gap(struct friction *f) {
-    const struct friction_newton *n = &f->newton;
-    const bool deforms = n->material.kinematics != KINEMATICS_SMALL,
-               normal = f->options.normal_gaps;
-    if (!normal && !f->options.current_areas)
-        return face_mean_gap(f->mesh, deforms ? n->u : NULL, n->gap) * f->mesh->unit;
-    if (normal)
-        face_turn_gaps(f->mesh, n->u, f->touches, f->gap);
-    return f->options.current_areas ? face_mean_gap_current(f->mesh, n->u, f->gap)
-                                    : face_mean_gap(f->mesh, n->u, f->gap);
-}
-
 static void fill_state(struct friction *f, struct friction_state *out) {
     const struct friction_newton *n = &f->newton;
     double by_area = f->mesh->unit / face_area(f);
@@ -580,7 +566,7 @@ static void fill_state(struct friction *f, struct friction_state *out) {
     out->slip_across = f->sideways > 1 ? f->slip + f->face : NULL;
     out->without = &f->without;
     out->face_without = f->face_without;
-    out->mean_gap = measure_gap(f);
+    out->mean_gap = full_mean_gap(&f->options, f->mesh, n->u, f->touches, n->gap, f->gap);
     out->displacement = (f->kept.flat[f->axis] - f->start_flat) * f->mesh->unit;
     out->sliding = (flat_over_face(f) - f->start_sliding) * f->mesh->unit;
     out->work = f->kept.work * by_area;

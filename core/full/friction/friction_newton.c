@@ -380,7 +380,9 @@ static int solve(struct friction_newton *n, double tolerance, double *x, struct 
                                              .friction = &n->conditions,
                                              .drag = n->drag,
                                              .lengthy = n->overhangs,
-                                             .most = full_limit_linear(&n->limit, used_by(n, end))};
+                                             .most = full_limit_linear(&n->limit, used_by(n, end)),
+                                             .stop = n->stop,
+                                             .context = n->context};
         return gmres_solve(n->gmres, &system, tolerance, x, &end->work.iterations, err);
     }
     int status = unsymmetric_set(n->lu, n->tangent, &n->conditions, err);

@@ -60,7 +60,8 @@ struct friction_newton {
     size_t sideways;            /* directions of the face: 1 of profiles, 2 of surfaces */
     size_t axis;                /* along which the flat is driven: 0, or of surfaces 1 */
     bool evaluated;             /* force, tangent and energy belong to u */
-    int (*stop)(void *context); /* called before each iteration, non-zero stops; may be NULL */
+    int (*stop)(void *context); /* called before each iteration, also of linear
+                                   equations by gmres.h; non-zero stops; may be NULL */
     void *context;
 };
 

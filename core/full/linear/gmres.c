@@ -437,6 +437,9 @@ static int cycle(struct gmres *gmres, const struct linear_system *system, double
     for (double size = 1; c < length && c<most && * left> goal && size > 0; c++) {
         double *next = gmres->basis[c + 1];
         int status = 0;
+        if (system->stop != NULL && system->stop(system->context) != 0)
+            return error_set(err, ERROR_STOPPED, "stopped after %zu iterations of linear equations",
+                             *iterations + c);
         if (system->factorisation != NULL)
             status =
                 precondition_factored(gmres, system, gmres->basis[c], gmres->direction[c], err);

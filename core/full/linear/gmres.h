@@ -62,8 +62,10 @@ struct linear_system {
     /* What the tangent has on its diagonal in all displacements, where it is not factorised: the
      * block does not drift then, and is left where it moves. */
     double drag;
-    bool lengthy; /* with all directions that there is room for before a restart */
-    size_t most;  /* iterations, up to LINEAR_ITERATIONS_MOST; 0: these */
+    bool lengthy;               /* with all directions that there is room for before a restart */
+    size_t most;                /* iterations, up to LINEAR_ITERATIONS_MOST; 0: these */
+    int (*stop)(void *context); /* called before each iteration, non-zero stops; may be NULL */
+    void *context;
 };
 
 /* Solves for x, which has tangent_unknowns values. On entry x holds forces (at the first node of
@@ -71,7 +73,8 @@ struct linear_system {
  * prescribed change of the weighted gap, and the excess of the pressures, times volumetric->row. On
  * return it holds displacements and pressures. With friction, rows of nodes in contact are those of
  * sliding_face_solve, and x has gmres_friction_unknowns values. Ends when the residual is
- * `tolerance` times that of x = 0; ERROR_NUMERIC when it stays larger. Adds to *iterations. */
+ * `tolerance` times that of x = 0; ERROR_NUMERIC when it stays larger, ERROR_STOPPED when stop
+ * returned non-zero. Adds to *iterations. */
 int gmres_solve(struct gmres *gmres, const struct linear_system *system, double tolerance,
                 double *x, size_t *iterations, struct error *err);
 

@@ -180,9 +180,10 @@ static const struct parameter ROWS[] = {
      .unit = "s",
      .example_json = "600",
      .help =
-         "full: seconds of CPU time that the loads of a realisation may take on a level, and as "
-         "many its sliding, counted by iterations as rugo check counts them, so that results "
-         "stay the same; the loads before keep their values, and a note says so"},
+         "full: seconds of CPU time that the loads of a realisation may take on a level, as many "
+         "the load that slides, which is pressed anew, and as many its sliding; counted by "
+         "iterations as rugo check counts them, so that results stay the same; the loads before "
+         "keep their values, and a note says so"},
     {.path = "/contact/kinematics",
      .type = PARAMETER_CHOICE,
      .choices = KINEMATICS_CHOICES,

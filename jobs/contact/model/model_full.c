@@ -133,6 +133,14 @@ static double bytes(const struct contact_case *one_case, size_t model, const str
     return cost_full_bytes(grid, block, &options, &size) + patch_finder_bytes(grid);
 }
 
+/* Returns the seconds of the loads without jumps, without a limit. */
+static double smooth_seconds(const struct contact_case *one_case, const struct grid *grid,
+                             const struct full_size *size) {
+    double loads =
+        cost_full_loads(grid, size, one_case->rms_slope, one_case->load_count, one_case->loads);
+    return cost_full_contact(grid, size, loads);
+}
+
 static struct cost_jumps jumps(const struct contact_case *one_case, size_t model,
                                const struct grid *grid) {
     struct full_options options = contact_case_full_options(one_case, grid);
@@ -140,17 +148,17 @@ static struct cost_jumps jumps(const struct contact_case *one_case, size_t model
         cost_full_size(grid, &one_case->blocks[model], &options, one_case->rms_slope);
     if (one_case->loads == NULL)
         return (struct cost_jumps){0};
-    return cost_full_jumps(grid, &size, contact_case_wave(one_case, grid), one_case->rms_slope,
-                           one_case->loads[one_case->load_count - 1], one_case->time_limit);
+    return cost_full_jumps(
+        grid, &size, contact_case_wave(one_case, grid), one_case->rms_slope,
+        one_case->loads[one_case->load_count - 1],
+        cost_jumps_most(one_case->time_limit, smooth_seconds(one_case, grid, &size)));
 }
 
 static double seconds(const struct contact_case *one_case, size_t model, const struct grid *grid) {
     struct full_options options = contact_case_full_options(one_case, grid);
     struct full_size size =
         cost_full_size(grid, &one_case->blocks[model], &options, one_case->rms_slope);
-    double loads =
-        cost_full_loads(grid, &size, one_case->rms_slope, one_case->load_count, one_case->loads);
-    double expected = cost_full_contact(grid, &size, loads) + jumps(one_case, model, grid).seconds;
+    double expected = smooth_seconds(one_case, grid, &size) + jumps(one_case, model, grid).seconds;
     return one_case->time_limit > 0 ? fmin(expected, one_case->time_limit) : expected;
 }
 

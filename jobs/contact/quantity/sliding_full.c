@@ -310,7 +310,8 @@ static struct path_expected path_of(const struct quantity_scene *scene) {
     return path;
 }
 
-/* CPU seconds until the load is held and along the path, and what jumps take of both. */
+/* CPU seconds until the load is held and along the path, each within the limit, and what jumps take
+ * of both. */
 struct sliding_cost {
     double held, dragged;
     struct cost_jumps jumps;
@@ -324,16 +325,18 @@ static struct sliding_cost cost_of(const struct quantity_scene *scene) {
     const struct friction_work work = work_of(scene, &size);
     const double pressing = one_case->slip_pressing ? PRESS_STEPS : 0;
     const double load = held_load(one_case), limit = one_case->time_limit;
-    const struct cost_jumps held =
-        cost_full_jumps(&scene->grid, &size, work.wave, one_case->rms_slope, load, limit);
     const struct path_expected path = path_of(scene);
-    const struct cost_jumps dragged = cost_friction_jumps(&work, path.slid, limit);
-    const double steps = cost_friction_steps(&work, path.steps + pressing) + dragged.seconds;
     const double loads =
         cost_full_loads(&scene->grid, &size, one_case->rms_slope, 1, &load) + pressing;
-    return (struct sliding_cost){.held =
-                                     cost_full_contact(&scene->grid, &size, loads) + held.seconds,
-                                 .dragged = limit > 0 ? fmin(steps, limit) : steps,
+    const double pressed = cost_full_contact(&scene->grid, &size, loads);
+    const double steps = cost_friction_steps(&work, path.steps + pressing);
+    const struct cost_jumps held = cost_full_jumps(
+        &scene->grid, &size, work.wave, one_case->rms_slope, load, cost_jumps_most(limit, pressed));
+    const struct cost_jumps dragged =
+        cost_friction_jumps(&work, path.slid, cost_jumps_most(limit, steps));
+    const double most = limit > 0 ? limit : INFINITY;
+    return (struct sliding_cost){.held = fmin(pressed + held.seconds, most),
+                                 .dragged = fmin(steps + dragged.seconds, most),
                                  .jumps = cost_jumps_sum(held, dragged)};
 }
 

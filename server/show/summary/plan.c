@@ -22,14 +22,18 @@ double plan_case_seconds(const struct study_case *one) {
     return seconds + one->cost.case_seconds;
 }
 
-/* What is taken, and of this what only some realisations take, with its variance. */
+/* What is taken, and of this what only some realisations take: in the mean, its variance, and at
+ * most. */
 struct taken {
-    double seconds, rare, variance;
+    double seconds, rare, variance, most;
 };
 
 static void add_runs(struct taken *taken, const struct study_cost *cost, double count) {
+    if (!(count > 0))
+        return; /* none of what may have no limit */
     taken->rare += count * cost->rare_seconds;
     taken->variance += count * cost->rare_variance;
+    taken->most += count * cost->rare_most;
 }
 
 static struct taken taken_by(const struct study_case *one) {
@@ -58,7 +62,7 @@ static struct plan_range range_of(const struct taken *taken) {
     const double variance = taken->variance + RARE_PART * RARE_PART * rare * rare;
     if (!(rare > 0))
         return (struct plan_range){NAN, NAN};
-    const double most = gamma_quantile(rare, variance, HIGH);
+    const double most = fmin(gamma_quantile(rare, variance, HIGH), taken->most);
     if (most < RARE_LEAST * usual)
         return (struct plan_range){NAN, NAN};
     return (struct plan_range){usual / USUAL_FACTOR + gamma_quantile(rare, variance, LOW),
@@ -77,6 +81,7 @@ struct plan_range plan_range(const struct study *study) {
         all.seconds += taken.seconds;
         all.rare += taken.rare;
         all.variance += taken.variance;
+        all.most += taken.most;
     }
     return range_of(&all);
 }

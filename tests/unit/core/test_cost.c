@@ -314,17 +314,17 @@ static void steep_faces_expect_jumps(void **state) {
     double before = 0;
     for (double slope = 0.1; slope < 1.3; slope += 0.1) {
         const struct full_size size = cost_full_size(&SHORT, &block, &options, slope);
-        const struct cost_jumps jumps = cost_full_jumps(&SHORT, &size, 8, slope, 0.1, 0);
+        const struct cost_jumps jumps = cost_full_jumps(&SHORT, &size, 8, slope, 0.1, INFINITY);
         assert_true(slope > 0.6 || jumps.seconds == 0);
         assert_true(slope < 0.7 || (jumps.seconds > before && jumps.variance > 0));
         before = jumps.seconds;
     }
     const struct full_size size = cost_full_size(&SHORT, &block, &options, 1);
     const struct full_size more = cost_full_size(&LONG, &block, &options, 1);
-    const struct cost_jumps all = cost_full_jumps(&SHORT, &size, 8, 1, 0.1, 0);
+    const struct cost_jumps all = cost_full_jumps(&SHORT, &size, 8, 1, 0.1, INFINITY);
     const struct cost_jumps limited = cost_full_jumps(&SHORT, &size, 8, 1, 0.1, all.seconds / 10);
     assert_true(all.variance > all.seconds * all.seconds);
-    assert_true(cost_full_jumps(&LONG, &more, 8, 1, 0.1, 0).seconds > 4 * all.seconds);
+    assert_true(cost_full_jumps(&LONG, &more, 8, 1, 0.1, INFINITY).seconds > 4 * all.seconds);
     assert_true(limited.seconds < all.seconds / 10 && limited.variance < all.variance / 100);
     struct friction_work work = {.grid = &SHORT,
                                  .load = &size,
@@ -334,19 +334,19 @@ static void steep_faces_expect_jumps(void **state) {
                                  .pressure = 0.1,
                                  .wave = 8,
                                  .leg = 16};
-    assert_true(cost_friction_jumps(&work, 4, 0).seconds == 0);
+    assert_true(cost_friction_jumps(&work, 4, INFINITY).seconds == 0);
     work.coefficient = 1;
-    assert_true(cost_friction_jumps(&work, 0, 0).seconds == 0);
-    const double once = cost_friction_jumps(&work, 1, 0).seconds;
+    assert_true(cost_friction_jumps(&work, 0, INFINITY).seconds == 0);
+    const double once = cost_friction_jumps(&work, 1, INFINITY).seconds;
     static const struct grid IN_METRES = {128, 1, 16e-6, 1e-6}; /* of maps */
     struct friction_work map = work;
     map.grid = &IN_METRES;
-    assert_true(cost_friction_jumps(&map, 1, 0).seconds == once);
-    assert_true(cost_full_jumps(&IN_METRES, &size, 8, 1, 0.1, 0).seconds == all.seconds);
-    assert_true(once > 0 && cost_friction_jumps(&work, 3, 0).seconds > 2.9 * once);
+    assert_true(cost_friction_jumps(&map, 1, INFINITY).seconds == once);
+    assert_true(cost_full_jumps(&IN_METRES, &size, 8, 1, 0.1, INFINITY).seconds == all.seconds);
+    assert_true(once > 0 && cost_friction_jumps(&work, 3, INFINITY).seconds > 2.9 * once);
     options.kinematics = KINEMATICS_SMALL;
     const struct full_size small = cost_full_size(&SHORT, &block, &options, 1);
-    assert_true(cost_full_jumps(&SHORT, &small, 8, 1, 0.1, 0).seconds == 0);
+    assert_true(cost_full_jumps(&SHORT, &small, 8, 1, 0.1, INFINITY).seconds == 0);
 }
 
 /* Surfaces that may overhang have room for 120 directions in place of 24. */

@@ -5,9 +5,11 @@
 
 /* Of 2 s a realisation, `rare` are what only some take: one in so many. */
 static struct study_case jumping(uint64_t realisations, double rare, double one_in) {
-    return (struct study_case){
-        .realisations = realisations,
-        .cost = {.seconds = 2, .rare_seconds = rare, .rare_variance = 2 * rare * rare * one_in}};
+    return (struct study_case){.realisations = realisations,
+                               .cost = {.seconds = 2,
+                                        .rare_seconds = rare,
+                                        .rare_variance = 2 * rare * rare * one_in,
+                                        .rare_most = INFINITY}};
 }
 
 /* Seconds that are known have no range, nor those of which little is rare. */
@@ -81,12 +83,27 @@ static void cases_are_added_up(void **state) {
     assert_true(all.most / plan_seconds(&study) < one.most / plan_case_seconds(cases));
 }
 
+/* Where a limit bounds what some take, the range ends there, and holds what is expected. */
+static void a_limit_ends_the_range(void **state) {
+    (void)state;
+    for (double rare = 0.5; rare <= 1.5; rare += 0.25) {
+        struct study_case one = jumping(3, rare, 4);
+        const struct plan_range free = plan_case_range(&one);
+        one.cost.rare_most = 1.5;
+        one.cost.rare_variance = 1.5 * 1.5 / 4;
+        const struct plan_range bound = plan_case_range(&one);
+        assert_true(bound.most < free.most && bound.most <= 3 * (1.5 * (2 - rare) + 1.5));
+        assert_true(bound.least < 3 * 2 && 3 * 2 < bound.most);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_known_has_no_range),
         cmocka_unit_test(more_realisations_narrow_the_range),
         cmocka_unit_test(the_range_covers_what_is_drawn),
         cmocka_unit_test(cases_are_added_up),
+        cmocka_unit_test(a_limit_ends_the_range),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -577,6 +577,36 @@ static void estimates(void **state) {
     assert_true(small.relative_error > 0.01 && small.relative_error < 1);
 }
 
+#define STEEP "\"dimension\": 1, \"hurst\": 0.8, \"wavelength_ratio\": 4, \"length_ratio\": 16"
+#define FULL "\"model\": \"full\", \"cell_error\": \"none\", \"pressures\": {\"values\": [0.3]}"
+
+/* A limit bounds what is expected of the loads of a realisation, and with friction of the load that
+ * is pressed anew and of the sliding, each with its jumps. Jumps are a part of what is expected. */
+static void limits_bound_estimates(void **state) {
+    (void)state;
+    static const char *const SLOPES[] = {"0.3", "0.6", "0.9", "1.2", "1.5"};
+    static const double LIMIT = 5, OTHERS = 0.5; /* seconds; of surfaces and areas, at most */
+    for (size_t s = 0; s < 10; s++) {
+        const bool slides = s >= 5;
+        char text[400];
+        (void)snprintf(text, sizeof text, STUDY(STEEP ", \"rms_slope\": %s", FULL "%s, %s"),
+                       SLOPES[s % 5], slides ? ", \"friction\": 0.6" : "", "\"time_limit\": 5");
+        struct contact_case one_case = read_case(text);
+        struct study_cost cost;
+        contact_case_estimate(&one_case, &cost);
+        assert_true(cost.seconds <= (slides ? 3 : 1) * LIMIT + OTHERS);
+        assert_true(cost.rare_seconds <= cost.seconds && cost.rare_seconds <= cost.rare_most);
+        assert_true(cost.rare_most <= (slides ? 3 : 1) * LIMIT);
+        assert_true(cost.rare_variance <= LIMIT * cost.rare_most);
+        one_case.time_limit = 0;
+        contact_case_estimate(&one_case, &cost);
+        assert_true(cost.rare_seconds <= cost.seconds);
+        assert_true(cost.rare_seconds > 0 ? isinf(cost.rare_most) : cost.rare_most == 0);
+        assert_true(s % 5 < 3 || cost.seconds > 10 * LIMIT);
+        contact_case_clear(&one_case);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(defaults),
@@ -597,6 +627,7 @@ int main(void) {
         cmocka_unit_test(all_faults_at_once),
         cmocka_unit_test(fingerprints),
         cmocka_unit_test(estimates),
+        cmocka_unit_test(limits_bound_estimates),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
