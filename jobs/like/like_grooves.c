@@ -11,10 +11,12 @@
 static const double DEGREE = M_PI / 180;
 
 /* The wave vector of a family as the study has it, whose angle is within -90 and 90 degrees:
- * periods along the sides of the cell. turned: it is the opposite of the one that was found. */
+ * periods along the sides of the cell. turned: it is the opposite of the one that was found.
+ * harmonics: what the study's grid holds of it. */
 struct made {
     double along_x, along_y, period, angle;
     bool turned;
+    size_t harmonics;
 };
 
 static struct made make_fit(const struct map_groove *family, const struct grid *map,
@@ -26,8 +28,12 @@ static struct made make_fit(const struct map_groove *family, const struct grid *
     struct groove_fit fit = groove_fit_cell(x, y, cell->lx, ly);
     const double wave_x = fit.along_x / cell->lx, wave_y = profile ? 0 : fit.along_y / ly;
     const double angle = profile ? M_PI / 2 : remainder(atan2(wave_x, -wave_y), M_PI);
-    return (struct made){fit.along_x, fit.along_y, 1 / hypot(wave_x, wave_y), angle / DEGREE,
-                         sin(angle) * wave_x - cos(angle) * wave_y < 0};
+    return (struct made){fit.along_x,
+                         fit.along_y,
+                         1 / hypot(wave_x, wave_y),
+                         angle / DEGREE,
+                         sin(angle) * wave_x - cos(angle) * wave_y < 0,
+                         groove_harmonics_most(cell, fit.along_x, fit.along_y)};
 }
 
 /* Reads the surface of the study, without the file that it is to resemble. */
@@ -54,20 +60,30 @@ static const struct names NAMES[GROOVE_FAMILIES_MOST] = {
     {"cross_period", "cross_angle", "cross_depth", "cross_shape", "cross_amplitudes",
      "cross_phases"}};
 
-/* Writes the shape: by its harmonics where it has no name, or is a saw that falls along the wave
+/* Whether its harmonics say the shape: where it has no name, or is a saw that falls along the wave
  * vector of the study. */
+static bool has_harmonics(const struct map_groove *family, const struct made *made) {
+    const struct groove_shape_fit *fit = &family->fit;
+    return fit->shape == GROOVE_HARMONICS ||
+           (fit->shape == GROOVE_SAW && fit->reversed != made->turned);
+}
+static size_t harmonics_found(const struct map_groove *family) {
+    return family->fit.shape == GROOVE_HARMONICS ? family->fit.standing : family->lines.count;
+}
+
+/* Harmonics that the study's grid does not hold are left out. */
 static bool put_shape(cJSON *grooves, const struct names *names, const struct map_groove *family,
-                      bool turned) {
+                      const struct made *made) {
     const struct groove_shape_fit *fit = &family->fit;
     const struct groove_lines *lines = &family->lines;
     double amplitude[GROOVE_LINES_MOST], phase[GROOVE_LINES_MOST];
-    const bool falls = fit->shape == GROOVE_SAW && fit->reversed != turned;
-    if (fit->shape != GROOVE_HARMONICS && !falls)
+    if (!has_harmonics(family, made))
         return field_put_text(grooves, names->shape, GROOVE_SHAPE_NAMES[fit->shape]);
-    const size_t count = falls ? lines->count : fit->standing;
+    const size_t found = harmonics_found(family);
+    const size_t count = found < made->harmonics ? found : made->harmonics;
     for (size_t h = 0; h < count; h++) {
         amplitude[h] = 2 * cabs(lines->coefficient[h]);
-        phase[h] = (turned ? -1 : 1) * carg(lines->coefficient[h]) / DEGREE;
+        phase[h] = (made->turned ? -1 : 1) * carg(lines->coefficient[h]) / DEGREE;
     }
     return field_put_text(grooves, names->shape, GROOVE_SHAPE_NAMES[GROOVE_HARMONICS]) &&
            field_put(grooves, names->amplitudes, json_numbers(amplitude, count)) &&
@@ -80,7 +96,7 @@ static bool put_family(cJSON *grooves, const struct names *names, const struct m
     return field_put(grooves, names->period, json_number(made->period)) &&
            field_put(grooves, names->depth, json_number(family->fit.depth / unit)) &&
            (profile || field_put(grooves, names->angle, json_number(made->angle))) &&
-           put_shape(grooves, names, family, made->turned);
+           put_shape(grooves, names, family, made);
 }
 
 /* Two families that differ in a map may be one on the cell. */
@@ -101,15 +117,19 @@ static size_t write_family(char *out, size_t size, const struct map_groove *fami
     const char *unit = of->unit, *gap = *unit != '\0' ? " " : "";
     const double period =
         of->hold ? groove_extension_period(family, of->map) : made->period * of->wavelength;
-    char from[40] = "", to[40] = "";
+    const size_t harmonics = harmonics_found(family);
+    char from[40] = "", to[40] = "", held[100] = "";
     if (angled)
         snprintf(from, sizeof from, " at %.4g degrees", family->angle / DEGREE);
     if (angled && !of->hold)
         snprintf(to, sizeof to, " at %.4g degrees", made->angle);
+    if (has_harmonics(family, made) && harmonics > made->harmonics)
+        snprintf(held, sizeof held, " of the %zu of %zu harmonics that its grid holds",
+                 made->harmonics, harmonics);
     const int used = snprintf(
-        out, size, "every %.5g%s%.10s%s, %.3g%s%.10s deep (+- %.2g %%), made every %.5g%s%.10s%s",
+        out, size, "every %.5g%s%.10s%s, %.3g%s%.10s deep (+- %.2g %%), made every %.5g%s%.10s%s%s",
         family->period, gap, unit, from, family->fit.depth, gap, unit,
-        100 * family->fit.depth_error / family->fit.depth, period, gap, unit, to);
+        100 * family->fit.depth_error / family->fit.depth, period, gap, unit, to, held);
     return used > 0 && (size_t)used < size ? (size_t)used : size - 1;
 }
 

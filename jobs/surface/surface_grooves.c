@@ -141,22 +141,19 @@ static void check_period(const struct grid *grid, struct values *values, const c
                      period, period / dx, POINTS_LEAST, POINTS_LEAST * dx);
 }
 
-/* A cosine with as many waves along a side as half of its points, or more, is another wave there.
- */
 static void check_harmonics(const struct grid *grid, struct values *values, const char *path,
                             const struct groove_family *family) {
     const struct groove_profile *profile = &family->profile;
-    const double along_x = fabs(family->wave_x) * grid->lx;
-    const double along_y = grid_is_profile(grid) ? 0 : fabs(family->wave_y) * grid->ly;
-    const double shortest = fmax(along_x / (double)grid->nx, along_y / (double)grid->ny);
+    const size_t held =
+        groove_harmonics_most(grid, family->wave_x * grid->lx, family->wave_y * grid->ly);
     size_t most = profile->shape == GROOVE_HARMONICS ? profile->count : 0;
     while (most > 0 && cabs(profile->coefficient[most - 1]) == 0)
         most--;
-    if (2 * (double)most * shortest > 1 - 1e-9)
+    if (most > held)
         values_fault(values, path,
-                     "harmonic %zu: the grid has %g points a wave of it along a side; allowed: "
-                     "above 2, harmonics up to %.0f",
-                     most, 1 / ((double)most * shortest), ceil((1 - 1e-9) / (2 * shortest)) - 1);
+                     "harmonic %zu: the grid has two points a wave of it along a side, or fewer; "
+                     "allowed: harmonics up to %zu",
+                     most, held);
 }
 
 /* Reads the first family. */

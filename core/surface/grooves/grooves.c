@@ -6,6 +6,14 @@ struct groove_fit groove_fit_cell(double wave_x, double wave_y, double lx, doubl
     return (struct groove_fit){round(x), round(y), fmax(fabs(x - round(x)), fabs(y - round(y)))};
 }
 
+size_t groove_harmonics_most(const struct grid *grid, double along_x, double along_y) {
+    static const double ROUNDING = 1e-9;
+    const double y = grid_is_profile(grid) ? 0 : fabs(along_y) / (double)grid->ny;
+    const double shortest = fmax(fabs(along_x) / (double)grid->nx, y);
+    const double most = (1 - ROUNDING) / (2 * shortest);
+    return most < GROOVE_HARMONICS_MOST ? (size_t)most : GROOVE_HARMONICS_MOST;
+}
+
 bool grooves_fit(const struct grooves *grooves, double lx, double ly) {
     static const double ROUNDING = 1e-6;
     for (size_t f = 0; f < grooves->families; f++) {

@@ -25,6 +25,9 @@ struct groove_fit {
     double along_x, along_y, off;
 };
 struct groove_fit groove_fit_cell(double wave_x, double wave_y, double lx, double ly);
+/* Returns how many harmonics of a wave vector, in periods along the sides, a grid holds. A cosine
+ * with as many waves along a side as half of its points, or more, is another wave there. */
+size_t groove_harmonics_most(const struct grid *grid, double along_x, double along_y);
 /* Returns whether every family has whole numbers of periods along both sides of a cell, to 1e-6. */
 bool grooves_fit(const struct grooves *grooves, double lx, double ly);
 

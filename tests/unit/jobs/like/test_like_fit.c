@@ -277,6 +277,45 @@ static void grooves(void **state) {
     height_map_clear(&map);
 }
 
+/* Of a saw a grid with fewer points than the map holds fewer harmonics, whichever side is steep:
+ * the study leaves the others out, and its surfaces can be made. */
+static void saws_on_coarse_grids(void **state) {
+    (void)state;
+    static const double PERIOD = 12; /* points of the map */
+    size_t left_out = 0;
+    for (int side = -1; side <= 1; side += 2) {
+        struct height_map map = patch(false, 3);
+        for (size_t point = 0; point < grid_points(&map.grid); point++) {
+            const double t = (double)(point / map.grid.nx) / PERIOD;
+            map.z[point] += side * 6 * SLOPE * SHORTEST * (t - floor(t));
+        }
+        struct like_source source = SOURCE;
+        source.spectrum = LIKE_SPECTRUM_FIT;
+        cJSON *parameters = cJSON_CreateObject(), *surface = fitted_by("{}", &map, &source);
+        char coarse[60];
+        snprintf(coarse, sizeof coarse, "{\"points_per_wavelength\": %.9g}",
+                 number(surface, "/points_per_wavelength") / 1.9);
+        cJSON_Delete(surface);
+        surface = fitted_by(coarse, &map, &source);
+        cJSON_AddItemToObject(parameters, "surface", surface);
+        struct statistics_case one_case;
+        struct error err = {0};
+        if (statistics_case_read(&one_case, parameters, NULL, &err) != 0)
+            fail_msg("%s", err.text);
+        statistics_case_clear(&one_case);
+        const cJSON *amplitudes = json_at(parameters, "/surface/grooves/amplitudes");
+        print_message("side %d: %d harmonics\n", side, cJSON_GetArraySize(amplitudes));
+        if (amplitudes != NULL) {
+            /* a period has six points or seven; without the limit there were five harmonics */
+            assert_in_range(cJSON_GetArraySize(amplitudes), 1, 3);
+            left_out++;
+        }
+        cJSON_Delete(parameters);
+        height_map_clear(&map);
+    }
+    assert_int_equal(left_out, 1); /* the other one is a saw by name */
+}
+
 /* Sub-maps that are compared with a noisy map have as much noise: here those of a level surface. */
 static void noise_is_in_sub_maps(cJSON *surface, double rms) {
     const struct random_key keys[] = {{NOISE_SEED, 0, 0}, {NOISE_SEED, 0, 1}};
@@ -549,6 +588,7 @@ int main(void) {
         cmocka_unit_test(maps_that_cannot_be_fitted),
         cmocka_unit_test(laws),
         cmocka_unit_test(grooves),
+        cmocka_unit_test(saws_on_coarse_grids),
         cmocka_unit_test(noise_stays_out),
         cmocka_unit_test(noise_of_the_first_of_several),
         cmocka_unit_test(a_bow_is_named),

@@ -56,8 +56,8 @@ static void what_does_not_fit_is_refused(void **state) {
          "/surface/grooves/cross_phases: belongs to the cross_shape harmonics"},
         /* 8 points a period */
         {GROOVES("\"period\": 1, \"shape\": \"harmonics\", \"amplitudes\": [1, 0, 0, 0.1, 0]"),
-         "/surface/grooves/amplitudes: harmonic 4: the grid has 2 points a wave of it along a "
-         "side; allowed: above 2, harmonics up to 3"},
+         "/surface/grooves/amplitudes: harmonic 4: the grid has two points a wave of it along a "
+         "side, or fewer; allowed: harmonics up to 3"},
         {GROOVES("\"period\": 4, \"shape\": \"harmonics\", \"amplitudes\": [0, 0, 0, 1], "
                  "\"cross_period\": 1"),
          "/surface/grooves/cross_period: harmonic 4"},
