@@ -286,7 +286,8 @@ static void saws_on_coarse_grids(void **state) {
     for (int side = -1; side <= 1; side += 2) {
         struct height_map map = patch(false, 3);
         for (size_t point = 0; point < grid_points(&map.grid); point++) {
-            const double t = (double)(point / map.grid.nx) / PERIOD;
+            const size_t row = point / map.grid.nx;
+            const double t = (double)row / PERIOD;
             map.z[point] += side * 6 * SLOPE * SHORTEST * (t - floor(t));
         }
         struct like_source source = SOURCE;
