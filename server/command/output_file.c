@@ -4,6 +4,7 @@
 #include "server/command/rasterise.h"
 #include "server/command/tool.h"
 #include "server/show/map/map_png.h"
+#include "server/show/word_list.h"
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,13 +30,10 @@ bool output_file_is_png(const char *path) {
 int output_file_check_ending(const char *path, const char *what, const char *const *endings,
                              struct error *err) {
     char allowed[80] = "";
-    size_t used = 0;
     for (size_t e = 0; endings[e] != NULL; e++) {
         if (file_ends_in(path, endings[e]))
             return 0;
-        if (used < sizeof allowed)
-            used += (size_t)snprintf(allowed + used, sizeof allowed - used, "%s%s",
-                                     e > 0 ? ", " : "", endings[e]);
+        word_list_append(allowed, sizeof allowed, ", ", endings[e]);
     }
     return error_set(err, ERROR_INPUT, "%s %.200s: its name %s %s", what, path,
                      endings[1] != NULL ? "ends in none of" : "does not end in", allowed);

@@ -1,5 +1,6 @@
 #include "server/command/cluster/slurm_inside.h"
 #include "core/file/memory_file.h"
+#include "schema/result/view.h"
 #include "server/command/command.h"
 #include "server/command/tool.h"
 #include "worker/clock.h"
@@ -31,12 +32,6 @@ static void print_option(FILE *file, const struct option_row *row, const void *v
     }
 }
 
-static bool is_left_out(const char *name, const char *const *without) {
-    while (*without != NULL && strcmp(name, *without) != 0)
-        without++;
-    return *without != NULL;
-}
-
 static void print_script(const struct slurm_folder *folder, const struct inside *inside,
                          const struct pilot_options *options, const char *program, const char *time,
                          const struct inside_command *command, FILE *file) {
@@ -56,7 +51,7 @@ static void print_script(const struct slurm_folder *folder, const struct inside 
     script_print_word(program, file);
     fputs(" slurm", file);
     for (const struct option_row *row = command->rows; row->name != NULL; row++)
-        if (!is_left_out(row->name, command->without))
+        if (!view_lists(command->without, row->name))
             print_option(file, row, command->values);
     fputs(" -- ", file);
     script_print_word(command->file, file);

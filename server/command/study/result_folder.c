@@ -183,12 +183,10 @@ int result_folder_take(const struct result_folder *folder, const char *id, const
     struct holder holder;
     if (folder->path == NULL)
         return 0;
-    int status = result_folder_check(folder, id, document, err);
-    if (status != 0)
-        return status;
-    status = read_holder(folder, &holder, err);
+    int status = read_holder(folder, &holder, err);
     if (status == 0 && !is_of(&holder, id, document))
-        status = remove_results(folder, holder.id, err);
+        status =
+            folder->replace ? remove_results(folder, holder.id, err) : refuse(folder, &holder, err);
     cJSON_Delete(holder.document);
     if (status == 0)
         status = folder_make(folder->path, err);
