@@ -86,3 +86,7 @@ const char *length_unit_readable(double metres, double *metres_in_one) {
     *metres_in_one = READABLE[u].metres;
     return READABLE[u].name;
 }
+
+bool length_unit_is_metre(const char *unit) {
+    return strcmp(unit, "m") == 0;
+}

@@ -14,4 +14,7 @@ bool length_unit_metres(const char *name, size_t size, double *metres);
  * ...); static. */
 const char *length_unit_readable(double metres, double *metres_in_one);
 
+/* Returns whether it is the unit "m", that of maps whose unit of length is known. */
+bool length_unit_is_metre(const char *unit);
+
 #endif

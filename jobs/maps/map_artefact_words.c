@@ -3,7 +3,6 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <string.h>
 
 enum { TEXT_SIZE = 80 };
 
@@ -24,8 +23,8 @@ __attribute__((format(printf, 2, 3))) static void say(struct sentences *sentence
 static const char *height_text(const struct sentences *sentences, double height,
                                char text[TEXT_SIZE]) {
     double one = 1;
-    const char *unit = strcmp(sentences->z_unit, "m") == 0 ? length_unit_readable(height, &one)
-                                                           : sentences->z_unit;
+    const char *unit = length_unit_is_metre(sentences->z_unit) ? length_unit_readable(height, &one)
+                                                               : sentences->z_unit;
     snprintf(text, TEXT_SIZE, "%.3g%s%s", height / one, *unit != '\0' ? " " : "", unit);
     return text;
 }

@@ -1,7 +1,7 @@
 #include "jobs/maps/map_together.h"
+#include "core/map/length_unit.h"
 #include "core/statistics/uncertainty/map_directions.h"
 #include <stdlib.h>
-#include <string.h>
 
 static int check_map(const struct map_together *together, const struct height_map *map,
                      struct error *err) {
@@ -11,7 +11,7 @@ static int check_map(const struct map_together *together, const struct height_ma
         return 0;
     if (together->profile != grid_is_profile(&map->grid))
         return error_set(err, ERROR_INPUT, "profiles and surfaces together");
-    if (together->in_metres != (strcmp(map->xy_unit, "m") == 0))
+    if (together->in_metres != length_unit_is_metre(map->xy_unit))
         return error_set(err, ERROR_INPUT,
                          "lengths are in \"%s\", and those of the maps before are not",
                          map->xy_unit);
@@ -53,7 +53,7 @@ int map_together_add(struct map_together *together, const char *file, const stru
         return status;
     *one = (struct together_map){.file = file, .grid = map->grid};
     together->profile = grid_is_profile(&map->grid);
-    together->in_metres = strcmp(map->xy_unit, "m") == 0;
+    together->in_metres = length_unit_is_metre(map->xy_unit);
     status = map_grooves_find(&one->grooves, &measured, err);
     if (status == 0)
         status = one->grooves.families > 0 ? measure_rest(one, &measured, err)

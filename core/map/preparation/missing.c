@@ -1,9 +1,9 @@
 #include "core/map/preparation/missing.h"
+#include "core/map/length_unit.h"
 #include "core/statistics/measured_map.h"
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 static const double ROUNDING = 1e-6; /* relative, of numbers of 32 bits */
 /* No length in any unit; Surfer's blanks are 1.7e38, the largest number of 32 bits is 3.4e38. */
@@ -103,7 +103,7 @@ static int find(const struct height_map *map, struct error *err) {
 
 static int check_unit(const struct height_map *map, const struct missing_marks *marks,
                       struct error *err) {
-    const bool metres = strcmp(map->z_unit, "m") == 0;
+    const bool metres = length_unit_is_metre(map->z_unit);
     if (marks->count == 0 || marks->has_unit == metres)
         return 0;
     if (metres)

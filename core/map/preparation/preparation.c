@@ -92,14 +92,10 @@ void preparation_note(struct preparation_record *record, const char *name, const
     step->name = name;
 }
 
-static bool is_metre(const char *unit) {
-    return strcmp(unit, "m") == 0;
-}
-
 int height_map_check_units(const struct height_map *map, struct error *err) {
     if (strcmp(map->xy_unit, map->z_unit) == 0)
         return 0;
-    if (is_metre(map->xy_unit))
+    if (length_unit_is_metre(map->xy_unit))
         return error_set(
             err, ERROR_INPUT,
             "x and y are lengths and heights are %s%s, so that slopes have no meaning; "
@@ -121,7 +117,7 @@ int height_map_check_units(const struct height_map *map, struct error *err) {
 static const char *preparation_length_text(const struct height_map *map, double length,
                                            char text[40]) {
     double one = 1;
-    const char *unit = is_metre(map->xy_unit) ? length_unit_readable(length, &one) : "";
+    const char *unit = length_unit_is_metre(map->xy_unit) ? length_unit_readable(length, &one) : "";
     snprintf(text, 40, "%.6g%s%s", length / one, *unit != '\0' ? " " : "", unit);
     return text;
 }
@@ -130,12 +126,12 @@ static const char *preparation_length_text(const struct height_map *map, double 
 static int preparation_length(double *out, const struct height_map *map,
                               const struct asked_length *asked, const char *option,
                               struct error *err) {
-    if (asked->has_unit && !is_metre(map->xy_unit))
+    if (asked->has_unit && !length_unit_is_metre(map->xy_unit))
         return error_set(err, ERROR_INPUT,
                          "%s has a unit, %g m, and the map's lengths have none: --unit um (or "
                          "another) says it, or a plain number is in the unit of the map",
                          option, asked->value);
-    if (!asked->has_unit && is_metre(map->xy_unit))
+    if (!asked->has_unit && length_unit_is_metre(map->xy_unit))
         return error_set(err, ERROR_INPUT,
                          "%s %g needs a unit, such as %gum, since the map's lengths have one",
                          option, asked->value, asked->value);
@@ -149,7 +145,7 @@ static int set_spacing(struct height_map *map, const struct preparation *asked, 
     double dy = asked->dy.value > 0 ? asked->dy.value : dx * ratio;
     if (asked->dx.has_unit && asked->unit > 0)
         return error_set(err, ERROR_INPUT, "--dx has a unit, so that --unit has nothing to say");
-    if (!asked->dx.has_unit && is_metre(map->xy_unit) && !(asked->unit > 0))
+    if (!asked->dx.has_unit && length_unit_is_metre(map->xy_unit) && !(asked->unit > 0))
         return error_set(err, ERROR_INPUT,
                          "--dx %g needs a unit, such as %gum, since the file's lengths have one",
                          dx, dx);
@@ -167,7 +163,7 @@ static int preparation_units(struct preparation_record *record, struct height_ma
     int status = 0;
     if (asked->dx.value > 0)
         status = set_spacing(map, asked, err);
-    else if (asked->unit > 0 && is_metre(map->xy_unit))
+    else if (asked->unit > 0 && length_unit_is_metre(map->xy_unit))
         return error_set(err, ERROR_INPUT,
                          "the file has lengths with their unit; --unit is for files that have "
                          "none, and for --dx");
@@ -183,7 +179,7 @@ static int preparation_units(struct preparation_record *record, struct height_ma
                          preparation_length_text(map, grid_dy(&map->grid), dy));
     if (status != 0 || asked->z_unit == 0)
         return status;
-    if (is_metre(map->z_unit))
+    if (length_unit_is_metre(map->z_unit))
         return error_set(err, ERROR_INPUT,
                          "the file has heights with their unit; --z-unit is for files that have "
                          "none");
@@ -398,7 +394,8 @@ static int check_range(const struct height_map *map, struct error *err) {
 /* Returns a height as messages print it. */
 static const char *height_text(const struct height_map *map, double height, char text[40]) {
     double one = 1;
-    const char *unit = is_metre(map->z_unit) ? length_unit_readable(height, &one) : map->z_unit;
+    const char *unit =
+        length_unit_is_metre(map->z_unit) ? length_unit_readable(height, &one) : map->z_unit;
     snprintf(text, 40, "%.4g%s%s", height / one, *unit != '\0' ? " " : "", unit);
     return text;
 }
@@ -647,8 +644,9 @@ static int filter_one(struct preparation_record *record, struct height_map *map,
                       const struct asked_length *asked, bool keeps_long_waves, bool robust,
                       struct error *err) {
     const char *option = keeps_long_waves ? "--filter S" : "--filter L";
-    struct gaussian_filter filter = {
-        .keeps_long_waves = keeps_long_waves, .robust = robust, .metres = is_metre(map->xy_unit)};
+    struct gaussian_filter filter = {.keeps_long_waves = keeps_long_waves,
+                                     .robust = robust,
+                                     .metres = length_unit_is_metre(map->xy_unit)};
     struct gaussian_filter_result result;
     char cut_off[40], weights[60] = "";
     if (asked->value == 0)

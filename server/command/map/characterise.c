@@ -1,4 +1,5 @@
 /* rugo characterise FILE: what a height map in a file is like. */
+#include "core/map/length_unit.h"
 #include "jobs/maps/map_planes.h"
 #include "server/command/command.h"
 #include "server/command/input_file.h"
@@ -238,7 +239,7 @@ static void plane_show(const struct plane_file *file, const struct height_map *m
     labels->y0 = -(double)half_y * grid_dy(grid);
     if (!file->spectral)
         return;
-    const bool metres = strcmp(map->z_unit, "m") == 0 && strcmp(map->xy_unit, "m") == 0;
+    const bool metres = length_unit_is_metre(map->z_unit) && length_unit_is_metre(map->xy_unit);
     if (metres && !output_file_is_png(file->path)) {
         char unit[PLANE_UNIT];
         snprintf(unit, sizeof unit, "%s", units[1]);
@@ -284,7 +285,7 @@ static int wavelength_read(double *out, const char *option, const char *text,
         return error_set(err, ERROR_INPUT,
                          "--%s is \"%.40s\"; allowed: a length above 0, such as 50um", option,
                          text);
-    if (length.has_unit && strcmp(map->xy_unit, "m") != 0)
+    if (length.has_unit && !length_unit_is_metre(map->xy_unit))
         return error_set(err, ERROR_INPUT,
                          "--%s is \"%.40s\", but the map has no unit of length (--unit says it)",
                          option, text);

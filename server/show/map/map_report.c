@@ -1,4 +1,5 @@
 #include "server/show/map/map_report.h"
+#include "core/map/length_unit.h"
 #include "server/show/map/functional_report.h"
 #include "server/show/map/groove_report.h"
 #include <math.h>
@@ -497,7 +498,7 @@ int map_report_fill(struct named_values *out, const struct map_characterisation 
     const bool profile = grid_is_profile(&map->grid);
     const bool has = found->certainty.has_errors;
     const struct scalar_errors *errors = has ? &found->errors : NULL;
-    out->in_metres = strcmp(map->xy_unit, "m") == 0 && strcmp(map->z_unit, "m") == 0;
+    out->in_metres = length_unit_is_metre(map->xy_unit) && length_unit_is_metre(map->z_unit);
     add_decision(out, record, map);
     add_parameters(out, &found->parameters, errors, has ? &found->moment_errors : NULL);
     if (!profile)

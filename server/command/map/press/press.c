@@ -1,5 +1,6 @@
 /* rugo press FILE: the contact of a height map in a file with a rigid flat, or with a second map.
  */
+#include "core/map/length_unit.h"
 #include "jobs/allotment.h"
 #include "jobs/maps/map_counter.h"
 #include "jobs/maps/press/map_press_curves.h"
@@ -501,7 +502,7 @@ static int report(const struct press_order *order, const struct pressed *pressed
                                         .modulus = order->loads.modulus,
                                         .resistivity = order->loads.resistivity,
                                         .heat = order->loads.heat,
-                                        .metres = strcmp(map->xy_unit, "m") == 0,
+                                        .metres = length_unit_is_metre(map->xy_unit),
                                         .unit_note = height_map_unit_note(map),
                                         .map_area = map_area(press),
                                         .loads = order->loads.count,

@@ -1,4 +1,5 @@
 #include "server/command/map/press/press_coating.h"
+#include "core/map/length_unit.h"
 #include "server/show/quantity.h"
 #include <math.h>
 #include <stdlib.h>
@@ -41,7 +42,7 @@ static int refuse(struct error *err, const char *text, const char *allowed) {
 
 static int parse_thickness(struct coating *out, const struct words *words, const char *text,
                            const struct height_map *map, struct error *err) {
-    bool metres = strcmp(map->xy_unit, "m") == 0;
+    bool metres = length_unit_is_metre(map->xy_unit);
     if (metres && !quantity_parse(words->of[0], words->size[0], "m", &out->thickness))
         return refuse(err, text,
                       "the thickness is a length above 0 with its unit, such as 200nm,0.5");

@@ -1,4 +1,5 @@
 #include "server/command/map/press/press_loads.h"
+#include "core/map/length_unit.h"
 #include "server/command/options.h"
 #include "server/show/quantity.h"
 #include <math.h>
@@ -124,7 +125,7 @@ int press_loads_parse(struct press_loads *out, const struct press_words *words, 
 int press_loads_of_map(struct press_loads *loads, const struct height_map *map, struct error *err) {
     if (loads->kind != LOADS_FORCE)
         return 0;
-    if (strcmp(map->xy_unit, "m") != 0)
+    if (!length_unit_is_metre(map->xy_unit))
         return error_set(err, ERROR_INPUT,
                          "--force needs the area of the map, which has no unit of length: say "
                          "--unit and --z-unit");

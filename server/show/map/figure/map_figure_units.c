@@ -4,12 +4,11 @@
 #include "server/show/map/figure/map_figure_internal.h"
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 static void choose_unit(const char *unit, double length, const char **name, double *in_one) {
     *name = unit;
     *in_one = 1;
-    if (strcmp(unit, "m") == 0 && isfinite(length) && length > 0)
+    if (length_unit_is_metre(unit) && isfinite(length) && length > 0)
         *name = length_unit_readable(length, in_one);
 }
 
