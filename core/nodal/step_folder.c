@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* Writes the path of a file of the folder into folder->name. */
@@ -16,6 +17,14 @@ static void name_collection(struct step_folder *folder) {
     snprintf(folder->name, folder->name_size, "%s/steps.pvd", folder->path);
 }
 
+/* Opens a file to go on at its end: what an earlier run left stays until begin(). */
+static int open_kept(FILE **file, const char *path, struct error *err) {
+    *file = fopen(path, "ab");
+    return *file != NULL
+               ? 0
+               : error_set(err, ERROR_SYSTEM, "cannot open %s: %s", path, strerror(errno));
+}
+
 static int collection_open(struct step_folder *folder, struct error *err) {
     int status = folder_make(folder->path, err);
     if (status != 0)
@@ -25,12 +34,7 @@ static int collection_open(struct step_folder *folder, struct error *err) {
     if (folder->name == NULL)
         return error_memory(err, folder->name_size, "a path");
     name_collection(folder);
-    status = file_open(&folder->collection, folder->name, err);
-    if (status == 0)
-        fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
-              "byte_order=\"LittleEndian\">\n  <Collection>\n",
-              folder->collection);
-    return status;
+    return open_kept(&folder->collection, folder->name, err);
 }
 
 int step_folder_open(struct step_folder *out, const char *path, const char *nodes,
@@ -38,7 +42,7 @@ int step_folder_open(struct step_folder *out, const char *path, const char *node
     *out = (struct step_folder){.path = path, .nodes = nodes};
     int status = path != NULL ? collection_open(out, err) : 0;
     if (status == 0 && nodes != NULL)
-        status = file_open(&out->table, nodes, err);
+        status = open_kept(&out->table, nodes, err);
     return status == 0 ? 0 : step_folder_close(out, status, err);
 }
 
@@ -66,9 +70,29 @@ static int put_vtu(struct step_folder *folder, const struct nodal_step *step, st
     return status;
 }
 
+/* Takes away what an earlier run left in a file; pipes and devices hold nothing. */
+static int empty(FILE *file, const char *path, struct error *err) {
+    if (ftruncate(fileno(file), 0) == 0 || errno == EINVAL)
+        return 0;
+    return error_set(err, ERROR_SYSTEM, "cannot empty %s: %s", path, strerror(errno));
+}
+
+static int begin(struct step_folder *folder, struct error *err) {
+    int status = 0;
+    if (folder->collection != NULL) {
+        name_collection(folder);
+        status = empty(folder->collection, folder->name, err);
+        fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
+              "byte_order=\"LittleEndian\">\n  <Collection>\n",
+              folder->collection);
+    }
+    return status == 0 && folder->table != NULL ? empty(folder->table, folder->nodes, err) : status;
+}
+
 int step_folder_put(struct step_folder *folder, const struct nodal_step *step, struct error *err) {
-    folder->count++;
-    int status = folder->path != NULL ? put_vtu(folder, step, err) : 0;
+    int status = folder->count++ == 0 ? begin(folder, err) : 0;
+    if (status == 0 && folder->path != NULL)
+        status = put_vtu(folder, step, err);
     if (status == 0 && folder->table != NULL)
         status = node_table_put(folder->table, folder->count == 1, step, err);
     return status;
@@ -85,16 +109,32 @@ static int remove_left(struct step_folder *folder, struct error *err) {
     }
 }
 
+/* Removes a file that was made for this run, and has nothing in it. */
+static void remove_empty(const char *path) {
+    struct stat file;
+    if (stat(path, &file) == 0 && S_ISREG(file.st_mode) && file.st_size == 0)
+        (void)unlink(path);
+}
+
 int step_folder_close(struct step_folder *folder, int status, struct error *err) {
+    const bool kept = status != 0 && folder->count == 0;
+    if (status == 0 && folder->count == 0)
+        status = begin(folder, err);
     if (folder->collection != NULL) {
-        int removed = remove_left(folder, status == 0 ? err : NULL);
+        int removed = kept ? 0 : remove_left(folder, status == 0 ? err : NULL);
         status = status != 0 ? status : removed;
-        fputs("  </Collection>\n</VTKFile>\n", folder->collection);
+        if (!kept)
+            fputs("  </Collection>\n</VTKFile>\n", folder->collection);
         name_collection(folder);
         status = file_close(folder->collection, folder->name, status, err);
+        if (kept)
+            remove_empty(folder->name);
     }
-    if (folder->table != NULL)
+    if (folder->table != NULL) {
         status = file_close(folder->table, folder->nodes, status, err);
+        if (kept)
+            remove_empty(folder->nodes);
+    }
     free(folder->name);
     *folder = (struct step_folder){0};
     return status;

@@ -16,13 +16,16 @@ struct step_folder {
     FILE *collection, *table;
     size_t count; /* steps so far */
 };
-/* Makes the folder if it is missing, and opens its files, which replace those of an earlier run:
- * when it is closed, also those of more steps. ERROR_SYSTEM names what could not be made. */
+/* Makes the folder if it is missing, and opens its files. The first step replaces those of an
+ * earlier run, and closing takes away those of more steps. ERROR_SYSTEM names what could not be
+ * made. */
 int step_folder_open(struct step_folder *out, const char *path, const char *nodes,
                      struct error *err);
 int step_folder_put(struct step_folder *folder, const struct nodal_step *step, struct error *err);
 /* Closes what is open, also after a failure, and returns the status passed in, or its own. The
- * collection then lists the steps that were put. Accepts a zeroed struct. */
+ * collection then lists the steps that were put; after a failure before the first one the files of
+ * an earlier run are as they were, and without such a run there are none. Accepts a zeroed struct.
+ */
 int step_folder_close(struct step_folder *folder, int status, struct error *err);
 
 /* Writes a step as one VTU file. */

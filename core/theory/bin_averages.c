@@ -9,6 +9,8 @@
  * underflow there, while the curvature itself is smooth. */
 static const double DENSITY_LEAST = 1e-200;
 
+/* Wide bins are integrated so far from the load: beyond, Persson's density is below exp(-128). */
+static const double PERSSON_REACH = 8;
 enum { PERSSON_PANELS = 4 };
 
 /* Parts of a bin, each of which has the 4-point rule. Wide bins are divided, and beyond REACH,
@@ -141,9 +143,15 @@ static double persson_density(double x, const void *load) {
 }
 
 void bin_averages_persson(double load, const struct bins *bins, double *pdf) {
-    double width = bins_width(bins);
+    const double width = bins_width(bins);
+    const bool wide = width > PERSSON_REACH;
     for (size_t b = 0; b < bins->count; b++) {
-        double low = bins->low + (double)b * width;
-        pdf[b] = quadrature(persson_density, &load, low, low + width, PERSSON_PANELS) / width;
+        double low = bins->low + (double)b * width, high = low + width;
+        if (wide) {
+            low = fmax(low, load - PERSSON_REACH);
+            high = fmin(high, load + PERSSON_REACH);
+        }
+        size_t panels = wide ? 2 * PERSSON_PANELS : PERSSON_PANELS;
+        pdf[b] = quadrature(persson_density, &load, low, high, panels) / width;
     }
 }

@@ -444,8 +444,8 @@ static int press_wave(struct contact *contact, size_t count, const struct lesson
     return 0;
 }
 
-/* Solves the wave on the block where that is coated. The first direction sets the stiffness of the
- * law, which is 0 before. */
+/* Solves the wave on the block where that is coated. The first direction that is learnt sets the
+ * stiffness of the law, which is 0 before. */
 static int lesson_make(struct lesson *out, const struct compliance *line, double steps,
                        double *stiffness, struct error *err) {
     const double count = (double)line->grid.nx, softer = line->length[1] * M_PI / line->grid.lx;
@@ -505,21 +505,30 @@ static int learn(const struct grid *grid, const struct block *block, const size_
     return status;
 }
 
+/* Fills the direction a of a law, or its mirror image where x and y are alike. */
+static int fill_direction(const struct grid *grid, const struct block *block, bool alike, size_t a,
+                          struct edge_law *out, struct error *err) {
+    const size_t *m = DIRECTIONS[a];
+    const double across = grid_is_profile(grid) ? grid_dx(grid) : grid_dy(grid);
+    out->angle[a] = atan2((double)m[1] / across, (double)m[0] / grid_dx(grid));
+    if (alike && a > DIAGONAL) {
+        out->table[a] = out->table[EDGE_DIRECTIONS - 1 - a];
+        return 0;
+    }
+    return learn(grid, block, m, &out->stiffness, &out->table[a], err);
+}
+
 int edge_law_make(const struct grid *grid, const struct block *block, struct edge_law *out,
                   struct error *err) {
-    bool profile = grid_is_profile(grid), square = !profile && grid_dx(grid) == grid_dy(grid);
+    const bool profile = grid_is_profile(grid);
+    const bool alike = !profile && grid_dx(grid) == grid_dy(grid);
+    /* The first one sets the stiffness: across the narrower spacing, be that along x or y. */
+    const bool turned = !profile && grid_dy(grid) < grid_dx(grid);
     out->count = profile ? 1 : EDGE_DIRECTIONS;
     out->stiffness = 0;
-    for (size_t a = 0; a < out->count; a++) {
-        size_t mirror = EDGE_DIRECTIONS - 1 - a;
-        double across = profile ? grid_dx(grid) : grid_dy(grid);
-        out->angle[a] =
-            atan2((double)DIRECTIONS[a][1] / across, (double)DIRECTIONS[a][0] / grid_dx(grid));
-        int status = 0;
-        if (square && a > DIAGONAL)
-            out->table[a] = out->table[mirror];
-        else
-            status = learn(grid, block, DIRECTIONS[a], &out->stiffness, &out->table[a], err);
+    for (size_t n = 0; n < out->count; n++) {
+        size_t a = turned ? out->count - 1 - n : n;
+        int status = fill_direction(grid, block, alike, a, out, err);
         if (status != 0)
             return error_context(err, "law of contact edges");
     }

@@ -41,6 +41,7 @@ struct slip_point {
     double *direction[2];      /* of sliding nodes */
     double pressure, shear[2]; /* means */
     double flat[2];            /* displacement of the flat */
+    double violation;
 };
 
 struct slip {
@@ -191,6 +192,7 @@ static void keep(struct slip *s) {
         to->flat[d] = s->flat[d];
     }
     to->pressure = s->pressure;
+    to->violation = s->violation;
 }
 
 static void restore(struct slip *s) {
@@ -205,6 +207,7 @@ static void restore(struct slip *s) {
         s->flat[d] = from->flat[d];
     }
     s->pressure = from->pressure;
+    s->violation = from->violation;
     slip_sets_count(&s->sets);
 }
 
@@ -520,6 +523,13 @@ static double dissipated(const struct slip *s) {
     return sum / (double)n;
 }
 
+/* Fills the gaps of a state that was restored. */
+static void displace_again(struct slip *s) {
+    (void)displace(s);
+    for (size_t d = 0; d < 2; d++)
+        s->flat[d] = s->kept.flat[d];
+}
+
 /* Goes to a pressure and a traction, in so many parts as it takes. */
 static int go(struct slip *s, double pressure, double traction, struct error *err) {
     const double pressure_from = s->pressure, traction_from = along_load(s, s->shear);
@@ -543,8 +553,10 @@ static int go(struct slip *s, double pressure, double traction, struct error *er
         }
         restore(s);
         if (status != ERROR_NUMERIC || ++halvings > HALVINGS_MOST ||
-            s->iterations >= s->iterations_most)
+            s->iterations >= s->iterations_most) {
+            displace_again(s);
             return status;
+        }
         part /= 2;
     }
     return 0;

@@ -284,6 +284,38 @@ static int always(void *context) {
     return 1;
 }
 
+static int third(void *context) {
+    int *calls = context;
+    return ++*calls >= 3;
+}
+
+/* A load that was stopped among its sets leaves the gaps, and all else, of the load before. */
+static void stopped_loads_leave_the_state(void **unused) {
+    (void)unused;
+    enum { POINTS = 64 };
+    const struct grid grid = {.nx = POINTS, .ny = 1, .lx = 1, .ly = 1};
+    struct slip_options options = SLIP_DEFAULTS;
+    struct error err = {0};
+    struct slip_state state;
+    double z[POINTS] = {0}, gap[POINTS];
+    int calls = 0;
+    options.poisson = 0;
+    roughen(&grid, 1, 1, 8, z);
+    struct slip *slip = made(&grid, &options);
+    press(slip, z, 1);
+    const struct slip_state before = load(slip, 0.05);
+    memcpy(gap, before.gap, sizeof gap);
+    slip_set_stop(slip, third, &calls);
+    assert_int_equal(slip_load(slip, 0.18, &state, &err), ERROR_STOPPED);
+    assert_int_equal(calls, 3);
+    slip_set_stop(slip, NULL, NULL);
+    const struct slip_state after = load(slip, 0.05);
+    assert_memory_equal(after.gap, gap, sizeof gap);
+    assert_true(after.mean_gap == before.mean_gap && after.violation == before.violation);
+    assert_true(after.displacement == before.displacement && after.work == before.work);
+    slip_destroy(&slip);
+}
+
 static void refusals(void **unused) {
     (void)unused;
     const struct grid grid = {.nx = 32, .ny = 1, .lx = 1, .ly = 1};
@@ -332,10 +364,14 @@ static void refusals(void **unused) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cattaneo_s_stick_radius), cmocka_unit_test(coupled_cylinder),
-        cmocka_unit_test(uncoupled_profile),       cmocka_unit_test(without_friction),
-        cmocka_unit_test(small_profile),           cmocka_unit_test(small_surface),
-        cmocka_unit_test(high_friction),           cmocka_unit_test(refusals)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(cattaneo_s_stick_radius),
+                                       cmocka_unit_test(coupled_cylinder),
+                                       cmocka_unit_test(uncoupled_profile),
+                                       cmocka_unit_test(without_friction),
+                                       cmocka_unit_test(small_profile),
+                                       cmocka_unit_test(small_surface),
+                                       cmocka_unit_test(high_friction),
+                                       cmocka_unit_test(stopped_loads_leave_the_state),
+                                       cmocka_unit_test(refusals)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

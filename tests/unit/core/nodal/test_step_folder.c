@@ -99,6 +99,36 @@ static void a_shorter_run_replaces_a_longer_one(void **state) {
     assert_false(contains("fewer/steps.pvd", "step-2"));
 }
 
+/* What fails before its first step, by a name of a file or of a model, costs no results. */
+static void a_run_without_a_step_replaces_nothing(void **state) {
+    (void)state;
+    struct step_folder files = {0};
+    struct error err = {0};
+    write_steps("earlier", "earlier.csv", 2, false);
+    char *collection = slurp("earlier/steps.pvd"), *table = slurp("earlier.csv");
+    assert_int_equal(step_folder_open(&files, "earlier", "no/such.csv", &err), ERROR_SYSTEM);
+    assert_int_equal(step_folder_open(&files, "earlier", "earlier.csv", &err), 0);
+    assert_int_equal(step_folder_close(&files, ERROR_INPUT, &err), ERROR_INPUT);
+    assert_int_equal(access("earlier/step-1.vtu", F_OK), 0);
+    assert_int_equal(access("earlier/step-2.vtu", F_OK), 0);
+    char *collection_after = slurp("earlier/steps.pvd"), *table_after = slurp("earlier.csv");
+    assert_string_equal(collection_after, collection);
+    assert_string_equal(table_after, table);
+    free(collection);
+    free(table);
+    free(collection_after);
+    free(table_after);
+    assert_int_equal(step_folder_open(&files, "made", "made.csv", &err), 0);
+    assert_int_equal(step_folder_close(&files, ERROR_INPUT, &err), ERROR_INPUT);
+    assert_int_not_equal(access("made/steps.pvd", F_OK), 0);
+    assert_int_not_equal(access("made.csv", F_OK), 0);
+    /* One that succeeds without steps leaves none. */
+    write_steps("earlier", "earlier.csv", 0, false);
+    assert_int_not_equal(access("earlier/step-1.vtu", F_OK), 0);
+    assert_false(contains("earlier/steps.pvd", "step-1"));
+    assert_true(contains("earlier/steps.pvd", "</VTKFile>"));
+}
+
 /* A failure closes all files, and names what it is about. */
 static void what_cannot_be_written_is_told(void **state) {
     (void)state;
@@ -121,6 +151,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(steps_and_nodes_come_back),
         cmocka_unit_test(a_shorter_run_replaces_a_longer_one),
+        cmocka_unit_test(a_run_without_a_step_replaces_nothing),
         cmocka_unit_test(what_cannot_be_written_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,6 +1,7 @@
 /* Protects: theories of summits over bins of any width are means of those over narrow bins, and add
  * up to one. Tolerances are those of the 4-point rule in parts of 1/4. */
 #include "core/theory/bin_averages.h"
+#include "core/theory/contact.h"
 #include "tests/support/check.h"
 
 enum { FINE = 320, MERGED = 160, COARSE = FINE / MERGED };
@@ -36,7 +37,26 @@ static void wide_bins_are_means_of_narrow_ones(void **state) {
     }
 }
 
+/* Persson's density over all bins is the fraction in contact, wherever the load is in its bin. */
+static void pressures_make_the_fraction_in_contact(void **state) {
+    (void)state;
+    static const double HIGH[] = {80, 200, 1e3, 1e6}, LOADS[] = {0.01, 0.3, 4, 33};
+    enum { BINS = 10 };
+    for (size_t h = 0; h < 4; h++)
+        for (size_t k = 0; k < 4; k++) {
+            const struct bins bins = {0, HIGH[h], BINS};
+            double pdf[BINS], sum = 0;
+            bin_averages_persson(LOADS[k], &bins, pdf);
+            for (size_t b = 0; b < BINS; b++)
+                sum += pdf[b] * HIGH[h] / BINS;
+            check_relative(sum, persson_area(LOADS[k]), 1e-9);
+        }
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(wide_bins_are_means_of_narrow_ones)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(wide_bins_are_means_of_narrow_ones),
+        cmocka_unit_test(pressures_make_the_fraction_in_contact),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
