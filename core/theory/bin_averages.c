@@ -149,7 +149,7 @@ void bin_averages_persson(double load, const struct bins *bins, double *pdf) {
         double low = bins->low + (double)b * width, high = low + width;
         if (wide) {
             low = fmax(low, load - PERSSON_REACH);
-            high = fmin(high, load + PERSSON_REACH);
+            high = fmax(low, fmin(high, load + PERSSON_REACH));
         }
         size_t panels = wide ? 2 * PERSSON_PANELS : PERSSON_PANELS;
         pdf[b] = quadrature(persson_density, &load, low, high, panels) / width;
