@@ -1,5 +1,5 @@
 #include "schema/result/difference.h"
-#include "schema/result/result.h"
+#include "schema/result/total.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -262,6 +262,13 @@ static int combine_error(struct maker *maker, const struct curve_pair *pair,
 
 /* --- curves --- */
 
+/* Returns the effective realisations of a difference of independent means; 0: not known. */
+static double effective_of(double a, double sampled_a, double b, double sampled_b) {
+    const double variances[] = {a * a, b * b}, realisations[] = {sampled_a, sampled_b};
+    double freedom = total_freedom(2, variances, realisations);
+    return sampled_a > 0 && sampled_b > 0 && freedom > 0 ? freedom + 1 : 0;
+}
+
 /* The mean over pairs less that over all realisations, of which some lack a value: its bound, and
  * how many lack one, by point. */
 struct missing {
@@ -270,10 +277,11 @@ struct missing {
 };
 
 static void put_pair(const struct paired_value *value, size_t k, double *y, double *standard_error,
-                     struct missing *missing) {
+                     double *effective, struct missing *missing) {
     double all = (double)(value->pairs + value->lacking);
     y[k] = value->value;
     standard_error[k] = value->standard_error;
+    effective[k] = value->effective;
     missing->lacking[k] = (double)value->lacking;
     missing->bound[k] = value->lacking > 0
                             ? (double)value->lacking / all * MISSING_DEVIATIONS * value->deviation
@@ -284,18 +292,21 @@ static void put_pair(const struct paired_value *value, size_t k, double *y, doub
 /* Takes the values from pairs of realisations where these give every point, else from the
  * curves. */
 static bool fill_values(const struct maker *maker, const struct curve_pair *pair, double *y,
-                        double *standard_error, struct missing *missing) {
+                        double *standard_error, double *effective, struct missing *missing) {
     const struct curve *a = pair->minuend, *b = pair->subtrahend;
     struct paired_value value;
     bool paired = maker->pairs != NULL;
     for (size_t k = 0; k < pair->n && paired; k++) {
         paired = maker->pairs->point(maker->pairs->context, a, pair->a[k], b, pair->b[k], &value);
         if (paired)
-            put_pair(&value, k, y, standard_error, missing);
+            put_pair(&value, k, y, standard_error, effective, missing);
     }
     for (size_t k = 0; k < pair->n && !paired; k++) {
-        y[k] = a->y[pair->a[k]] - b->y[pair->b[k]];
-        standard_error[k] = hypot(a->standard_error[pair->a[k]], b->standard_error[pair->b[k]]);
+        size_t i = pair->a[k], j = pair->b[k];
+        y[k] = a->y[i] - b->y[j];
+        standard_error[k] = hypot(a->standard_error[i], b->standard_error[j]);
+        effective[k] = effective_of(a->standard_error[i], curve_sampled_at(a, i),
+                                    b->standard_error[j], curve_sampled_at(b, j));
     }
     return paired;
 }
@@ -303,18 +314,22 @@ static bool fill_values(const struct maker *maker, const struct curve_pair *pair
 static int set_values(struct maker *maker, const struct curve_pair *pair, struct curve *out,
                       struct error *err) {
     size_t n = pair->n;
-    double *x = result_numbers(maker->out, 8 * n);
+    double *x = result_numbers(maker->out, 9 * n);
     if (x == NULL)
         return no_room(err);
     double *y = x + n, *standard_error = y + n, *minuend = standard_error + n;
     double *subtrahend = minuend + n, *zero = subtrahend + n;
+    double *effective = zero + 3 * n;
     struct missing missing = {.bound = zero + n, .lacking = zero + 2 * n};
     for (size_t k = 0; k < n; k++) {
         x[k] = pair->minuend->x[pair->a[k]];
         minuend[k] = pair->minuend->y[pair->a[k]];
         subtrahend[k] = pair->subtrahend->y[pair->b[k]];
     }
-    out->paired = fill_values(maker, pair, y, standard_error, &missing);
+    out->paired = fill_values(maker, pair, y, standard_error, effective, &missing);
+    for (size_t k = 0; k < n; k++)
+        if (effective[k] > 0)
+            out->effective = effective;
     out->minuend = minuend;
     out->subtrahend = subtrahend;
     curve_set_points(out, n, x, y, standard_error);
@@ -433,12 +448,15 @@ static void set_scalar(const struct maker *maker, const struct scalar *a, const 
     out->paired = exact;
     out->value = a->value - b->value;
     out->standard_error = hypot(a->standard_error, b->standard_error);
+    out->effective =
+        effective_of(a->standard_error, scalar_sampled(a), b->standard_error, scalar_sampled(b));
     if (exact || maker->pairs == NULL ||
         !maker->pairs->scalar(maker->pairs->context, a->name, &value))
         return;
     out->paired = true;
     out->value = value.value;
     out->standard_error = value.standard_error;
+    out->effective = value.lacking > 0 ? (double)value.pairs : 0;
     struct scalar_error *missing = &out->errors[ERROR_MISSING];
     if (missing->applies) {
         double share = (double)value.lacking / (double)(value.pairs + value.lacking);
