@@ -396,14 +396,33 @@ static int set_names(struct maker *maker, const struct curve_pair *pair, struct 
     return done ? 0 : no_room(err);
 }
 
+static void remark_alone(struct maker *maker, const struct curve *curve, const char *which) {
+    remark(maker, "%s%s%s is of the %s case alone", curve->quantity,
+           curve->model != NULL ? " by " : "", curve->model != NULL ? curve->model : "", which);
+}
+
+/* Names the curves of the subtrahend that go with none of the minuend. */
+static void remark_others(struct maker *maker) {
+    for (size_t b = 0; b < maker->subtrahend->curve_count; b++) {
+        const struct curve *curve = &maker->subtrahend->curves[b];
+        bool alone = is_finest(maker->subtrahend, curve);
+        for (size_t a = 0; a < maker->minuend->curve_count && alone; a++)
+            alone = !curve_same_series(&maker->minuend->curves[a], curve) ||
+                    partner_of(maker, &maker->minuend->curves[a]) != curve;
+        if (alone)
+            remark_alone(maker, curve, "second");
+    }
+}
+
 static int add_curve(struct maker *maker, const struct curve *minuend, struct error *err) {
     struct curve_pair pair = {.minuend = minuend, .subtrahend = partner_of(maker, minuend)};
     struct curve out = curve_named(NULL, NULL, NULL);
-    if (pair.subtrahend == NULL || minuend->columns > 0 || pair.subtrahend->columns > 0) {
-        remark(maker, "%s is %s", minuend->quantity,
-               minuend->columns > 0 ? "a matrix" : "of the first case alone");
+    if (pair.subtrahend == NULL)
+        remark_alone(maker, minuend, "first");
+    else if (minuend->columns > 0 || pair.subtrahend->columns > 0)
+        remark(maker, "%s is a matrix", minuend->quantity);
+    if (pair.subtrahend == NULL || minuend->columns > 0 || pair.subtrahend->columns > 0)
         return 0;
-    }
     int status = find_points(maker, &pair, err);
     if (status == 0 && pair.n == 0)
         remark(maker, "%s has no %s in common", minuend->quantity, minuend->x_label);
@@ -501,6 +520,7 @@ static int make(struct maker *maker, struct error *err) {
     for (size_t a = 0; a < maker->minuend->curve_count && status == 0; a++)
         if (is_finest(maker->minuend, &maker->minuend->curves[a]))
             status = add_curve(maker, &maker->minuend->curves[a], err);
+    remark_others(maker);
     if (status == 0 && maker->remark[0] != '\0') {
         out->remark = result_text(out, maker->remark);
         status = out->remark != NULL ? 0 : no_room(err);
