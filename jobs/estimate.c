@@ -37,6 +37,13 @@ struct estimate estimate_mean(size_t n, const double *x) {
     return estimate_ratio(n, x, NULL);
 }
 
+double estimate_effective(size_t n, const double *x, const double *weight) {
+    size_t used = 0;
+    for (size_t r = 0; r < n; r++)
+        used += weight_of(x, weight, r) > 0;
+    return used < n ? (double)used : 0;
+}
+
 struct estimate estimate_of_few(struct estimate mean, size_t count) {
     if (count < 2)
         return (struct estimate){NAN, NAN};

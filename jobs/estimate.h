@@ -11,6 +11,9 @@ struct estimate {
 
 /* Estimates the mean of x over the realisations that have one (others are NaN). */
 struct estimate estimate_mean(size_t n, const double *x);
+/* Returns how many of n values a mean is over, with the weights of estimate_weighted or NULL; 0
+ * where it is over all of them or none, as `effective` of a result has it. */
+double estimate_effective(size_t n, const double *x, const double *weight);
 /* Returns a mean of `count` values with an error of which 1.96 are Student's interval of 95 %, as
  * few values may lie close together. Fewer than two show no scatter: NaN. */
 struct estimate estimate_of_few(struct estimate mean, size_t count);

@@ -120,9 +120,12 @@ static bool compare_groups(const struct pairs *pairs, const struct curve *minuen
     *out = (struct paired_value){.value = estimate.value,
                                  .standard_error = estimate.standard_error,
                                  .deviation = estimate.deviation,
-                                 .pairs = pairs->count};
-    if (one.informative < TALLY_RARE || other.informative < TALLY_RARE)
+                                 .pairs = pairs->count,
+                                 .effective = (double)estimate.pairs};
+    if (one.informative < TALLY_RARE || other.informative < TALLY_RARE) {
         out->standard_error = hypot(minuend->standard_error[a], subtrahend->standard_error[b]);
+        out->effective = 0;
+    }
     return true;
 }
 

@@ -1,5 +1,6 @@
 #include "jobs/target.h"
 #include "schema/json/json.h"
+#include "schema/result/total.h"
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <string.h>
@@ -119,16 +120,17 @@ const char *target_quantity_name(enum target_quantity quantity) {
 
 double target_quantile(const struct target *target, size_t count, const struct target_part *parts,
                        size_t point, double *standard_error) {
-    double variance = 0, square = 0;
+    double variances[TARGET_PARTS_MOST], realisations[TARGET_PARTS_MOST], variance = 0;
     for (size_t a = 0; a < count; a++) {
-        double n = (double)parts[a].done, share = parts[a].variance[point] / n;
-        variance += share;
-        square += share * share / (n - 1);
+        realisations[a] = (double)parts[a].done;
+        variances[a] = parts[a].variance[point] / realisations[a];
+        variance += variances[a];
     }
     *standard_error = sqrt(variance);
     if (!isfinite(variance) || variance <= 0)
         return isnan(variance) ? (double)NAN : 0;
-    return gsl_cdf_tdist_Pinv((1 + target->confidence) / 2, variance * variance / square);
+    return gsl_cdf_tdist_Pinv((1 + target->confidence) / 2,
+                              total_freedom(count, variances, realisations));
 }
 
 /* A search for the plan of least work. */

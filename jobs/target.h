@@ -58,7 +58,7 @@ struct target_plan {
 };
 /* Returns by how many standard errors the sum may err at a point at this confidence: Student's
  * quantile, with degrees of freedom by Welch and Satterthwaite (Welch 1947). standard_error: of the
- * sum. NaN where a part has no variance. */
+ * sum. NaN where a part has no variance. At most TARGET_PARTS_MOST parts. */
 double target_quantile(const struct target *target, size_t count, const struct target_part *parts,
                        size_t point, double *standard_error);
 /* Computes the numbers of realisations, needed[count], none below what is done, that take the least

@@ -85,6 +85,8 @@ static const struct unit_row SCALARS[] = {
     {"kappa_highest_load", 0, NOTHING, NULL, "Pa", 1, 0, {{"rms_slope", 1}}, 0},
     {"power_law_highest_load", 0, NOTHING, NULL, "Pa", 1, 0, {{"rms_slope", 1}}, 0},
     {"erf_highest_load", 0, NOTHING, NULL, "Pa", 1, 0, {{"rms_slope", 1}}, 0},
+    {"percolation_load", 0, NOTHING, NULL, "Pa", 1, 0, {{"rms_slope", 1}}, 0},
+    {"sliding_to_full_slip", 0, NOTHING, NULL, "m", 0, 1, HEIGHT, 0},
 };
 /* clang-format on */
 

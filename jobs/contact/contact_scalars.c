@@ -236,8 +236,15 @@ static int put_measure(const struct contact_tally *tally, enum contact_measure m
     struct contact_error *errors = array_create(one_case->load_count, sizeof *errors);
     if (errors == NULL)
         return error_memory(err, one_case->load_count * sizeof *errors, "errors of a scalar");
-    if (loads > 0)
+    out->effective = 0;
+    if (loads > 0) {
+        const size_t last =
+            contact_case_cell(one_case, model, one_case->level_count - 1, loads - 1);
+        const uint64_t valueless = contact_tally_valueless(tally, measure, last);
         mean = mean_of(tally, measure, model, loads - 1);
+        if (valueless > 0)
+            out->effective = (double)(tally->realisations - valueless);
+    }
     out->value = mean.value;
     out->standard_error = mean.standard_error;
     for (enum error_source s = 0; s < ERROR_SOURCES; s++) {
@@ -395,6 +402,7 @@ static int add_scalars(const struct contact_case *one_case, const struct moments
             mean = (struct estimate){moments->nayak_alpha, 0};
         struct scalar scalar = scalar_named(contact_scalar_name(a), mean.value, mean.standard_error,
                                             own ? (double)NAN : theory[origin.at]);
+        scalar.effective = estimate_effective((size_t)realisations->count, column, NULL);
         if (!own)
             status = put_tallied(tally, origin.at, &scalar, err);
         if (status == 0)

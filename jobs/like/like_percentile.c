@@ -23,13 +23,14 @@ double like_percentile(const struct like_place *place, double *standard_error) {
 }
 
 static int add(struct case_result *out, const char *before, const char *name, double value,
-               double standard_error, struct error *err) {
+               double standard_error, double effective, struct error *err) {
     char text[80];
     snprintf(text, sizeof text, "%s_%s", before, name);
     const char *kept = result_text(out, text);
     if (kept == NULL)
         return error_memory(err, sizeof text, "a scalar's name");
-    const struct scalar scalar = scalar_named(kept, value, standard_error, NAN);
+    struct scalar scalar = scalar_named(kept, value, standard_error, NAN);
+    scalar.effective = effective;
     return result_add_scalar(out, &scalar, err);
 }
 
@@ -40,13 +41,14 @@ static int add_quantity(const struct like_case *like, enum patch_quantity quanti
     const struct estimate mean = estimate_mean(n, values);
     double standard_error, percentile = like_percentile(&place, &standard_error);
     const char *name = PATCH_NAMES[quantity];
-    int status = add(out, "piece", name, mean.value, mean.standard_error, err);
+    const double effective = estimate_effective(n, values, NULL);
+    int status = add(out, "piece", name, mean.value, mean.standard_error, effective, err);
     if (status == 0)
-        status = add(out, "measured", name, like->measured[quantity], 0, err);
+        status = add(out, "measured", name, like->measured[quantity], 0, 0, err);
     if (status == 0)
-        status = add(out, "percentile", name, percentile, standard_error, err);
+        status = add(out, "percentile", name, percentile, standard_error, 0, err);
     if (status == 0)
-        status = add(out, "difference", name, difference, NAN, err);
+        status = add(out, "difference", name, difference, NAN, 0, err);
     return status;
 }
 
@@ -58,8 +60,9 @@ static int add_all(const struct like_case *like, size_t n, const double *values,
         if (isfinite(like->measured[a]))
             status = add_quantity(like, (enum patch_quantity)a, n, values + a * n,
                                   verdict.difference[a], out, err);
-    return status == 0 ? add(out, "like", "p_value", verdict.p_value, verdict.standard_error, err)
-                       : status;
+    return status == 0
+               ? add(out, "like", "p_value", verdict.p_value, verdict.standard_error, 0, err)
+               : status;
 }
 
 int like_scalars(const struct like_case *like, const struct realisations *realisations,

@@ -300,9 +300,9 @@ static void theory_of_scalars(const struct statistics_case *one_case, const stru
 
 /* Adds a scalar with a fixed name. */
 static int add_scalar(struct case_result *out, const char *name, struct estimate estimate,
-                      double theory, struct error *err) {
-    const struct scalar scalar =
-        scalar_named(name, estimate.value, estimate.standard_error, theory);
+                      double effective, double theory, struct error *err) {
+    struct scalar scalar = scalar_named(name, estimate.value, estimate.standard_error, theory);
+    scalar.effective = effective;
     return result_add_scalar(out, &scalar, err);
 }
 
@@ -344,6 +344,17 @@ static struct estimate random_estimate(const struct scalar_columns *columns,
     return out;
 }
 
+/* Returns the effective realisations of a random scalar (result.h): means over summits are of those
+ * that have any. */
+static double random_effective(const struct scalar_columns *columns,
+                               enum statistics_scalar scalar) {
+    size_t number = number_behind(scalar);
+    if (number == SCALAR_COUNT)
+        return estimate_effective(columns->n, column(columns, scalar), NULL);
+    const double *summits = column(columns, (enum statistics_scalar)number);
+    return estimate_effective(columns->n, summits, summits);
+}
+
 static int add_scalars(struct case_result *out, const struct statistics_case *one_case,
                        const struct surface_basis *basis, const struct summit_theories *theories,
                        const struct scalar_columns *columns, struct error *err) {
@@ -353,18 +364,21 @@ static int add_scalars(struct case_result *out, const struct statistics_case *on
     int status = 0;
     for (enum statistics_scalar a = 0; a < SCALAR_OWN && status == 0; a++) {
         struct estimate estimate = {constants[a], 0};
-        if (isnan(constants[a]))
+        double effective = 0;
+        if (isnan(constants[a])) {
             estimate = random_estimate(columns, a);
-        status = add_scalar(out, NAMES[a], estimate, theory[a], err);
+            effective = random_effective(columns, a);
+        }
+        status = add_scalar(out, NAMES[a], estimate, effective, theory[a], err);
     }
     if (status == 0 && one_case->surface.hurst_solved)
-        status = add_scalar(out, "hurst", (struct estimate){one_case->surface.spectrum.hurst, 0},
+        status = add_scalar(out, "hurst", (struct estimate){one_case->surface.spectrum.hurst, 0}, 0,
                             NAN, err);
     if (status != 0)
         return status;
     /* as given, or as solved for nayak_alpha */
     return add_scalar(out, "wavelength_ratio",
-                      (struct estimate){one_case->surface.wavelength_ratio, 0}, NAN, err);
+                      (struct estimate){one_case->surface.wavelength_ratio, 0}, 0, NAN, err);
 }
 
 int statistics_scalars(const struct statistics_case *one_case, const struct surface_basis *basis,

@@ -1,5 +1,5 @@
 #include "schema/result/difference.h"
-#include "schema/result/result.h"
+#include "schema/result/total.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -262,6 +262,13 @@ static int combine_error(struct maker *maker, const struct curve_pair *pair,
 
 /* --- curves --- */
 
+/* Returns the effective realisations of a difference of independent means; 0: not known. */
+static double effective_of(double a, double sampled_a, double b, double sampled_b) {
+    const double variances[] = {a * a, b * b}, realisations[] = {sampled_a, sampled_b};
+    double freedom = total_freedom(2, variances, realisations);
+    return sampled_a > 0 && sampled_b > 0 && freedom > 0 ? freedom + 1 : 0;
+}
+
 /* The mean over pairs less that over all realisations, of which some lack a value: its bound, and
  * how many lack one, by point. */
 struct missing {
@@ -270,10 +277,11 @@ struct missing {
 };
 
 static void put_pair(const struct paired_value *value, size_t k, double *y, double *standard_error,
-                     struct missing *missing) {
+                     double *effective, struct missing *missing) {
     double all = (double)(value->pairs + value->lacking);
     y[k] = value->value;
     standard_error[k] = value->standard_error;
+    effective[k] = value->effective;
     missing->lacking[k] = (double)value->lacking;
     missing->bound[k] = value->lacking > 0
                             ? (double)value->lacking / all * MISSING_DEVIATIONS * value->deviation
@@ -284,18 +292,21 @@ static void put_pair(const struct paired_value *value, size_t k, double *y, doub
 /* Takes the values from pairs of realisations where these give every point, else from the
  * curves. */
 static bool fill_values(const struct maker *maker, const struct curve_pair *pair, double *y,
-                        double *standard_error, struct missing *missing) {
+                        double *standard_error, double *effective, struct missing *missing) {
     const struct curve *a = pair->minuend, *b = pair->subtrahend;
     struct paired_value value;
     bool paired = maker->pairs != NULL;
     for (size_t k = 0; k < pair->n && paired; k++) {
         paired = maker->pairs->point(maker->pairs->context, a, pair->a[k], b, pair->b[k], &value);
         if (paired)
-            put_pair(&value, k, y, standard_error, missing);
+            put_pair(&value, k, y, standard_error, effective, missing);
     }
     for (size_t k = 0; k < pair->n && !paired; k++) {
-        y[k] = a->y[pair->a[k]] - b->y[pair->b[k]];
-        standard_error[k] = hypot(a->standard_error[pair->a[k]], b->standard_error[pair->b[k]]);
+        size_t i = pair->a[k], j = pair->b[k];
+        y[k] = a->y[i] - b->y[j];
+        standard_error[k] = hypot(a->standard_error[i], b->standard_error[j]);
+        effective[k] = effective_of(a->standard_error[i], curve_sampled_at(a, i),
+                                    b->standard_error[j], curve_sampled_at(b, j));
     }
     return paired;
 }
@@ -303,18 +314,22 @@ static bool fill_values(const struct maker *maker, const struct curve_pair *pair
 static int set_values(struct maker *maker, const struct curve_pair *pair, struct curve *out,
                       struct error *err) {
     size_t n = pair->n;
-    double *x = result_numbers(maker->out, 8 * n);
+    double *x = result_numbers(maker->out, 9 * n);
     if (x == NULL)
         return no_room(err);
     double *y = x + n, *standard_error = y + n, *minuend = standard_error + n;
     double *subtrahend = minuend + n, *zero = subtrahend + n;
+    double *effective = zero + 3 * n;
     struct missing missing = {.bound = zero + n, .lacking = zero + 2 * n};
     for (size_t k = 0; k < n; k++) {
         x[k] = pair->minuend->x[pair->a[k]];
         minuend[k] = pair->minuend->y[pair->a[k]];
         subtrahend[k] = pair->subtrahend->y[pair->b[k]];
     }
-    out->paired = fill_values(maker, pair, y, standard_error, &missing);
+    out->paired = fill_values(maker, pair, y, standard_error, effective, &missing);
+    for (size_t k = 0; k < n; k++)
+        if (effective[k] > 0)
+            out->effective = effective;
     out->minuend = minuend;
     out->subtrahend = subtrahend;
     curve_set_points(out, n, x, y, standard_error);
@@ -381,14 +396,33 @@ static int set_names(struct maker *maker, const struct curve_pair *pair, struct 
     return done ? 0 : no_room(err);
 }
 
+static void remark_alone(struct maker *maker, const struct curve *curve, const char *which) {
+    remark(maker, "%s%s%s is of the %s case alone", curve->quantity,
+           curve->model != NULL ? " by " : "", curve->model != NULL ? curve->model : "", which);
+}
+
+/* Names the curves of the subtrahend that go with none of the minuend. */
+static void remark_others(struct maker *maker) {
+    for (size_t b = 0; b < maker->subtrahend->curve_count; b++) {
+        const struct curve *curve = &maker->subtrahend->curves[b];
+        bool alone = is_finest(maker->subtrahend, curve);
+        for (size_t a = 0; a < maker->minuend->curve_count && alone; a++)
+            alone = !curve_same_series(&maker->minuend->curves[a], curve) ||
+                    partner_of(maker, &maker->minuend->curves[a]) != curve;
+        if (alone)
+            remark_alone(maker, curve, "second");
+    }
+}
+
 static int add_curve(struct maker *maker, const struct curve *minuend, struct error *err) {
     struct curve_pair pair = {.minuend = minuend, .subtrahend = partner_of(maker, minuend)};
     struct curve out = curve_named(NULL, NULL, NULL);
-    if (pair.subtrahend == NULL || minuend->columns > 0 || pair.subtrahend->columns > 0) {
-        remark(maker, "%s is %s", minuend->quantity,
-               minuend->columns > 0 ? "a matrix" : "of the first case alone");
+    if (pair.subtrahend == NULL)
+        remark_alone(maker, minuend, "first");
+    else if (minuend->columns > 0 || pair.subtrahend->columns > 0)
+        remark(maker, "%s is a matrix", minuend->quantity);
+    if (pair.subtrahend == NULL || minuend->columns > 0 || pair.subtrahend->columns > 0)
         return 0;
-    }
     int status = find_points(maker, &pair, err);
     if (status == 0 && pair.n == 0)
         remark(maker, "%s has no %s in common", minuend->quantity, minuend->x_label);
@@ -433,12 +467,15 @@ static void set_scalar(const struct maker *maker, const struct scalar *a, const 
     out->paired = exact;
     out->value = a->value - b->value;
     out->standard_error = hypot(a->standard_error, b->standard_error);
+    out->effective =
+        effective_of(a->standard_error, scalar_sampled(a), b->standard_error, scalar_sampled(b));
     if (exact || maker->pairs == NULL ||
         !maker->pairs->scalar(maker->pairs->context, a->name, &value))
         return;
     out->paired = true;
     out->value = value.value;
     out->standard_error = value.standard_error;
+    out->effective = value.lacking > 0 ? (double)value.pairs : 0;
     struct scalar_error *missing = &out->errors[ERROR_MISSING];
     if (missing->applies) {
         double share = (double)value.lacking / (double)(value.pairs + value.lacking);
@@ -483,6 +520,7 @@ static int make(struct maker *maker, struct error *err) {
     for (size_t a = 0; a < maker->minuend->curve_count && status == 0; a++)
         if (is_finest(maker->minuend, &maker->minuend->curves[a]))
             status = add_curve(maker, &maker->minuend->curves[a], err);
+    remark_others(maker);
     if (status == 0 && maker->remark[0] != '\0') {
         out->remark = result_text(out, maker->remark);
         status = out->remark != NULL ? 0 : no_room(err);

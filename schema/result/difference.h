@@ -15,6 +15,7 @@ struct paired_value {
     double value, standard_error; /* NaN: none */
     double deviation;             /* standard deviation of the difference of a pair */
     uint64_t pairs, lacking;      /* realisations of both cases: with both values, or without */
+    double effective; /* realisations, where the error is of groups of them: groups; else 0 */
 };
 /* Functions that compute differences pair by pair. They return false for what is not kept by
  * realisation. */

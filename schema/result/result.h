@@ -118,7 +118,8 @@ struct curve {
     bool counted;               /* from a histogram, or over its bins, with the counts outside */
     double underflow, overflow; /* counts below and above the bins */
     struct physical_unit x_unit, x2_unit, y_unit;
-    uint64_t sampled; /* realisations that the values are means of; 0: none, as of one map */
+    uint64_t sampled;        /* realisations that the values are means of; 0: none, as of one map */
+    const double *effective; /* as of scalars, as long as an error; NULL: of no value */
 };
 
 /* Makes a curve without points, attributes and errors. */
@@ -170,6 +171,10 @@ struct scalar {
     double law_difference, law_standard_error; /* as of curves; NaN: not known */
     struct physical_unit unit;
     uint64_t sampled; /* as of curves */
+    /* Realisations that the standard error has the degrees of freedom of, which are one less, where
+     * these are not all that were sampled: some have no value, or the value is a sum of several
+     * means (total_freedom). 0: all. */
+    double effective;
 };
 /* Returns a scalar without sources of error, a theory of the grid and another law. */
 struct scalar scalar_named(const char *name, double value, double standard_error, double theory);

@@ -19,6 +19,9 @@
 #include "schema/result/result.h"
 #include "schema/result/work_time.h"
 
+/* The effective realisations of a curve or a scalar, which has this member where it has them. */
+#define EFFECTIVE_KEY "effective_realisations"
+
 /* Prints {"study": ..., "provenance": ... ; the caller goes on with more members, or "}". False
  * when out of memory. */
 bool study_print_about(FILE *file, const struct study_result *study);

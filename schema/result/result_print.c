@@ -202,6 +202,8 @@ static bool print_curve(FILE *file, const struct curve *curve) {
                    curve->empty_standard_error);
     for (size_t s = 0; s < ERROR_SOURCES && done; s++)
         done = put_error(file, &first, curve, (enum error_source)s);
+    if (done && curve->effective != NULL)
+        done = put_values(file, &first, EFFECTIVE_KEY, curve, curve->effective, NAN);
     done = done && put_totals(file, &first, curve);
     if (done && curve->law_difference != NULL)
         done =
@@ -278,6 +280,8 @@ static bool print_scalar(FILE *file, const struct scalar *scalar) {
                 put_number(file, &first, "standard_error", scalar->standard_error) &&
                 (isnan(scalar->theory) || put_number(file, &first, "theory", scalar->theory)) &&
                 (isnan(scalar->grid) || put_number(file, &first, "grid_theory", scalar->grid));
+    if (done && scalar->effective > 0)
+        done = put_number(file, &first, EFFECTIVE_KEY, scalar->effective);
     for (size_t s = 0; s < ERROR_SOURCES && done; s++)
         done = put_scalar_error(file, &first, &scalar->errors[s], &ERROR_SOURCE_ROWS[s]);
     const struct total total = scalar_total(scalar);

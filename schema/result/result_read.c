@@ -246,6 +246,8 @@ static int read_curve(const struct reading *reading, const cJSON *object) {
         status = read_error(reading, object, (enum error_source)s, &curve);
     if (status == 0)
         status = read_law(reading, object, &curve);
+    if (status == 0 && cJSON_IsArray(field_at(object, EFFECTIVE_KEY)))
+        status = read_values(reading, object, EFFECTIVE_KEY, &curve, &curve.effective);
     if (status == 0)
         status = read_theories(reading, object, &curve);
     if (status == 0 && field_at(object, "valueless") != NULL)
@@ -289,7 +291,8 @@ static int read_scalars(const struct reading *reading, const cJSON *scalars) {
                                 .difference = field_at(item, "minuend") != NULL,
                                 .paired = cJSON_IsTrue(field_at(item, "paired")),
                                 .minuend = field_number(item, "minuend"),
-                                .subtrahend = field_number(item, "subtrahend")};
+                                .subtrahend = field_number(item, "subtrahend"),
+                                .effective = fmax(0, field_number(item, EFFECTIVE_KEY))};
         read_scalar_errors(item, &scalar);
         if (scalar.name == NULL)
             return no_memory(reading);

@@ -13,6 +13,16 @@ double total_deviations(double sampled) {
     return sampled > 0 ? gsl_cdf_tdist_Pinv(BELOW, fmax(1, sampled - 1)) : NORMAL;
 }
 
+double total_freedom(size_t count, const double *variances, const double *realisations) {
+    double variance = 0, square = 0;
+    for (size_t a = 0; a < count; a++) {
+        variance += variances[a];
+        if (variances[a] != 0)
+            square += variances[a] * variances[a] / (realisations[a] - 1);
+    }
+    return variance * variance / square;
+}
+
 struct total total_of(double value, double standard_error, double sampled,
                       const struct scalar_error errors[ERROR_SOURCES]) {
     struct total total = {.low = NAN, .high = NAN};
@@ -36,8 +46,12 @@ struct total total_of(double value, double standard_error, double sampled,
     return total;
 }
 
+double scalar_sampled(const struct scalar *scalar) {
+    return scalar->effective > 0 ? scalar->effective : (double)scalar->sampled;
+}
+
 struct total scalar_total(const struct scalar *scalar) {
-    return total_of(scalar->value, scalar->standard_error, (double)scalar->sampled, scalar->errors);
+    return total_of(scalar->value, scalar->standard_error, scalar_sampled(scalar), scalar->errors);
 }
 
 double total_half_width(double value, const struct total *total) {
@@ -75,7 +89,10 @@ struct scalar_error curve_error_at(const struct curve *curve, enum error_source 
 }
 
 double curve_sampled_at(const struct curve *curve, size_t at) {
+    double effective = at_or_nan(curve->effective, at);
     double without = curve_is_partial(curve) ? at_or_nan(curve->valueless, at) : 0;
+    if (effective > 0)
+        return effective;
     return (double)curve->sampled - (isnan(without) ? 0 : without);
 }
 

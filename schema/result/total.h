@@ -9,11 +9,12 @@
  *
  * The interval holds y, and the truth with a probability of 95 % at least, wherever the errors of
  * the sources lie within their bounds: t s is half the width of Student's interval of 95 % of n
- * realisations (t is 2.09 of 20, 1.96 of very many, as of errors that are not of realisations), and
- * H and L are the largest and the least that the sources come to. They add up plainly, as
- * the sources' errors are the same in every realisation. The root of the sum of squares, as of
- * errors that are independent, would hold a truth at the end of the bounds of 2 +- 0.25, beside a
- * standard error of 0.25, in 58 % of studies; this one does in 97 %.
+ * realisations (t is 2.09 of 20, 1.96 of very many, as of errors that are not of realisations), n
+ * being those that have a value, or, of sums and differences, the effective ones, and H and L are
+ * the largest and the least that the sources come to. They add up plainly, as the sources' errors
+ * are the same in every realisation. The root of the sum of squares, as of errors that are
+ * independent, would hold a truth at the end of the bounds of 2 +- 0.25, beside a standard error of
+ * 0.25, in 58 % of studies; this one does in 97 %.
  *
  * A source that bears on the value but is not known adds nothing: the interval is that of the
  * others, and the source is named. So is the statistical error of one realisation, which shows no
@@ -42,14 +43,20 @@ struct total {
 /* Returns half the width of the statistical interval of 95 % of so many realisations, in standard
  * errors: Student's (1908), of 0 the normal distribution's. */
 double total_deviations(double sampled);
-/* Returns the total of a value with its errors by source; sampled: as of curves, less realisations
- * without a value. */
+/* Returns the degrees of freedom of the standard error of a sum of independent means, by the
+ * variance of each and the realisations that it is of (Welch 1947). Means that are exact are left
+ * out; NaN where none is left. */
+double total_freedom(size_t count, const double *variances, const double *realisations);
+/* Returns the total of a value with its errors by source; sampled: realisations with a value, or
+ * effective ones. */
 struct total total_of(double value, double standard_error, double sampled,
                       const struct scalar_error errors[ERROR_SOURCES]);
 struct total scalar_total(const struct scalar *scalar);
 /* Returns the error of a source at a point, or of a matrix in an occupied cell. */
 struct scalar_error curve_error_at(const struct curve *curve, enum error_source source, size_t at);
-/* Returns of how many realisations a value is, those without a value left out. */
+/* Return of how many realisations a value is: the effective ones where they are known, else all but
+ * those without a value. */
+double scalar_sampled(const struct scalar *scalar);
 double curve_sampled_at(const struct curve *curve, size_t at);
 /* Returns the total of a point, or of a matrix of an occupied cell: at < curve_value_count. */
 struct total curve_total(const struct curve *curve, size_t at);

@@ -41,6 +41,7 @@ static int append_worker(sqlite3_stmt *row, struct worker_activity *all, size_t 
     return complete ? 0 : error_memory(err, 0, "a worker");
 }
 
+/* A job that was copied with its block from another study has no token, and counts there. */
 int store_workers(struct store *store, struct worker_activity **out, size_t *count,
                   struct error *err) {
     sqlite3_stmt *row = NULL;
@@ -52,6 +53,7 @@ int store_workers(struct store *store, struct worker_activity **out, size_t *cou
         store, &row, err,
         "WITH recent AS (SELECT worker, host, count(*) AS jobs, max(ended) AS ended FROM job "
         "WHERE state = 'done' AND ended >= strftime('%Y-%m-%dT%H:%M:%SZ', 'now', '-1 hour') "
+        "AND token IS NOT NULL "
         "GROUP BY worker, host), running AS (SELECT j.worker, j.host, s.public, s.name, "
         "coalesce(c.parent, c.number) AS number, j.id, j.count, j.reported, j.claimed FROM job j "
         "JOIN study s ON s.id = j.study_id JOIN study_case c ON c.study_id = j.study_id AND "

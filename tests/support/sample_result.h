@@ -16,6 +16,7 @@ static inline void sample_result(struct case_result *out) {
     static const double area[] = {1e-300, 0.5}, zero[] = {0, 0}, persson[] = {3, 4};
     static const double mesh[] = {0.25, 0.5}, mesh_error[] = {0.01, 0.02}, bound[] = {0.125, 0};
     static const double model[] = {NAN, -2}, model_error[] = {0.03, 0.04}, valueless[] = {0, 3};
+    static const double effective[] = {6.5, 4};
     static const double law[] = {0.5, -1}, law_error[] = {0.25, 0.5};
     static struct result_note notes[] = {{7, "why"}};
     struct curve plain = curve_named("q", "z/\302\265m", "density");
@@ -24,6 +25,7 @@ static inline void sample_result(struct case_result *out) {
     struct scalar m0 = scalar_named("m0", 1, 0.5, NAN), alpha = scalar_named("alpha", 5, NAN, 6);
     m0.errors[ERROR_CELL].applies = true;
     m0.errors[ERROR_MODEL] = (struct scalar_error){true, true, -0.5, 0.25, 0.125};
+    m0.effective = 5.25;
     alpha.grid = 5.5;
     alpha.law_difference = -0.5;
     alpha.law_standard_error = 0.125;
@@ -59,6 +61,7 @@ static inline void sample_result(struct case_result *out) {
     full.law_difference = law;
     full.law_standard_error = law_error;
     full.valueless = valueless;
+    full.effective = effective;
     full.theories[full.theory_count++] = (struct theory){"persson", persson};
     assert_int_equal(result_add_curve(out, &plain, NULL), 0);
     assert_int_equal(result_add_curve(out, &matrix, NULL), 0);

@@ -152,11 +152,11 @@ static int add_curves(const struct contact_tally *tally, const struct row *row, 
                       struct case_result *out, struct error *err) {
     const struct contact_case *one_case = tally->one_case;
     size_t n = one_case->load_count;
-    double *x = result_numbers(out, 6 * n);
+    double *x = result_numbers(out, 7 * n);
     if (x == NULL)
-        return error_memory(err, 6 * n * sizeof *x, "curves");
+        return error_memory(err, 7 * n * sizeof *x, "curves");
     double *y = x + n, *standard_error = y + n, *percentile = standard_error + n;
-    double *scatter = percentile + n, *measured = scatter + n;
+    double *scatter = percentile + n, *measured = scatter + n, *draws = measured + n;
     for (size_t k = 0; k < n; k++) {
         const struct estimate mean =
             contact_tally_companion(tally, COMPANION_LIKE, 0, row->measure, k);
@@ -167,19 +167,23 @@ static int add_curves(const struct contact_tally *tally, const struct row *row, 
         percentile[k] =
             isnan(row->measured[k]) ? (double)NAN : like_percentile(&position, &scatter[k]);
         measured[k] = row->measured[k];
+        draws[k] = (double)contact_tally_draws(tally, COMPANION_LIKE, 0, row->measure, k);
     }
     struct curve curve = curve_named(row->mean, "p/(E* h'_rms)", row->y_label);
     curve_set_points(&curve, n, x, y, standard_error);
+    curve.effective = draws;
     curve.theories[curve.theory_count++] = (struct theory){"measured", measured};
     int status = result_add_curve(out, &curve, err);
     curve = curve_named(row->percentile, "p/(E* h'_rms)", "percentile of the measured surface");
     curve_set_points(&curve, n, x, percentile, scatter);
+    curve.effective = NULL;
     return status == 0 ? result_add_curve(out, &curve, err) : status;
 }
 
-static int add_scalar(struct case_result *out, const char *name, double value,
-                      double standard_error, struct error *err) {
-    const struct scalar scalar = scalar_named(name, value, standard_error, NAN);
+static int add_scalar(struct case_result *out, const char *name, struct estimate value,
+                      double effective, struct error *err) {
+    struct scalar scalar = scalar_named(name, value.value, value.standard_error, NAN);
+    scalar.effective = effective;
     return result_add_scalar(out, &scalar, err);
 }
 
@@ -190,11 +194,13 @@ static int add_scalars(const struct contact_tally *tally, const struct row *row,
     const struct estimate mean =
         contact_tally_companion(tally, COMPANION_LIKE, 0, row->measure, last);
     const struct like_place position = position_at(tally, row, last, scratch);
-    double scatter, percentile = like_percentile(&position, &scatter);
-    int status = add_scalar(out, row->last[0], mean.value, mean.standard_error, err);
+    const double draws = (double)contact_tally_draws(tally, COMPANION_LIKE, 0, row->measure, last);
+    struct estimate percentile;
+    percentile.value = like_percentile(&position, &percentile.standard_error);
+    int status = add_scalar(out, row->last[0], mean, draws, err);
     if (status == 0)
-        status = add_scalar(out, row->last[1], row->measured[last], 0, err);
-    return status == 0 ? add_scalar(out, row->last[2], percentile, scatter, err) : status;
+        status = add_scalar(out, row->last[1], (struct estimate){row->measured[last], 0}, 0, err);
+    return status == 0 ? add_scalar(out, row->last[2], percentile, 0, err) : status;
 }
 
 /* Appends curves of area and gap: the mean over the sub-maps and the value of the map, as

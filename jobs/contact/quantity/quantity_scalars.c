@@ -1,4 +1,5 @@
 #include "jobs/contact/quantity/quantity_scalars.h"
+#include "jobs/contact/contact_errors.h"
 #include "jobs/contact/quantity/quantity.h"
 #include "jobs/estimate.h"
 #include <math.h>
@@ -27,6 +28,27 @@ static struct quantity_values values_of(const struct contact_tally *tally, size_
                                     .of = room + n};
 }
 
+/* Sets the errors of a scalar that is over `used` of so many rows. Those of the quantity's first
+ * measure bear on it and are not known. The other realisations, such as those that close at heavier
+ * loads, are assumed to differ as those of a curve are. */
+static void set_errors(const struct contact_tally *tally, size_t first, size_t rows, size_t used,
+                       struct scalar *out) {
+    const size_t finest = tally->one_case->level_count - 1;
+    for (enum error_source s = 0; s < ERROR_SOURCES; s++)
+        out->errors[s].applies =
+            s != ERROR_MISSING &&
+            contact_error_applies(tally, (enum contact_measure)first, 0, finest, s);
+    if (used == 0 || used == rows)
+        return;
+    const double deviation = out->standard_error * sqrt((double)used);
+    const double share = (double)(rows - used) / (double)rows;
+    out->effective = (double)used;
+    out->errors[ERROR_MISSING] =
+        (struct scalar_error){.applies = true,
+                              .known = !isnan(deviation),
+                              .bound = share * MISSING_DEVIATIONS * deviation};
+}
+
 /* Appends the scalars of one quantity; columns: room for SCALARS_MOST of all realisations. */
 static int put(const struct contact_tally *tally, const struct contact_quantity *quantity,
                size_t first, double *room, double *columns, struct case_result *out,
@@ -46,6 +68,10 @@ static int put(const struct contact_tally *tally, const struct contact_quantity 
         struct estimate mean = estimate_mean(rows, columns + a * rows);
         struct scalar scalar =
             scalar_named(quantity->scalars[a], mean.value, mean.standard_error, NAN);
+        size_t used = 0;
+        for (size_t r = 0; r < rows; r++)
+            used += isfinite(columns[a * rows + r]);
+        set_errors(tally, first, rows, used, &scalar);
         status = result_add_scalar(out, &scalar, err);
     }
     return status;

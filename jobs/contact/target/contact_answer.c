@@ -343,6 +343,7 @@ static int put_curve(const struct contact_answer *answer, const struct contact_s
     memcpy(loads, one_case->loads, answer->loads * sizeof *loads);
     curve.series = measure->cell == CELL_SAME ? measure->series : "wave";
     curve_set_points(&curve, answer->loads, loads, sum->value, sum->standard_error);
+    curve.effective = sum->effective;
     put_bounds(answer, sum, curve.errors);
     put_law(sum, &curve);
     return result_add_curve(answer->result, &curve, err);
@@ -366,6 +367,7 @@ static int put_densities(const struct contact_answer *answer, const struct conta
         curve.overflow = density.above;
         curve_set_points(&curve, density.sum.points, density.x, density.sum.value,
                          density.sum.standard_error);
+        curve.effective = density.sum.effective;
         put_bounds(answer, &density.sum, curve.errors);
         put_law(&density.sum, &curve);
         status = result_add_curve(answer->result, &curve, err);
@@ -515,6 +517,7 @@ static int put_fit(const struct contact_answer *answer, const struct contact_sum
         return status;
     struct scalar scalar =
         scalar_named(fit->name, sum.value[n - 1], sum.standard_error[n - 1], NAN);
+    scalar.effective = fmax(0, sum.effective[n - 1]);
     scalar.law_difference = sum.law[n - 1];
     scalar.law_standard_error = sum.law_standard_error[n - 1];
     for (enum error_source s = 0; s < ERROR_SOURCES; s++) {

@@ -1,6 +1,7 @@
 #include "jobs/contact/target/contact_sum.h"
 #include "jobs/contact/companion/companion_law.h"
 #include "jobs/contact/contact_measure.h"
+#include "schema/result/total.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -213,6 +214,7 @@ int contact_sum_room(const struct contact_answer *answer, size_t points, struct 
                                &out->value,
                                &out->standard_error,
                                &out->width,
+                               &out->effective,
                                &out->mesh,
                                &out->cell,
                                &out->model,
@@ -265,6 +267,22 @@ double contact_sum_bounds(const struct contact_answer *answer, const struct cont
     return hypot(hypot(mesh, sum->solver[load]), hypot(sum->cell[load], sum->model[load]));
 }
 
+/* Returns the effective realisations at a point of the value alone, to which the cell that the base
+ * is compared with adds nothing. */
+static double effective_at(const struct contact_answer *answer, const struct contact_sum *sum,
+                           size_t point) {
+    double variances[ROLES], realisations[ROLES];
+    size_t count = 0;
+    for (size_t a = 0; a < ROLES; a++) {
+        if (answer->of[a] == NULL || a == ROLE_CELL)
+            continue;
+        realisations[count] = (double)answer->of[a]->done;
+        variances[count] = sum->variance[a][point] / realisations[count];
+        count++;
+    }
+    return total_freedom(count, variances, realisations) + 1;
+}
+
 /* The interval includes the statistical error of the bound of the cell; the standard error is that
  * of the value alone. */
 void contact_sum_finish(const struct contact_answer *answer, struct contact_sum *sum) {
@@ -278,6 +296,7 @@ void contact_sum_finish(const struct contact_answer *answer, struct contact_sum 
         if (answer->of[ROLE_CELL] != NULL)
             variance -= sum->variance[ROLE_CELL][k] / (double)answer->of[ROLE_CELL]->done;
         sum->standard_error[k] = sqrt(fmax(0, variance));
+        sum->effective[k] = effective_at(answer, sum, k);
     }
 }
 
@@ -311,6 +330,7 @@ int contact_sum_quotient(const struct contact_answer *answer, const struct conta
         double a = dividend->value[k], b = divisor->value[k];
         out->value[k] = a / b;
         out->law[k] = a / b * (dividend->law[k] / a - divisor->law[k] / b);
+        out->effective[k] = fmin(dividend->effective[k], divisor->effective[k]);
         for (size_t e = 0; e < sizeof to / sizeof *to; e++)
             to[e][k] = fabs(a / b) * (of[e][0][k] / fabs(a) + of[e][1][k] / fabs(b));
     }

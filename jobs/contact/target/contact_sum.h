@@ -22,6 +22,7 @@ enum { CONTACT_LENGTHS_MOST = 4 };
 struct contact_sum {
     size_t points;
     double *value, *standard_error, *width; /* width: half of the interval at the confidence */
+    double *effective;                      /* realisations of the standard error (result.h) */
     double *base;                           /* of the base alone */
     double *mesh, *cell, *model, *solver;   /* bounds; 0 for a source without a component */
     double *law, *law_standard_error;       /* law_difference; NaN: not known */
@@ -104,7 +105,8 @@ double contact_heights_cell(const struct heights *heights);
 /* Makes the arrays of a sum, all of zeros. */
 int contact_sum_room(const struct contact_answer *answer, size_t points, struct contact_sum *out,
                      struct error *err);
-/* Sets the standard errors and widths of a sum from the variances of its components. */
+/* Sets the standard errors, their effective realisations and the widths of a sum from the variances
+ * of its components. */
 void contact_sum_finish(const struct contact_answer *answer, struct contact_sum *sum);
 /* Adds to the bound of the cell the error of a value that was added at a point from a shorter cell.
  * share: LEVELS_CELL or MODELS_CELL. */

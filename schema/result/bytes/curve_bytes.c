@@ -17,6 +17,7 @@ enum part {
     PART_BOUND,   /* of the error before it */
     PART_UNKNOWN, /* a source that applies, and of which nothing is known */
     PART_LAW,     /* the other law of heights */
+    PART_EFFECTIVE,
 };
 
 static void put_text(struct bytes *bytes, const char *text) {
@@ -96,6 +97,10 @@ static void put_parts(struct bytes *bytes, const struct curve *curve) {
         bytes_put_unsigned(bytes, PART_LAW);
         put_numbers(bytes, curve_value_count(curve), curve->law_difference);
         put_numbers(bytes, curve_value_count(curve), curve->law_standard_error);
+    }
+    if (curve->effective != NULL) {
+        bytes_put_unsigned(bytes, PART_EFFECTIVE);
+        put_numbers(bytes, curve_value_count(curve), curve->effective);
     }
     for (size_t t = 0; t < curve->theory_count; t++) {
         const struct theory *theory = &curve->theories[t];
@@ -290,6 +295,8 @@ static void get_parts(struct decoding *decoding, struct curve *curve) {
             get_theory(decoding, curve);
         else if (part == PART_LAW)
             get_law(decoding, curve);
+        else if (part == PART_EFFECTIVE)
+            curve->effective = get_numbers(decoding, curve_value_count(curve));
         else
             decoding->reader.failed = true;
     }

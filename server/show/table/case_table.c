@@ -150,7 +150,7 @@ static void sum_errors(struct table_value *value, struct table_column *column) {
 static struct table_value value_of(const struct scalar *scalar, struct table_column *column) {
     struct table_value value = {.value = scalar->value,
                                 .standard_error = scalar->standard_error,
-                                .sampled = (double)scalar->sampled,
+                                .sampled = scalar_sampled(scalar),
                                 .theory = scalar->theory,
                                 .grid = scalar->grid,
                                 .law_difference = scalar->law_difference,

@@ -84,6 +84,14 @@ static void reaches_the_error(void **state) {
     assert_true(read_number("one.db", "SELECT error_reached FROM study_progress") <= 0.01);
     assert_true(read_number("one.db", "SELECT error_reached FROM study_progress") > 0.002);
     assert_true(contains("one.out", "error asked 1 %, reached"));
+    /* the base has a third of the realisations: the total takes more of a standard error than
+       the 1.967 of all of them */
+    assert_true(read_number("one.db",
+                            "SELECT min((p.total_high - p.y - (SELECT total(bound) FROM "
+                            "curve_errors e WHERE e.study = p.study AND e.\"case\" = p.\"case\" "
+                            "AND e.quantity = p.quantity AND e.series = p.series AND e.x = p.x)) "
+                            "/ p.standard_error) FROM curve_points p WHERE quantity = "
+                            "'contact_area' AND series = 'edges'") > 1.971);
     check_close(read_number("one.db", "SELECT count(*) FROM case_progress"), 2, 0);
     check_close(read_number("one.db", "SELECT percent FROM study_progress"), 100, 0);
 }

@@ -33,6 +33,8 @@ static struct study_result contact_made(size_t cases) {
         built_scalar(one, "wavelength_ratio", 8, 0, NAN);
         built_scalar(one, "mean_gap_last", 2, 0.1, NAN);
         built_scalar(one, "kappa", 2, 0.1, NAN);
+        built_scalar(one, "percolation_load", 0.25, 0.1, NAN);
+        built_scalar(one, "sliding_to_full_slip", 0.4, 0.1, NAN);
         add_curve(one, "contact_area", "p/(E* h'_rms)", "A/A0");
         add_curve(one, "mean_gap", "p/(E* h'_rms)", "mean gap/sqrt(m0)");
         add_curve(one, "stiffness", "p/(E* h'_rms)", "K sqrt(m0)/(E* h'_rms)");
@@ -105,6 +107,8 @@ static void contact_has_pressures_and_lengths(void **state) {
     check_unit(&result_scalar(one, "rms_height")->unit, "m", 2e-6);
     check_unit(&result_scalar(one, "mean_gap_last")->unit, "m", 1e-7);
     check_unit(&result_scalar(one, "kappa")->unit, NULL, 0);
+    check_unit(&result_scalar(one, "percolation_load")->unit, "Pa", 1e10);
+    check_unit(&result_scalar(one, "sliding_to_full_slip")->unit, "m", 1e-7);
     study_result_clear(&study);
 }
 

@@ -178,12 +178,15 @@ static void models_find_their_partners(void **state) {
     assert_int_equal(out.curve_count, 1);
     assert_string_equal(out.curves[0].model, "full");
     check_close(out.curves[0].y[0], 0, 0);
+    assert_string_equal(out.remark, "area by layered is of the second case alone; area by "
+                                    "halfspace is of the second case alone");
     result_clear(&out);
     add(&a, curve_of("area", "halfspace", 8, X, UP, THREE));
     add(&a, curve_of("area", "springs", 8, X, UP, THREE));
     out = subtract(&a, &b, NULL);
     assert_int_equal(out.curve_count, 1);
-    assert_string_equal(out.remark, "area has no load in common; area is of the first case alone");
+    assert_string_equal(out.remark, "area has no load in common; area by springs is of the first "
+                                    "case alone; area by layered is of the second case alone");
     result_clear(&out);
     result_clear(&a);
     result_clear(&b);

@@ -22,9 +22,10 @@ static char *print(const struct case_result *result) {
 
 static const char PRINTED[] =
     "{\"case\":3,\"parameters\":{},\"realisations\":24,\"scalars\":{\"m0\":{\"value\":1,"
-    "\"standard_error\":0.5,\"cell_error\":null,\"model_error\":-0.5,\"model_bound\":0.25,"
-    "\"model_error_standard_error\":0.125,\"total_low\":-0.03432880520952408,"
-    "\"total_high\":2.7843288052095243,\"unknown_errors\":[\"cell\"]},\"alpha\":{\"value\":5,"
+    "\"standard_error\":0.5,\"effective_realisations\":5.25,\"cell_error\":null,\"model_error\":-0."
+    "5,\"model_bound\":0.25,"
+    "\"model_error_standard_error\":0.125,\"total_low\":-0.35660292357302925,"
+    "\"total_high\":3.1066029235730293,\"unknown_errors\":[\"cell\"]},\"alpha\":{\"value\":5,"
     "\"standard_error\":"
     "null,"
     "\"theory\":6,\"grid_theory\":5.5,\"total_low\":null,\"total_high\":null,\"unknown_errors\":[],"
@@ -52,7 +53,8 @@ static const char PRINTED[] =
     "0],"
     "\"discretisation_standard_error\":[0.01,0.02],\"discretisation_order\":1.5,"
     "\"discretisation_order_from\":\"levels\",\"block_error\":null,\"model_error\":[null,-2],"
-    "\"model_error_standard_error\":[0.03,0.04],\"total_low\":[-0.375,0.5],"
+    "\"model_error_standard_error\":[0.03,0.04],\"effective_realisations\":[6.5,4],\"total_low\":[-"
+    "0.375,0.5],"
     "\"total_high\":[1e-300,2],\"unknown_errors\":[\"block\",\"model\"],\"law_difference\":[0.5,-1]"
     ","
     "\"law_standard_error\":[0.25,0.5],\"theory\":{\"persson\":[3,4]},"

@@ -444,12 +444,12 @@ static void check_views(const char *path) {
         {"SELECT group_concat(scalar || value || coalesce(standard_error, 'none')) FROM "
          "case_scalars",
          "alpha5.0none,m01.00.5"},
-        /* Student's interval of 24 realisations, and all that the model's error of -0.5 +- 0.25
-           comes to */
+        /* Student's interval of 5.25 effective realisations, and all that the model's error of -0.5
+           +- 0.25 comes to */
         {"SELECT group_concat(coalesce(round(total_low, 9), 'none') || ' ' || "
          "coalesce(round(total_high, 9), 'none') || coalesce(unknown_errors, '')) FROM "
          "case_scalars",
-         "none none,-0.034328805 2.784328805cell"},
+         "none none,-0.356602924 3.106602924cell"},
         {"SELECT count(*) > 2 AND max(abs(total_low - (y - 2.0686576104190414 * "
          "coalesce(standard_error, "
          "0) - max(0, known)))) < 1e-12 FROM (SELECT *, (SELECT total(value + "

@@ -205,6 +205,13 @@ static void blocks_are_taken_from_the_same_study_alone(void **state) {
         "* FROM job WHERE state = 'waiting' AND study_id = (SELECT max(id) FROM study) ORDER "
         "BY case_number, first)",
         "0:20+10 1:10+20");
+    /* the worker did three jobs, of which two studies have the blocks */
+    struct worker_activity *workers = NULL;
+    size_t count = 0;
+    assert_int_equal(store_workers(store, &workers, &count, NULL), 0);
+    assert_int_equal(count, 1);
+    assert_int_equal(workers[0].recent_jobs, 3);
+    workers_free(workers, count);
     store_close(&store);
 }
 
