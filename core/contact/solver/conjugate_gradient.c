@@ -1,4 +1,5 @@
-/* Faces are solved by active sets (active_set.h), and where these do not converge by what follows.
+/* Faces are solved by active sets (active_set.h), where these do not converge by sets that are
+ * solved closely, and else by what follows.
  *
  * Conjugate gradients in the set of nodes in contact (Polonsky & Keer 1999), preconditioned by the
  * inverse compliance restricted to the set: the residual is transformed, multiplied and transformed
@@ -225,14 +226,14 @@ static void iterate_shortened(struct conjugate_gradient *solver, double mean,
         shorten(solver, mean, solver->spare[0], solver->spare[1], memory, stale);
 }
 
-/* Returns whether it converged or was stopped. */
+/* Returns whether it converged or was stopped. closely: as active_set_run, without a hardness. */
 static bool solve_by_sets(struct conjugate_gradient *solver, double mean, double tolerance,
-                          size_t max_iterations, struct conjugate_gradient_end *end) {
+                          bool closely, size_t max_iterations, struct conjugate_gradient_end *end) {
     conjugate_step_apply_compliance(solver, solver->p, solver->u);
     end->approach = approach_of(solver);
     residual(solver->padded, solver->hardness, solver->p, solver->u, solver->z, 1, solver->r, end);
     if (isinf(solver->hardness))
-        active_set_run(solver, mean, tolerance, max_iterations, end);
+        active_set_run(solver, mean, tolerance, closely, max_iterations, end);
     else
         bounded_set_run(solver, mean, tolerance, max_iterations, end);
     return end->converged || end->stopped;
@@ -285,7 +286,7 @@ static void solve_by_steps(struct conjugate_gradient *solver, double mean, doubl
 static void solve_bounded(struct conjugate_gradient *solver, double mean, double tolerance,
                           size_t max_iterations, struct conjugate_gradient_end *end) {
     for (size_t careful = CAREFUL_FIRST; end->iterations < max_iterations; careful *= 2) {
-        if (solve_by_sets(solver, mean, tolerance, max_iterations, end))
+        if (solve_by_sets(solver, mean, tolerance, false, max_iterations, end))
             return;
         end->bounded = true;
         size_t most =
@@ -302,6 +303,9 @@ void conjugate_gradient_run(struct conjugate_gradient *solver, double mean, doub
     *end = (struct conjugate_gradient_end){0};
     if (isfinite(solver->hardness))
         solve_bounded(solver, mean, tolerance, max_iterations, end);
-    else if (!solve_by_sets(solver, mean, tolerance, max_iterations, end))
-        solve_by_steps(solver, mean, tolerance, stall_iterations, max_iterations, end);
+    else if (!solve_by_sets(solver, mean, tolerance, false, max_iterations, end)) {
+        const size_t half = end->iterations + (max_iterations - end->iterations) / 2;
+        if (!solve_by_sets(solver, mean, tolerance, true, half, end))
+            solve_by_steps(solver, mean, tolerance, stall_iterations, max_iterations, end);
+    }
 }
