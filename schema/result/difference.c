@@ -417,12 +417,14 @@ static void remark_others(struct maker *maker) {
 static int add_curve(struct maker *maker, const struct curve *minuend, struct error *err) {
     struct curve_pair pair = {.minuend = minuend, .subtrahend = partner_of(maker, minuend)};
     struct curve out = curve_named(NULL, NULL, NULL);
-    if (pair.subtrahend == NULL)
+    if (pair.subtrahend == NULL) {
         remark_alone(maker, minuend, "first");
-    else if (minuend->columns > 0 || pair.subtrahend->columns > 0)
-        remark(maker, "%s is a matrix", minuend->quantity);
-    if (pair.subtrahend == NULL || minuend->columns > 0 || pair.subtrahend->columns > 0)
         return 0;
+    }
+    if (minuend->columns > 0 || pair.subtrahend->columns > 0) {
+        remark(maker, "%s is a matrix", minuend->quantity);
+        return 0;
+    }
     int status = find_points(maker, &pair, err);
     if (status == 0 && pair.n == 0)
         remark(maker, "%s has no %s in common", minuend->quantity, minuend->x_label);

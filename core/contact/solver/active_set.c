@@ -196,15 +196,11 @@ static void exchange(struct conjugate_gradient *solver, size_t node) {
     solver->r[node] = solver->r[node] != 0 ? 0 : 1;
 }
 
-struct progress {
-    double least, best; /* changes of the set, violations */
-    int stalled;        /* sets since the last that was better */
-};
-
-static void watch(struct progress *progress, double changed, double violation, bool closely) {
+void set_progress_watch(struct set_progress *progress, double changed, double violation,
+                        bool never_rises) {
     const bool better = changed < progress->least || violation < 0.5 * progress->best;
     progress->stalled = better ? 0 : progress->stalled + 1;
-    if (closely) {
+    if (never_rises) {
         progress->least = fmin(changed, progress->least);
         progress->best = fmin(violation, progress->best);
     } else if (better) {
@@ -226,7 +222,7 @@ static void close_next(struct conjugate_gradient *solver, double enough, int sta
 void active_set_run(struct conjugate_gradient *solver, double mean, double tolerance, bool closely,
                     size_t max_iterations, struct conjugate_gradient_end *end) {
     const double rounding = CONJUGATE_ROUNDING * conjugate_step_highest(solver);
-    struct progress progress = {INFINITY, INFINITY, 0};
+    struct set_progress progress = {INFINITY, INFINITY, 0};
     size_t asked = end->iterations;
     const size_t most = closely ? max_iterations : SETS_MOST; /* a set may take no step */
     for (size_t set = 0; set < most && end->iterations < max_iterations; set++) {
@@ -250,7 +246,7 @@ void active_set_run(struct conjugate_gradient *solver, double mean, double toler
             asked = end->iterations;
             end->stopped = solver->stop != NULL && solver->stop(solver->stop_context) != 0;
         }
-        watch(&progress, next.sum[LEFT] + next.sum[JOINED], violation, closely);
+        set_progress_watch(&progress, next.sum[LEFT] + next.sum[JOINED], violation, closely);
         if (wrong < solver->n)
             exchange(solver, wrong);
         if (next.sum[LEFT] > 0) {

@@ -35,4 +35,15 @@ void active_set_close(struct conjugate_gradient *solver, double enough, double s
 /* Returns the share to which a set is closed that follows so many that were no better. */
 double active_set_share(const struct conjugate_gradient *solver, int stalled);
 
+/* What sets came to, from infinity on. */
+struct set_progress {
+    double least, best; /* changes of the set, violations */
+    int stalled;        /* sets since the last that was better */
+};
+/* Notes a set: it is better where fewer nodes change, or the violation is less than half of the
+ * best. never_rises: what is held is the least of all sets; else of both that of the last better
+ * one. */
+void set_progress_watch(struct set_progress *progress, double changed, double violation,
+                        bool never_rises);
+
 #endif

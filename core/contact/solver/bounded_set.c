@@ -180,35 +180,20 @@ static double fill_end(const struct pass_result *next, double tolerance, double 
     return violation;
 }
 
-struct progress {
-    double least, best; /* changes of the set, violations */
-};
-
-/* Returns whether a set was better than those before. */
-static bool improve(struct progress *progress, double changed, double violation, bool bounded) {
-    bool better = changed < progress->least || violation < 0.5 * progress->best;
-    if (bounded) {
-        progress->least = fmin(changed, progress->least);
-        progress->best = fmin(violation, progress->best);
-    } else if (better)
-        *progress = (struct progress){changed, violation};
-    return better;
-}
-
 void bounded_set_run(struct conjugate_gradient *solver, double mean, double tolerance,
                      size_t max_iterations, struct conjugate_gradient_end *end) {
     const double rounding = CONJUGATE_ROUNDING * conjugate_step_highest(solver);
-    struct progress progress = {INFINITY, INFINITY};
+    struct set_progress progress = {INFINITY, INFINITY, 0};
     double members = count_members(solver);
     double changed = INFINITY;
     size_t asked = end->iterations;
-    int stalled = 0;
     /* The first guess may have yielded nodes, which no elastic step must scale. */
     for (size_t i = 0; i < solver->n && !end->bounded; i++)
         end->bounded = solver->p[i] >= solver->hardness;
-    while (stalled < SETS_STALLED && end->iterations < max_iterations) {
+    while (progress.stalled < SETS_STALLED && end->iterations < max_iterations) {
         /* A set that has not changed is solved to the end. */
-        double share = changed > 0 || !end->bounded ? active_set_share(solver, stalled) : 0;
+        double share =
+            changed > 0 || !end->bounded ? active_set_share(solver, progress.stalled) : 0;
         end->inside = 0;
         if (members > 0)
             active_set_close(solver, fmax(tolerance * end->deepest, rounding), share,
@@ -227,7 +212,7 @@ void bounded_set_run(struct conjugate_gradient *solver, double mean, double tole
             end->stopped = solver->stop != NULL && solver->stop(solver->stop_context) != 0;
         }
         changed = cuts + next.sum[JOINED];
-        stalled = improve(&progress, changed, violation, end->bounded) ? 0 : stalled + 1;
+        set_progress_watch(&progress, changed, violation, end->bounded);
         if (cuts > 0) {
             balance(solver, mean, next.sum[PRESSURE], end);
             members = count_members(solver);

@@ -28,21 +28,21 @@ static struct quantity_values values_of(const struct contact_tally *tally, size_
                                     .of = room + n};
 }
 
-/* Sets the errors of a scalar that is over `used` of so many rows. Those of the quantity's first
- * measure bear on it and are not known. The other realisations, such as those that close at heavier
- * loads, are assumed to differ as those of a curve are. */
-static void set_errors(const struct contact_tally *tally, size_t first, size_t rows, size_t used,
-                       struct scalar *out) {
+/* Sets the errors of a scalar that is over so many effective rows, or all. Those of the quantity's
+ * first measure bear on it and are not known. The other realisations, such as those that close at
+ * heavier loads, are assumed to differ as those of a curve are. */
+static void set_errors(const struct contact_tally *tally, size_t first, size_t rows,
+                       double effective, struct scalar *out) {
     const size_t finest = tally->one_case->level_count - 1;
     for (enum error_source s = 0; s < ERROR_SOURCES; s++)
         out->errors[s].applies =
             s != ERROR_MISSING &&
             contact_error_applies(tally, (enum contact_measure)first, 0, finest, s);
-    if (used == 0 || used == rows)
+    out->effective = effective;
+    if (effective == 0)
         return;
-    const double deviation = out->standard_error * sqrt((double)used);
-    const double share = (double)(rows - used) / (double)rows;
-    out->effective = (double)used;
+    const double deviation = out->standard_error * sqrt(effective);
+    const double share = ((double)rows - effective) / (double)rows;
     out->errors[ERROR_MISSING] =
         (struct scalar_error){.applies = true,
                               .known = !isnan(deviation),
@@ -68,10 +68,7 @@ static int put(const struct contact_tally *tally, const struct contact_quantity 
         struct estimate mean = estimate_mean(rows, columns + a * rows);
         struct scalar scalar =
             scalar_named(quantity->scalars[a], mean.value, mean.standard_error, NAN);
-        size_t used = 0;
-        for (size_t r = 0; r < rows; r++)
-            used += isfinite(columns[a * rows + r]);
-        set_errors(tally, first, rows, used, &scalar);
+        set_errors(tally, first, rows, estimate_effective(rows, columns + a * rows, NULL), &scalar);
         status = result_add_scalar(out, &scalar, err);
     }
     return status;
