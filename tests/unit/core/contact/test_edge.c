@@ -121,6 +121,17 @@ static void laws_rise(void **state) {
         }
 }
 
+/* Checks that one law at an angle from x is the other at that angle from y. */
+static void check_mirrored(const struct edge_law *law, const struct edge_law *other, double angle,
+                           double tolerance) {
+    struct edge_direction one = edge_direction(law, angle);
+    struct edge_direction mirror = edge_direction(other, M_PI / 2 - angle);
+    for (double field = 0; field < 4; field += 0.1) {
+        check_close(edge_inside(&one, field), edge_inside(&mirror, field), tolerance);
+        check_close(edge_outside(&one, field), edge_outside(&mirror, field), tolerance);
+    }
+}
+
 /* Where dx = dy, x and y are alike. */
 static void laws_are_symmetric(void **state) {
     (void)state;
@@ -129,14 +140,8 @@ static void laws_are_symmetric(void **state) {
     struct edge_law law;
     struct error err = {0};
     assert_int_equal(edge_law_make(&grid, &block, &law, &err), 0);
-    for (double angle = 0; angle < M_PI / 4; angle += 0.05) {
-        struct edge_direction one = edge_direction(&law, angle);
-        struct edge_direction other = edge_direction(&law, M_PI / 2 - angle);
-        for (double field = 0; field < 4; field += 0.1) {
-            check_close(edge_inside(&one, field), edge_inside(&other, field), 1e-12);
-            check_close(edge_outside(&one, field), edge_outside(&other, field), 1e-12);
-        }
-    }
+    for (double angle = 0; angle < M_PI / 4; angle += 0.05)
+        check_mirrored(&law, &law, angle, 1e-12);
 }
 
 /* Where they differ the law of the grid with x and y exchanged is the same, also on a coating,
@@ -152,14 +157,8 @@ static void laws_turn_with_the_grid(void **state) {
     must(edge_law_make(&turned, &block, &other, &err), &err);
     assert_true(law.stiffness > 1 && law.stiffness < 5);
     check_relative(other.stiffness, law.stiffness, 1e-9);
-    for (double angle = 0; angle < M_PI / 2; angle += 0.1) {
-        struct edge_direction one = edge_direction(&law, angle);
-        struct edge_direction mirror = edge_direction(&other, M_PI / 2 - angle);
-        for (double field = 0; field < 4; field += 0.1) {
-            check_close(edge_inside(&one, field), edge_inside(&mirror, field), 1e-6);
-            check_close(edge_outside(&one, field), edge_outside(&mirror, field), 1e-6);
-        }
-    }
+    for (double angle = 0; angle < M_PI / 2; angle += 0.1)
+        check_mirrored(&law, &other, angle, 1e-6);
 }
 
 static void laws_pass_errors_on(void **state) {
