@@ -2,7 +2,6 @@
 #include "core/file/whole_file.h"
 #include "core/map/height_map_file.h"
 #include "core/rugo_shared.h"
-#include <errno.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -68,14 +67,7 @@ int rugo_map_write(const char *path, const struct rugo_grid *grid, const double 
     int status = grid_take(&cell, grid, &why);
     if (status == 0)
         status = format_of(path, &format, &why);
-    FILE *file = status == 0 ? fopen(path, "wb") : NULL;
-    if (status == 0 && file == NULL)
-        status = error_set(&why, ERROR_SYSTEM, "%s", strerror(errno));
     if (status == 0)
-        status = height_map_write(file, format, &cell, z, &why);
-    if (file != NULL && fclose(file) != 0 && status == 0)
-        status = error_set(&why, ERROR_SYSTEM, "%s", strerror(errno));
-    if (status != 0)
-        error_context(&why, "%s", path);
+        status = height_map_save(path, format, &cell, z, &why);
     return error_give(status, &why, err);
 }

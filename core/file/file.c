@@ -7,20 +7,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-int file_open(FILE **file, const char *path, struct error *err) {
-    *file = fopen(path, "wb");
-    return *file != NULL
-               ? 0
-               : error_set(err, ERROR_SYSTEM, "cannot open %s: %s", path, strerror(errno));
-}
-
-int file_close(FILE *file, const char *path, int status, struct error *err) {
-    bool failed = ferror(file) != 0;
-    if ((fclose(file) != 0 || failed) && status == 0)
-        status = error_set(err, ERROR_SYSTEM, "cannot write %s: %s", path, strerror(errno));
-    return status;
-}
-
 int folder_make(const char *path, struct error *err) {
     return mkdir(path, 0777) == 0 || errno == EEXIST
                ? 0

@@ -1,17 +1,11 @@
-/* Files and folders that are written, with errors that name them. */
+/* Folders that are made, and names of files. */
 #ifndef RUGO_CORE_FILE_H
 #define RUGO_CORE_FILE_H
 
 #include "core/error.h"
 #include <stdbool.h>
-#include <stdio.h>
 
-/* Opens a file for writing. ERROR_SYSTEM with the path and the reason, as of all below. */
-int file_open(FILE **file, const char *path, struct error *err);
-/* Closes the file, and returns the status of what was written, or that of the file, which may be
- * full. */
-int file_close(FILE *file, const char *path, int status, struct error *err);
-/* Makes a folder if it is missing. */
+/* Makes a folder if it is missing. ERROR_SYSTEM with the path and the reason. */
 int folder_make(const char *path, struct error *err);
 /* Brings the name of a file to the disk, by its folder. What cannot be is left: some file systems
  * cannot do it, and the file is there. */

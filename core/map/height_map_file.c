@@ -1,6 +1,7 @@
 #include "core/map/height_map_file.h"
 #include "core/file/point_locale.h"
 #include "core/file/text_mark.h"
+#include "core/file/written_file.h"
 #include "core/map/height_map.h"
 #include "core/map/height_map_npy.h"
 #include <errno.h>
@@ -303,4 +304,16 @@ int height_map_write(FILE *file, enum height_map_format format, const struct gri
         return error_set(err, ERROR_SYSTEM, "cannot write the surface: %s",
                          reason != 0 ? strerror(reason) : "the write failed");
     return 0;
+}
+
+int height_map_save(const char *path, enum height_map_format format, const struct grid *grid,
+                    const double *z, struct error *err) {
+    struct written_file file;
+    int status = written_file_open(&file, path, err);
+    if (status != 0)
+        return status;
+    status = height_map_write(file.stream, format, grid, z, err);
+    if (status != 0)
+        error_context(err, "%s", path);
+    return written_file_close(&file, status, err);
 }

@@ -27,4 +27,9 @@ int height_map_parse(struct height_map *out, enum height_map_format format, cons
 int height_map_write(FILE *file, enum height_map_format format, const struct grid *grid,
                      const double *z, struct error *err);
 
+/* The same into the file of a path, which is whole or not there (core/file/written_file.h); errors
+ * begin with the path or name it. */
+int height_map_save(const char *path, enum height_map_format format, const struct grid *grid,
+                    const double *z, struct error *err);
+
 #endif

@@ -1,5 +1,6 @@
 #include "core/nodal/step_folder.h"
 #include "core/file/file.h"
+#include "core/file/written_file.h"
 #include "core/nodal/map_vtu.h"
 #include "core/nodal/node_table.h"
 #include <errno.h>
@@ -23,6 +24,14 @@ static int open_kept(FILE **file, const char *path, struct error *err) {
     return *file != NULL
                ? 0
                : error_set(err, ERROR_SYSTEM, "cannot open %s: %s", path, strerror(errno));
+}
+
+/* Closes it, and returns the status of what was written, or that of the file, which may be full. */
+static int close_kept(FILE *file, const char *path, int status, struct error *err) {
+    bool failed = ferror(file) != 0;
+    if ((fclose(file) != 0 || failed) && status == 0)
+        status = error_set(err, ERROR_SYSTEM, "cannot write %s: %s", path, strerror(errno));
+    return status;
 }
 
 static int collection_open(struct step_folder *folder, struct error *err) {
@@ -56,13 +65,13 @@ int step_vtu(FILE *file, const struct nodal_step *step, struct error *err) {
 }
 
 static int put_vtu(struct step_folder *folder, const struct nodal_step *step, struct error *err) {
-    FILE *file;
+    struct written_file file;
     name_step(folder, folder->count);
-    int status = file_open(&file, folder->name, err);
+    int status = written_file_open(&file, folder->name, err);
     if (status != 0)
         return status;
-    status = step_vtu(file, step, err);
-    status = file_close(file, folder->name, status, err);
+    status = step_vtu(file.stream, step, err);
+    status = written_file_close(&file, status, err);
     if (status == 0)
         fprintf(folder->collection,
                 "    <DataSet timestep=\"%.9g\" group=\"\" part=\"0\" file=\"step-%zu.vtu\"/>\n",
@@ -126,12 +135,12 @@ int step_folder_close(struct step_folder *folder, int status, struct error *err)
         if (!kept)
             fputs("  </Collection>\n</VTKFile>\n", folder->collection);
         name_collection(folder);
-        status = file_close(folder->collection, folder->name, status, err);
+        status = close_kept(folder->collection, folder->name, status, err);
         if (kept)
             remove_empty(folder->name);
     }
     if (folder->table != NULL) {
-        status = file_close(folder->table, folder->nodes, status, err);
+        status = close_kept(folder->table, folder->nodes, status, err);
         if (kept)
             remove_empty(folder->nodes);
     }

@@ -1,6 +1,7 @@
 #include "server/command/output_file.h"
 #include "core/file/file.h"
 #include "core/file/memory_file.h"
+#include "core/file/written_file.h"
 #include "server/command/rasterise.h"
 #include "server/command/tool.h"
 #include "server/show/map/map_png.h"
@@ -58,20 +59,17 @@ static int write_drawn(const char *path, const char *svg, size_t size, FILE *fil
 static int publish(const char *path, FILE *made, struct error *err) {
     char block[1 << 14];
     size_t size;
-    FILE *file;
+    struct written_file file;
     if (fflush(made) != 0 || ferror(made) != 0 || fseek(made, 0, SEEK_SET) != 0)
         return error_set(err, ERROR_SYSTEM, "%s, in memory: %s", path, strerror(errno));
-    int status = file_open(&file, path, err);
+    int status = written_file_open(&file, path, err);
     if (status != 0)
         return status;
     while ((size = fread(block, 1, sizeof block, made)) > 0)
-        (void)fwrite(block, 1, size, file); /* the file remembers a failure */
+        (void)fwrite(block, 1, size, file.stream); /* the file remembers a failure */
     if (ferror(made) != 0)
         status = error_set(err, ERROR_SYSTEM, "%s, in memory: %s", path, strerror(errno));
-    status = file_close(file, path, status, err);
-    if (status != 0)
-        (void)unlink(path);
-    return status;
+    return written_file_close(&file, status, err);
 }
 
 static int write_file(const char *path, const char *svg, size_t size, struct error *err) {

@@ -1,5 +1,6 @@
 #include "server/show/output.h"
 #include "core/file/file.h"
+#include "core/file/written_file.h"
 #include "schema/result/csv.h"
 #include "schema/result/result_json.h"
 #include "server/show/plot/plot.h"
@@ -14,20 +15,13 @@
 
 enum { PATH_SIZE = 4096 };
 
-/* Opens a file of the folder. close_file checks it, since a full disk shows at the end. */
-static int open_file(FILE **file, const char *folder, const char *name, struct error *err) {
+/* Opens a file of the folder. */
+static int open_file(struct written_file *file, const char *folder, const char *name,
+                     struct error *err) {
     char path[PATH_SIZE];
     if (snprintf(path, sizeof path, "%s/%s", folder, name) >= (int)sizeof path)
         return error_set(err, ERROR_INPUT, "the path %.100s... is too long", folder);
-    *file = fopen(path, "w");
-    return *file != NULL ? 0 : error_set(err, ERROR_SYSTEM, "%s: %s", path, strerror(errno));
-}
-
-static int close_file(FILE *file, const char *folder, const char *name, struct error *err) {
-    bool failed = ferror(file) != 0;
-    if (fclose(file) != 0 || failed)
-        return error_set(err, ERROR_SYSTEM, "%s/%s: %s", folder, name, strerror(errno));
-    return 0;
+    return written_file_open(file, path, err);
 }
 
 static bool print_json(FILE *file, const struct study_result *study) {
@@ -38,13 +32,13 @@ static bool print_json(FILE *file, const struct study_result *study) {
 static int write_curves(const struct study_result *study, const char *folder, const char *name,
                         bool (*print)(FILE *file, const struct study_result *study),
                         struct error *err) {
-    FILE *file;
+    struct written_file file;
     int status = open_file(&file, folder, name, err);
     if (status != 0)
         return status;
-    bool printed = print(file, study) || ferror(file) != 0;
-    status = close_file(file, folder, name, err);
-    return status != 0 || printed ? status : error_memory(err, 0, "a document of curves");
+    if (!print(file.stream, study) && ferror(file.stream) == 0)
+        status = error_memory(err, 0, "a document of curves");
+    return written_file_close(&file, status, err);
 }
 
 /* --- pictures --- */
@@ -72,16 +66,15 @@ static void picture_name(const struct case_result *one, const struct curve *curv
 static int write_density(const struct study_result *study, const struct case_result *one,
                          const struct curve *curve, const char *folder, struct error *err) {
     char name[256];
-    FILE *file;
+    struct written_file file;
     if (curve->columns == 0 || curve->cell_count == 0)
         return 0;
     picture_name(one, curve, name, sizeof name);
     int status = open_file(&file, folder, name, err);
     if (status != 0)
         return status;
-    status = plot_density(study, one, curve, 0, file, err);
-    int closed = close_file(file, folder, name, err);
-    return status != 0 ? status : closed;
+    status = plot_density(study, one, curve, 0, file.stream, err);
+    return written_file_close(&file, status, err);
 }
 
 static int write_densities(const struct study_result *study, const char *folder,
@@ -96,13 +89,12 @@ static int write_densities(const struct study_result *study, const char *folder,
 
 static int write_plot(const struct study_result *study, const struct plot_request *request,
                       const char *folder, const char *name, struct error *err) {
-    FILE *file;
+    struct written_file file;
     int status = open_file(&file, folder, name, err);
     if (status != 0)
         return status;
-    status = plot_quantity(study, request, file, err);
-    int closed = close_file(file, folder, name, err);
-    return status != 0 ? status : closed;
+    status = plot_quantity(study, request, file.stream, err);
+    return written_file_close(&file, status, err);
 }
 
 /* A quantity in several units (patches in the cell, patches per wave) takes a picture each, the

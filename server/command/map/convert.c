@@ -1,5 +1,5 @@
 /* rugo convert FILE OUT: a height map in a file, prepared, into another file. */
-#include "core/file/file.h"
+#include "core/file/written_file.h"
 #include "server/command/command.h"
 #include "server/command/map/map_file.h"
 
@@ -30,16 +30,16 @@ static void write_header(FILE *file, enum height_map_format format, const struct
 static int write_map(const char *path, const struct height_map *map,
                      const struct preparation_record *record, struct error *err) {
     const enum height_map_format format = height_map_format_of(path);
-    FILE *file;
-    int status = file_open(&file, path, err);
+    struct written_file file;
+    int status = written_file_open(&file, path, err);
     if (status != 0)
         return status;
     if (format != HEIGHT_MAP_NPY)
-        write_header(file, format, map, record);
-    status = height_map_write(file, format, &map->grid, map->z, err);
+        write_header(file.stream, format, map, record);
+    status = height_map_write(file.stream, format, &map->grid, map->z, err);
     if (status != 0)
         error_context(err, "%s", path);
-    return file_close(file, path, status, err);
+    return written_file_close(&file, status, err);
 }
 
 static int print(const struct height_map *map, const struct preparation_record *record,

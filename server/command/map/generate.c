@@ -13,7 +13,6 @@
 #include "server/show/plot/plot_map.h"
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 struct generate_options {
     const char *output;     /* NULL: standard output */
@@ -143,32 +142,19 @@ static int read_order(struct generate_order *order, const struct generate_option
     return status == 0 ? choose_format(order) : status;
 }
 
-/* Writes a surface into a file. */
-static int write_file(const struct generate_order *order, const char *path, const struct grid *grid,
-                      const double *z, struct error *err) {
-    FILE *file;
-    int status = file_open(&file, path, err);
-    if (status != 0)
-        return status;
-    status = height_map_write(file, order->format, grid, z, err);
-    if (status != 0)
-        error_context(err, "%s", path);
-    return file_close(file, path, status, err);
-}
-
 static int write_output(const struct generate_order *order, uint64_t realisation,
                         const struct grid *grid, const double *z, struct error *err) {
     if (order->output == NULL)
         return height_map_write(stdout, order->format, grid, z, err);
     if (!is_folder(order->output))
-        return write_file(order, order->output, grid, z, err);
+        return height_map_save(order->output, order->format, grid, z, err);
     size_t size = strlen(order->output) + 64; /* "realisation-", 15 digits, and an ending */
     char *path = array_create(size, 1);
     if (path == NULL)
         return error_memory(err, size, "a path");
     snprintf(path, size, "%srealisation-%llu.%s", order->output, (unsigned long long)realisation,
              HEIGHT_MAP_NAMES[order->format]);
-    int status = write_file(order, path, grid, z, err);
+    int status = height_map_save(path, order->format, grid, z, err);
     free(path);
     return status;
 }

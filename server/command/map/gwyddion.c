@@ -1,7 +1,7 @@
 #include "server/command/map/gwyddion.h"
-#include "core/file/file.h"
 #include "core/file/plain_text.h"
 #include "core/file/whole_file.h"
+#include "core/file/written_file.h"
 #include "core/instrument/foreign.h"
 #include "server/bounded_program.h"
 #include <ctype.h>
@@ -70,14 +70,14 @@ static void name_input(struct run *run, const char *name) {
 
 static int write_input(const struct run *run, const char *data, size_t size, struct error *err) {
     char path[PATH_ROOM + 48];
-    FILE *file;
+    struct written_file file;
     snprintf(path, sizeof path, "%s/%s", run->folder, run->input);
-    int status = file_open(&file, path, err);
+    int status = written_file_open(&file, path, err);
     if (status != 0)
         return status;
-    if (fwrite(data, 1, size, file) != size)
+    if (fwrite(data, 1, size, file.stream) != size)
         status = error_set(err, ERROR_SYSTEM, "%s: %s", path, strerror(errno));
-    return file_close(file, path, status, err);
+    return written_file_close(&file, status, err);
 }
 
 /* --- the program --- */

@@ -20,7 +20,6 @@ int map_output_check(const char *path, struct error *err) {
 int map_output_write(const char *path, const struct map_picture *labels, const struct grid *grid,
                      const double *values, struct error *err) {
     enum height_map_format format = height_map_format_of(path);
-    FILE *file;
     if (map_output_is_picture(path)) {
         struct map_picture picture = *labels;
         picture.grid = grid;
@@ -29,12 +28,6 @@ int map_output_write(const char *path, const struct map_picture *labels, const s
         picture.unmarked = true;
         return output_file_picture(path, &picture, err);
     }
-    int status = file_open(&file, path, err);
-    if (status != 0)
-        return status;
-    status = height_map_write(file, format == HEIGHT_MAP_FORMATS ? HEIGHT_MAP_NPY : format, grid,
-                              values, err);
-    if (status != 0)
-        error_context(err, "%s", path);
-    return file_close(file, path, status, err);
+    return height_map_save(path, format == HEIGHT_MAP_FORMATS ? HEIGHT_MAP_NPY : format, grid,
+                           values, err);
 }

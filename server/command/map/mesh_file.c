@@ -1,10 +1,10 @@
 #include "server/command/map/mesh_file.h"
 #include "core/file/file.h"
+#include "core/file/written_file.h"
 #include "core/full/file/mesh_msh.h"
 #include "core/nodal/step_folder.h"
 #include "server/command/output_file.h"
 #include <stdlib.h>
-#include <unistd.h>
 
 static int write_block(const struct mesh_file *mesh, FILE *file, const struct nodal_step *step,
                        struct error *err) {
@@ -29,17 +29,14 @@ int mesh_file_check(const char *mesh, const char *nodes, struct error *err) {
 
 int mesh_file_write(const struct mesh_file *mesh, const struct nodal_step *step,
                     struct error *err) {
-    FILE *file;
+    struct written_file file;
     int status = file_ends_in(mesh->path, ".msh") ? mesh_msh_check(step->mesh, err) : 0;
     if (status == 0)
-        status = file_open(&file, mesh->path, err);
+        status = written_file_open(&file, mesh->path, err);
     if (status != 0)
         return status;
-    status = write_block(mesh, file, step, err);
-    status = file_close(file, mesh->path, status, err);
-    if (status != 0)
-        (void)unlink(mesh->path);
-    return status;
+    status = write_block(mesh, file.stream, step, err);
+    return written_file_close(&file, status, err);
 }
 
 /* Notes how far the far side moved towards the flat. */

@@ -1,7 +1,7 @@
 #include "server/command/study/export_folder.h"
-#include "core/file/file.h"
 #include "core/file/memory_file.h"
 #include "core/file/plain_text.h"
+#include "core/file/written_file.h"
 #include "schema/json/field.h"
 #include "schema/result/provenance.h"
 #include "schema/result/result_json.h"
@@ -30,12 +30,12 @@ static int write_file(const struct exported *from, const char *name,
                       int (*print)(const struct exported *from, FILE *file, struct error *err),
                       struct error *err) {
     char path[PATH_SIZE];
-    FILE *file;
+    struct written_file file;
     if (snprintf(path, sizeof path, "%s/%s", from->order->folder.path, name) >= (int)sizeof path)
         return error_set(err, ERROR_INPUT, "the path %.100s... is too long",
                          from->order->folder.path);
-    int status = file_open(&file, path, err);
-    return status != 0 ? status : file_close(file, path, print(from, file, err), err);
+    int status = written_file_open(&file, path, err);
+    return status != 0 ? status : written_file_close(&file, print(from, file.stream, err), err);
 }
 
 /* --- tables --- */

@@ -1,6 +1,7 @@
 #include "server/command/study/result_folder.h"
 #include "core/file/file.h"
 #include "core/file/whole_file.h"
+#include "core/file/written_file.h"
 #include "schema/json/json.h"
 #include "schema/store/store.h"
 #include "server/command/study/kept_nodes.h"
@@ -165,14 +166,14 @@ static int remove_results(const struct result_folder *folder, const char *id, st
 static int write_document(const struct result_folder *folder, const cJSON *document,
                           struct error *err) {
     char path[PATH_SIZE], *text = json_print_pretty(document);
-    FILE *file = NULL;
+    struct written_file file;
     int status =
         text != NULL ? path_in(folder, "study.json", path, err) : error_memory(err, 0, "a study");
     if (status == 0)
-        status = file_open(&file, path, err);
+        status = written_file_open(&file, path, err);
     if (status == 0) {
-        (void)fputs(text, file); /* the file remembers a failure */
-        status = file_close(file, path, 0, err);
+        (void)fputs(text, file.stream); /* the file remembers a failure */
+        status = written_file_close(&file, 0, err);
     }
     free(text);
     return status;

@@ -1,5 +1,5 @@
 #include "server/command/map/press/press_files.h"
-#include "core/file/file.h"
+#include "core/file/written_file.h"
 #include "server/command/map/map_output.h"
 #include "server/command/output_file.h"
 #include "server/show/map/map_png.h"
@@ -71,13 +71,13 @@ static int write_map(const char *path, enum press_map which, const struct press_
 
 static int write_face(const char *path, const struct nodal_step *step, struct error *err) {
     struct nodal_step face = *step;
-    FILE *file;
-    int status = file_open(&file, path, err);
+    struct written_file file;
+    int status = written_file_open(&file, path, err);
     if (status != 0)
         return status;
     face.mesh = NULL; /* the surface, whatever the model */
-    status = step_vtu(file, &face, err);
-    return file_close(file, path, status, err);
+    status = step_vtu(file.stream, &face, err);
+    return written_file_close(&file, status, err);
 }
 
 /* Writes the files of the last load. */
