@@ -149,18 +149,17 @@ export async function showStudy(root, left, id, part) {
     head.update(study);
     follow();
     if (before === next.revision) return;
-    if (contents && contents.curves.length === 0 && part !== "jobs") fill();
-    else if (redraw) redrawLast();
+    if (contents) drawLast();
   }
 
   /** Draws what has come in, one drawing after another: where some come while one is drawn, the last of them is drawn next. */
-  async function redrawLast() {
+  async function drawLast() {
     again = true;
     if (drawing) return;
     drawing = true;
     while (again && !signal.aborted) {
       again = false;
-      await redraw();
+      await (contents.curves.length === 0 && part !== "jobs" ? fill() : redraw?.());
     }
     drawing = false;
   }

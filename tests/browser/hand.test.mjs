@@ -246,6 +246,27 @@ test("an open table of values, a control's focus and the curves' own stay while 
   assert.ok(await box.evaluate((one) => one.checked && one.isConnected));
 });
 
+test("the first results are drawn once, however many come in while they are fetched", async (t) => {
+  const { id } = await send(url, "POST", "/v1/studies", { ...LONG, name: "first" });
+  t.after(() => send(url, "DELETE", `/v1/studies/${id}`));
+  const page = await tab(t), path = `/v1/studies/${id}`;
+  let asked = 0, under = 0, most = 0;
+  await page.setRequestInterception(true);
+  page.on("request", async (request) => {
+    if (!request.url().endsWith("/contents")) return request.continue();
+    const first = asked++ === 0;
+    most = Math.max(most, ++under);
+    const answer = await send(url, "GET", `${path}/contents`), { revision } = await send(url, "GET", path);
+    if (!first) // until two more revisions are there
+      for (const until = Date.now() + WAIT_MS; (await send(url, "GET", path)).revision < revision + 2 && Date.now() < until;) await new Promise((done) => setTimeout(done, 100));
+    under--;
+    request.respond({ contentType: "application/json", body: JSON.stringify(first ? { ...answer, curves: [], scalars: [] } : answer) });
+  });
+  await page.goto(`${url}/#/study/${id}/curves`);
+  await page.waitForSelector(".uplot canvas");
+  assert.equal(most, 1, "one list of what there is under way at a time");
+});
+
 test("Cancel is pressed while events come in, and its button stays what it is", async (t) => {
   const { id } = await send(url, "POST", "/v1/studies", LONG);
   const page = await tab(t);
