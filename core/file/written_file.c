@@ -21,12 +21,10 @@ static bool may_replace(const char *path, mode_t *mode) {
 }
 
 static char *name_part(const char *path) {
-    size_t length = strlen(path);
-    char *part = array_create(length + sizeof PART_SUFFIX, 1);
-    if (part != NULL) {
-        memcpy(part, path, length);
-        memcpy(part + length, PART_SUFFIX, sizeof PART_SUFFIX);
-    }
+    size_t size = strlen(path) + sizeof PART_SUFFIX;
+    char *part = array_create(size, 1);
+    if (part != NULL)
+        snprintf(part, size, "%s%s", path, PART_SUFFIX);
     return part;
 }
 
