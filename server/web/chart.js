@@ -56,7 +56,8 @@ function truth(line, i) {
 /**
  * Draws lines {label, x, y, low, high, totalLow, totalHigh, total, unknown, error, colour, dash, theory}: low and high (or null) bound a band, and with
  * total totalLow and totalHigh a paler one, with dashed edges where some sources of error are unknown.
- * options: {xLabel, yLabel, xLog, yLog, whole}; whole: the y axis goes as far as total intervals do. Returns {element, destroy}.
+ * options: {xLabel, yLabel, xLog, yLog, whole, view}; whole: the y axis goes as far as total intervals do; view: what view() gave of an earlier chart of
+ * like lines. Returns {element, plot, view, destroy}; view(): where it is zoomed to and what was read last.
  */
 export function chart(lines, options) {
   const text = getComputedStyle(document.body).getPropertyValue("--text").trim();
@@ -87,7 +88,10 @@ export function chart(lines, options) {
   const element = make("div", { class: "chart", tabindex: "0", role: "figure",
     "aria-label": `${options.yLabel} over ${options.xLabel}, ${lines.length} curves; arrow keys walk along them` }, place, readout);
 
+  let read = null, zoomed = false; // the line and point in the readout
+
   function tell(line, i) {
+    read = { line: lines.indexOf(line), i };
     const [x, y] = [line.x[i], line.y[i]];
     readout.textContent = `${line.label}: ${options.xLabel} = ${number(x)}, ${options.yLabel} = ${measured(y, line.error?.[i])}${truth(line, i)}`;
   }
@@ -110,10 +114,19 @@ export function chart(lines, options) {
     axes: [axis(options.xLabel, 34), axis(options.yLabel, 64)],
     legend: { show: false },
     cursor: { points: { show: false }, drag: { x: true, y: true, uni: 20 } },
-    hooks: { setCursor: [nearest] },
+    hooks: { setCursor: [nearest], setSelect: [({ select }) => { zoomed ||= select.width > 0 || select.height > 0; }] },
   }, uPlot.join(tables.length ? tables : [[[], []]]), place);
 
+  place.addEventListener("dblclick", () => { zoomed = false; });
   const walk = { line: 0, i: -1 };
+  const view = () => ({ zoom: zoomed ? ["x", "y"].map((key) => [key, { min: plot.scales[key].min, max: plot.scales[key].max }]) : null, walk: { ...walk }, read });
+  const before = options.view, isThere = (at) => at && lines[at.line] && at.i >= 0 && at.i < lines[at.line].x.length;
+  if (before?.zoom) {
+    zoomed = true;
+    for (const [key, limits] of before.zoom) plot.setScale(key, limits);
+  }
+  if (isThere(before?.walk)) Object.assign(walk, before.walk);
+  if (isThere(before?.read)) tell(lines[before.read.line], before.read.i);
   element.addEventListener("keydown", (event) => {
     const step = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0] }[event.key];
     if (!step || lines.length === 0 || event.altKey || event.ctrlKey || event.metaKey) return; // such keys are the browser's
@@ -129,5 +142,5 @@ export function chart(lines, options) {
     if (width > 0 && width !== plot.width) plot.setSize({ width, height: HEIGHT });
   });
   watch.observe(place);
-  return { element, plot, destroy: () => { watch.disconnect(); plot.destroy(); } };
+  return { element, plot, view, destroy: () => { watch.disconnect(); plot.destroy(); } };
 }

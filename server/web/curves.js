@@ -4,7 +4,8 @@ import { download, getJson, request } from "/web/session.js";
 import { DASHES, chart, colours } from "/web/chart.js";
 import { CASES_FIRST, caseName, whereOf } from "/web/sweep.js";
 
-const CASES_MOST = 256; // drawn together, and listed
+const CASES_MOST = 256; // drawn together, here and by the service, and listed
+const CSV_CASES_MOST = 64; // that the service puts into one table
 const DIFFERENT_MOST = 40; // cases offered for differences
 const BANDS_MOST = 24; // lines; more bands hide each other
 const LISTED_MOST = 12; // curves, in the table of values
@@ -65,7 +66,10 @@ export function showCurves(root, signal, study, contents) {
 
   async function fetched() {
     if (state.difference) return (await part(query())).cases;
-    const documents = await Promise.all([...state.cases].map((one) => part(`case=${one}&${query()}`)));
+    const documents = await Promise.all([...state.cases].map((one) => part(`case=${one}&${query()}`).catch((error) => {
+      if (error.status !== 422) throw error;
+      return { cases: [{ case: one, error: error.message }] }; // the others are shown beside its reason
+    })));
     return documents.flatMap((document) => document.cases);
   }
 
@@ -81,20 +85,22 @@ export function showCurves(root, signal, study, contents) {
       const finest = (model) => Math.max(...found.filter((curve) => curve.model === model).map((curve) => curve.level ?? 0));
       if (state.level === "finest") found = found.filter((curve) => (curve.level ?? 0) === finest(curve.model));
       else if (state.level !== "all") found = found.filter((curve) => String(curve.level ?? "") === state.level);
+      const loads = new Set(found.map((curve) => curve.pressure)).size > 1;
       found.forEach((curve, k) => {
-        const more = [about().models.length > 1 ? curve.model : "", state.level === "all" && curve.level ? `${curve.level} points` : ""].filter(Boolean).join(", ");
+        const load = loads ? `at p/(E* h′) = ${number(curve.pressure)}` : "";
+        const more = [about().models.length > 1 ? curve.model : "", state.level === "all" && curve.level ? `${curve.level} points` : "", load].filter(Boolean).join(", ");
         lines.push(lineOf(curve, more ? `${label}; ${more}` : label, look[c].colour, DASHES[(look[c].dash + groups * k) % DASHES.length], state.band));
         if (!state.theory || state.difference) return;
         for (const [name, y] of Object.entries(curve.theory ?? {})) {
           const key = name + JSON.stringify(y), same = theories.get(key);
           if (same) same.cases.add(c);
-          else theories.set(key, { cases: new Set([c]), line: { x: curve.x, y, colour: look[c].colour, dash: DASHES[1 + (Object.keys(curve.theory).indexOf(name) % 4)], theory: true }, name, label });
+          else theories.set(key, { cases: new Set([c]), line: { x: curve.x, y, colour: look[c].colour, dash: DASHES[1 + (Object.keys(curve.theory).indexOf(name) % 4)], theory: true }, name, label, load });
         }
       });
     });
-    for (const { cases: of, line, name, label } of theories.values()) { // one line where cases share it
+    for (const { cases: of, line, name, label, load } of theories.values()) { // one line where cases share it
       const shared = results.length === 1 || of.size > 1;
-      lines.push({ ...line, label: `${words(name)} (theory${shared ? "" : `, ${label}`})`, colour: shared ? "#7f7f7f" : line.colour });
+      lines.push({ ...line, label: `${words(name)} (${["theory", shared ? "" : label, load].filter(Boolean).join(", ")})`, colour: shared ? "#7f7f7f" : line.colour });
     }
     return lines;
   }
@@ -134,8 +140,12 @@ export function showCurves(root, signal, study, contents) {
     const one = [...state.cases][0] ?? 0;
     const svg = await (await request(`${path}/${densityOf()}`, { signal })).text();
     if (mine !== turn || signal.aborted) return;
-    figure.replaceChildren(make("div", { class: "scroll", tabindex: "0", role: "figure", "aria-label": words(state.quantity) },
-      make("img", { class: "picture", alt: `${words(state.quantity)} of case ${one}`, src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}` })));
+    const picture = make("div", { class: "scroll", tabindex: "0", role: "figure", "aria-label": words(state.quantity) },
+      make("img", { class: "picture", alt: `${words(state.quantity)} of case ${one}`, src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}` }));
+    shown?.destroy();
+    shown = null;
+    if (figure.querySelector("img.picture")) patch(figure.firstChild, picture);
+    else figure.replaceChildren(picture);
     legend.replaceChildren();
     values.hidden = true;
     message.textContent = state.cases.size > 1 ? `Of ${caseName(cases.get(one))}: a density is shown of one case.` : "";
@@ -152,8 +162,9 @@ export function showCurves(root, signal, study, contents) {
       const lines = linesOf(results), banded = lines.filter((line) => line.low).length <= BANDS_MOST;
       if (!banded) for (const line of lines) Object.assign(line, { low: null, high: null, total: false });
       const curve = results.flatMap((one) => one.curves ?? []).find((one) => one.quantity === state.quantity);
+      const view = quietly ? shown?.view() : null; // zoom and place stay while results come in
       shown?.destroy();
-      shown = chart(lines, { xLabel: pretty(curve?.x_label || "x"), yLabel: pretty(curve?.y_label || words(state.quantity)), xLog: state.xLog, yLog: state.yLog, whole: Boolean(state.difference) && !state.yLog });
+      shown = chart(lines, { xLabel: pretty(curve?.x_label || "x"), yLabel: pretty(curve?.y_label || words(state.quantity)), xLog: state.xLog, yLog: state.yLog, whole: Boolean(state.difference) && !state.yLog, view });
       const held = figure.contains(document.activeElement);
       figure.replaceChildren(shown.element);
       if (held) shown.element.focus({ preventScroll: true });
@@ -166,7 +177,14 @@ export function showCurves(root, signal, study, contents) {
       message.textContent = lacks.length > 0 ? lacks.slice(0, LACKS_MOST).join("; ") + (lacks.length > LACKS_MOST ? `; and ${lacks.length - LACKS_MOST} more` : "")
         : lines.length === 0 ? "Nothing is like what is chosen." : !state.band ? "" : banded ? `Bands are two standard errors wide to each side; in pale bands lies the truth, to 95 %${dashed.length > 0 ? `, but for what is not known where edges are dashed: ${dashed.join(", ")}` : ""}.` : `No bands of more than ${BANDS_MOST} lines.`;
     } catch (error) {
-      if (!signal.aborted && mine === turn) message.textContent = error.message;
+      if (signal.aborted || mine !== turn) return;
+      message.textContent = error.message;
+      if (quietly) return;
+      shown?.destroy();
+      shown = null;
+      figure.replaceChildren(); // what was shown before is not what is asked for
+      legend.replaceChildren();
+      values.hidden = true;
     }
   }
 
@@ -176,8 +194,16 @@ export function showCurves(root, signal, study, contents) {
     draw();
   }
 
-  const oneOfMany = () => (!state.difference && contents.cases.length > 64 ? `&case=${[...state.cases][0] ?? 0}` : "");
-  const save = (text, part, ending, accept) => make("button", { onclick: () => download(`${path}/${part()}`, `${study.name}-${state.quantity}.${ending}`, accept).catch((error) => { message.textContent = error.message; }) }, text);
+  /** Saves all cases, or of more than the service puts into one file, `most`, the first that is chosen: the name says which, and the message. */
+  const save = (text, part, ending, most, accept) => make("button", { onclick: () => {
+    const [first] = state.cases, one = !state.difference && contents.cases.length > most;
+    if (one && first === undefined) {
+      message.textContent = `${text} has ${most} cases at most: choose one of the ${contents.cases.length}.`;
+      return;
+    }
+    if (one) message.textContent = `${text} has ${most} cases at most: of ${contents.cases.length}, that of ${caseName(cases.get(first))} is saved.`;
+    download(`${path}/${part()}${one ? `&case=${first}` : ""}`, `${study.name}-${state.quantity}${one ? `-case-${first}` : ""}.${ending}`, accept).catch((error) => { message.textContent = error.message; });
+  } }, text);
   const quantityOf = chooser("Quantity", (quantity) => {
     const next = contents.curves.find((curve) => curve.quantity === quantity);
     set({ quantity, series: next.series.includes(state.series) ? state.series : next.series[0], models: new Set(next.models), level: "finest", ...(next.matrix ? { difference: null } : {}) }); // densities have no differences
@@ -197,7 +223,8 @@ export function showCurves(root, signal, study, contents) {
   controls.append(quantityOf.element, seriesOf.element, meshOf.element, modelsOf,
     ...[["log x", "xLog"], ["log y", "yLog"], ["error bands", "band"], ["theory", "theory"]].map(([label, key]) => tick(label, state[key], (on) => set({ [key]: on }))),
     ...differenceOf.map((one) => one.element), casesOf,
-    make("span", { class: "links" }, save("JSON", () => `curves?${query()}`, "json"), " ", save("CSV", () => `curves?${query()}${oneOfMany()}`, "csv", "text/csv"), " ", save("SVG", () => (about().matrix ? densityOf() : `plot?${query()}${oneOfMany()}`), "svg")));
+    make("span", { class: "links" }, save("JSON", () => `curves?${query()}`, "json", Infinity), " ", save("CSV", () => `curves?${query()}`, "csv", CSV_CASES_MOST, "text/csv"), " ",
+      save("SVG", () => (about().matrix ? densityOf() : `plot?${query()}`), "svg", CASES_MOST)));
 
   /** Shows in the controls what is chosen, and what can be. */
   function writeControls() {

@@ -62,11 +62,12 @@ export function duration(seconds) {
   return `${(seconds / 86400).toFixed(1)} days`;
 }
 
-/** A number with so many digits as mean something, without an exponent where it reads well. */
+/** A number with so many digits as mean something, without an exponent where it reads well; whole numbers with all digits. */
 export function number(value, digits = 4) {
   if (value === null || value === undefined) return "–";
   if (typeof value !== "number") return String(value);
   const size = Math.abs(value);
+  if (Number.isInteger(value) && size < 1e6) return String(value); // counts, and parameters as they were given
   return size !== 0 && (size < 1e-3 || size >= 1e6) ? value.toExponential(digits - 1) : String(Number(value.toPrecision(digits)));
 }
 

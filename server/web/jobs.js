@@ -1,5 +1,5 @@
 // Who computes a study, and who has: jobs by state, the workers that are at it, the hosts and programs of its results.
-import { each, make, number, say, time, words } from "/web/elements.js";
+import { each, make, say, time, words } from "/web/elements.js";
 import { getJson } from "/web/session.js";
 import { isLive } from "/web/studies.js";
 
@@ -17,7 +17,7 @@ function tableOf(title, columns) {
 }
 
 const workingRow = ({ worker, job }) => make("tr", {}, make("th", { scope: "row" }, worker), make("td", { class: "number" }, job.case), make("td", { class: "number" }, `${job.done ?? 0} / ${job.count}`), make("td", {}, time(job.since)));
-const runRow = (run) => make("tr", {}, make("th", { scope: "row" }, run.host ?? "–"), make("td", {}, run.program ?? "–"), make("td", { class: "number" }, number(run.jobs)), make("td", {}, time(run.first)), make("td", {}, time(run.last)));
+const runRow = (run) => make("tr", {}, make("th", { scope: "row" }, run.host ?? "–"), make("td", {}, run.program ?? "–"), make("td", { class: "number" }, String(run.jobs)), make("td", {}, time(run.first)), make("td", {}, time(run.last)));
 
 export function showJobs(root, signal, study, contents) {
   const path = `/v1/studies/${encodeURIComponent(study.id)}`;
@@ -32,7 +32,7 @@ export function showJobs(root, signal, study, contents) {
       if (status.revision !== revision) ({ provenance } = await getJson(`${path}/contents`, { signal }));
       ({ revision } = status);
       const jobs = workers.flatMap((worker) => worker.jobs.filter((job) => job.study === study.id).map((job) => ({ worker: worker.name, job })));
-      say(counts, `Jobs: ${STATES.filter((state) => status.jobs[state] > 0).map((state) => `${number(status.jobs[state])} ${words(state)}`).join(", ") || "none"}.`);
+      say(counts, `Jobs: ${STATES.filter((state) => status.jobs[state] > 0).map((state) => `${status.jobs[state]} ${words(state)}`).join(", ") || "none"}.`);
       working.fill(jobs, ({ worker, job }) => `${worker} ${job.job}`, workingRow);
       runs.fill(provenance.runs, (run) => `${run.host} ${run.program}`, runRow);
       say(message, isLive(status) && jobs.length === 0 ? "Nobody is at work on it." : "");
@@ -43,5 +43,5 @@ export function showJobs(root, signal, study, contents) {
     if (!signal.aborted) setTimeout(refresh, PERIOD);
   }
   refresh();
-  return null; // it looks by itself
+  return () => {}; // it looks by itself
 }

@@ -78,7 +78,7 @@ export async function showNew(root, signal, from) {
   const forms = new Map(); // by kind
   const kindField = choice("Kind", KINDS, "", (kind) => { study.kind = kind; write(); }), kindOf = kindField.querySelector("select");
   fields.append(kindField);
-  let schema, templates, study = { name: "my study", kind: "statistics", surface: { hurst: 0.8, wavelength_ratio: 8 } }, timer = 0, turn = 0;
+  let schema, templates, study = { name: "my study", kind: "statistics", surface: { hurst: 0.8, wavelength_ratio: 8 } }, timer = 0, turn = 0, broken = false; // broken: what the editor holds is no study
   try {
     [schema, templates] = await Promise.all([getJson("/v1/study.schema.json", { signal }), getJson("/v1/templates", { signal })]);
     if (offered && !from) study = offered;
@@ -129,6 +129,16 @@ export async function showNew(root, signal, from) {
     const top = editor.scrollTop, text = JSON.stringify(study, null, 2);
     if (editor.value !== text) editor.value = text;
     editor.scrollTop = top;
+    setBroken(false);
+  }
+
+  /** While the editor holds no JSON, the form would write over it, and what is checked and submitted would be another study. */
+  function setBroken(now) {
+    broken = fields.inert = now;
+    if (!now) return;
+    clearTimeout(timer);
+    turn++;
+    submit.disabled = true;
   }
 
   function showFaults(list) {
@@ -158,7 +168,7 @@ export async function showNew(root, signal, from) {
   let begun = JSON.stringify(study); // what was typed since is asked for before it is replaced
   const ready = choice("Begin from", [["", "…"], ...templates.map((one, k) => [k, one.name])], "", (k) => {
     if (k === "") return;
-    if (JSON.stringify(study) !== begun && !confirm("Replace what was typed by this study?")) {
+    if ((broken || JSON.stringify(study) !== begun) && !confirm("Replace what was typed by this study?")) {
       ready.querySelector("select").value = "";
       return;
     }
@@ -180,10 +190,11 @@ export async function showNew(root, signal, from) {
       const read = JSON.parse(editor.value);
       if (read === null || typeof read !== "object") throw new Error("a study is an object");
       study = read;
+      setBroken(false);
       writeFields();
       later();
     } catch (error) {
-      submit.disabled = true;
+      setBroken(true);
       cost.textContent = `This is no JSON yet: ${error.message}`;
     }
   });

@@ -1,6 +1,6 @@
 // One realisation: its heights, and the gap and pressures at a load, computed when asked for and coloured here.
 import { choice, make, number } from "/web/elements.js";
-import { reasonOf, request } from "/web/session.js";
+import { latest, reasonOf, requestWhenFree } from "/web/session.js";
 import { caseName } from "/web/sweep.js";
 import { chart } from "/web/chart.js";
 
@@ -56,6 +56,7 @@ export function showRealisation(root, signal, study, contents) {
   const state = { case: contents.cases[0]?.case ?? 0, realisation: 0, field: "height", load: "0.1" };
   const message = make("p", { role: "status" }), place = make("div");
   const fields = study.kind === "contact" ? ["height", "gap", "pressure"] : ["height"];
+  const signalOf = latest(signal);
   let shown = null, turn = 0;
 
   async function draw() {
@@ -63,8 +64,8 @@ export function showRealisation(root, signal, study, contents) {
     message.textContent = "Computing …";
     const load = state.field === "height" ? "" : `&load=${encodeURIComponent(state.load)}`;
     try {
-      const answer = await request(`/v1/studies/${encodeURIComponent(study.id)}/cases/${state.case}/realisations/${state.realisation}/map?field=${state.field}${load}`,
-        { signal, headers: { Accept: "application/octet-stream" } });
+      const answer = await requestWhenFree(`/v1/studies/${encodeURIComponent(study.id)}/cases/${state.case}/realisations/${state.realisation}/map?field=${state.field}${load}`,
+        { signal: signalOf(), headers: { Accept: "application/octet-stream" } });
       const map = readNpy(await answer.arrayBuffer());
       if (mine !== turn) return;
       shown?.destroy();
@@ -93,5 +94,5 @@ export function showRealisation(root, signal, study, contents) {
     fields.length > 1 ? choice("Field", fields, state.field, set("field")) : null, load), message, place);
   signal.addEventListener("abort", () => shown?.destroy());
   draw();
-  return null;
+  return () => {}; // it depends on no results
 }

@@ -51,6 +51,30 @@ export async function request(path, options = {}) {
   throw new Problem(answer.status, document);
 }
 
+/** Gives a signal for each request of a view that takes the place of the one before: it ends that, and ends with the view. */
+export function latest(signal) {
+  let last = new AbortController();
+  signal.addEventListener("abort", () => last.abort());
+  return () => {
+    last.abort();
+    last = new AbortController();
+    return last.signal;
+  };
+}
+
+/** As request; where the server is busy (503), asks again until it is not, for a minute. */
+export async function requestWhenFree(path, options) {
+  for (let tries = 0; ; tries++) {
+    try {
+      return await request(path, options);
+    } catch (error) {
+      if (error.status !== 503 || tries >= 60) throw error;
+      await new Promise((done) => setTimeout(done, 1000));
+      options.signal.throwIfAborted();
+    }
+  }
+}
+
 export async function getJson(path, options) {
   return (await request(path, options)).json();
 }

@@ -12,6 +12,7 @@ import { showRealisation } from "/web/realisation.js";
 const PARTS = [["curves", "Curves"], ["picture", "Pictures"], ["table", "Table"], ["report", "Speed and error"], ["realisation", "Realisations"], ["jobs", "Jobs"], ["document", "Document"]];
 
 const NOTED_MOST = 50, FAILURES_MOST = 50; // cases with notes, and failures, that are listed
+const PERIOD = 3000; // milliseconds between questions where events are refused
 
 /** What went wrong or is remarkable in a case, by realisation. */
 function notesOf(one) {
@@ -140,6 +141,7 @@ export async function showStudy(root, left, id, part) {
   const path = `/v1/studies/${encodeURIComponent(id)}`, stop = new AbortController(), { signal } = stop; // it ends where the view is left, or the study deleted
   left.addEventListener("abort", () => stop.abort());
   const head = headOf(id, () => getJson(path, { signal }).then(update)), tabs = make("nav", { class: "tabs", "aria-label": "Parts of the study" }), body = make("section");
+  const lost = make("p", { role: "alert", hidden: true });
   root.append(make("p", { role: "status", class: "waiting" }, "Loading …"));
   let study, redraw = null, contents = null, following = false, drawing = false, again = false;
 
@@ -149,7 +151,7 @@ export async function showStudy(root, left, id, part) {
     head.update(study);
     follow();
     if (before === next.revision) return;
-    if (contents) drawLast();
+    drawLast();
   }
 
   /** Draws what has come in, one drawing after another: where some come while one is drawn, the last of them is drawn next. */
@@ -159,14 +161,21 @@ export async function showStudy(root, left, id, part) {
     drawing = true;
     while (again && !signal.aborted) {
       again = false;
-      await (contents.curves.length === 0 && part !== "jobs" ? fill() : redraw?.());
+      await (redraw ? redraw() : fill());
     }
     drawing = false;
   }
 
-  /** Shows the part; again where there were no results the last time. */
+  /** Shows the part; what of it cannot draw itself again, as it has no results yet, or could not be shown, is filled again. */
   async function fill() {
     try {
+      const whole = { report: showReport, document: showDocument }[part], fresh = make("section");
+      if (whole) {
+        await whole(fresh, signal, study);
+        body.replaceChildren(...fresh.childNodes);
+        if (part === "document") redraw = () => {}; // it stays
+        return;
+      }
       contents = await getJson(`${path}/contents`, { signal });
       body.replaceChildren();
       redraw = ({ picture: showPicture, table: showTable, realisation: showRealisation, jobs: showJobs }[part] ?? showCurves)(body, signal, study, contents);
@@ -181,18 +190,38 @@ export async function showStudy(root, left, id, part) {
     root.replaceChildren(make("p", { role: "alert" }, `Study “${study.name}” was deleted. `, make("a", { href: "#/" }, "Back to the studies")));
   }
 
-  /** Follows the study until it ends or is deleted; once at a time, again where it goes on. */
+  /** Asks for the state; false, and the reason is said, where there is no answer. */
+  async function look() {
+    try {
+      update(await getJson(path, { signal }));
+      lost.hidden = true;
+      return true;
+    } catch (error) {
+      if (!signal.aborted && error.status === 404) sayDeleted();
+      say(lost, `This may be out of date: ${error.message}`);
+      lost.hidden = false;
+      return false;
+    }
+  }
+
+  /** Follows the study until it ends or is deleted; once at a time, again where it goes on. A hidden page holds no connection. */
   async function follow() {
     if (following) return;
     following = true;
     while (!signal.aborted && isLive(study)) {
+      const stream = new AbortController(), close = () => stream.abort();
+      let refused = false;
+      signal.addEventListener("abort", close);
+      document.addEventListener("visibilitychange", close);
       try {
-        await events(`${path}/events`, (data, name) => (name === "deleted" ? sayDeleted() : update(data)), signal);
-        update(await getJson(path, { signal }));
-      } catch (error) {
-        if (error.status === 404) sayDeleted();
-        if (!signal.aborted) await new Promise((done) => setTimeout(done, 3000));
+        if (!document.hidden) await events(`${path}/events`, (data, name) => (name === "deleted" ? sayDeleted() : update(data)), stream.signal);
+      } catch {
+        refused = !stream.signal.aborted; // its state is asked for, from time to time
       }
+      signal.removeEventListener("abort", close);
+      document.removeEventListener("visibilitychange", close);
+      if (document.hidden) await new Promise((done) => document.addEventListener("visibilitychange", done, { once: true, signal }));
+      if (!(await look()) || refused) await new Promise((done) => setTimeout(done, PERIOD));
     }
     following = false;
   }
@@ -200,12 +229,10 @@ export async function showStudy(root, left, id, part) {
   try {
     study = await getJson(path, { signal });
     part ??= study.cases > CASES_FIRST ? "picture" : "curves";
-    root.replaceChildren(head.element, tabs, body);
+    root.replaceChildren(head.element, lost, tabs, body);
     tabs.append(...PARTS.map(([key, label]) => make("a", { href: `#/study/${encodeURIComponent(id)}/${key}`, "aria-current": key === part ? "page" : null }, label)));
     head.update(study);
-    if (part === "report") await showReport(body, signal, study);
-    else if (part === "document") await showDocument(body, signal, study);
-    else await fill();
+    await drawLast();
   } catch (error) {
     if (signal.aborted) return;
     if (study) body.append(make("p", { role: "alert" }, error.message));

@@ -1,7 +1,7 @@
 // A measured surface: the files that are dropped or chosen are sent, and shown as the page for print and as a table; several are maps of one surface.
 import { choice, make, measured, number, tick, words } from "/web/elements.js";
 import { beginFrom } from "/web/new.js";
-import { request } from "/web/session.js";
+import { latest, requestWhenFree } from "/web/session.js";
 
 const LINES = ["none", "mean", "median", "linear", "quadratic"];
 const DETRENDS = ["auto", "none", "mean", "plane", "quadratic"];
@@ -53,6 +53,7 @@ function tableOf(found) {
 export function showSurface(root, signal) {
   document.title = "Measured surface – Rugo";
   const message = make("p", { role: "status" }), fault = make("p", { role: "alert" }), place = make("div");
+  const signalOf = latest(signal);
   let turn = 0;
 
   async function look() {
@@ -61,7 +62,7 @@ export function showSurface(root, signal) {
     message.textContent = `Looking at ${named(files)} …`;
     fault.textContent = "";
     try {
-      const svg = await (await send(files, "svg")).text();
+      const svg = await (await send(files, "svg", signalOf())).text();
       if (mine === turn) show(files, svg);
     } catch (error) {
       if (signal.aborted || mine !== turn) return;
@@ -71,13 +72,13 @@ export function showSurface(root, signal) {
   }
 
   /** One file is sent as it is, several as a form: maps of one surface. */
-  function send(files, format, more = {}) {
+  function send(files, format, until, more = {}) {
     const [first] = files, several = files.length > 1;
     const query = new URLSearchParams({ ...(several ? { together: "true" } : { name: first.name }), format, ...more });
     for (const [name, value] of Object.entries(kept.options)) if (value && value !== "auto") query.set(name, value);
     const form = new FormData();
     for (const file of several ? files : []) form.append("map", file);
-    return request(`/v1/characterise?${query}`, { method: "POST", signal, ...(several ? { body: form } : { body: first, headers: { "Content-Type": "application/octet-stream" } }) });
+    return requestWhenFree(`/v1/characterise?${query}`, { method: "POST", signal: until, ...(several ? { body: form } : { body: first, headers: { "Content-Type": "application/octet-stream" } }) });
   }
 
   function tell(error, files) {
@@ -91,7 +92,7 @@ export function showSurface(root, signal) {
     message.textContent = "Fitting …";
     fault.textContent = "";
     try {
-      beginFrom(await (await send(files, "study", more)).json());
+      beginFrom(await (await send(files, "study", signal, more)).json());
     } catch (error) {
       if (!signal.aborted) tell(error, files);
     }

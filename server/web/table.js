@@ -30,14 +30,15 @@ export function showTable(root, signal, study, contents) {
   const message = make("p", { role: "status" }), place = make("div", { class: "scroll" });
   const columns = make("input", { type: "text", size: 40, placeholder: "summit_density, contact_area@0.1", list: "scalars" });
   const cases = new Map(contents.cases.map((one) => [one.case, one])), where = whereOf(contents.cases, () => turnTo(0));
-  const head = make("tr"), body = make("tbody"), state = { by: null, down: false, page: 0 };
+  const names = make("datalist", { id: "scalars" });
+  const head = make("tr"), body = make("tbody"), state = { by: null, down: false, page: 0, columns: "" };
   const back = make("button", { onclick: () => turnTo(state.page - 1) }, "‹ before"), on = make("button", { onclick: () => turnTo(state.page + 1) }, "next ›"), range = make("span", { role: "status" });
   const pages = make("div", { class: "tools", hidden: true }, back, range, on);
   let table = null, turn = 0;
   place.append(make("table", {}, make("thead", {}, head), body));
 
   function query() {
-    const parts = [["columns", columns.value.replaceAll(" ", "")], ["where", where.query()]].filter(([, value]) => value !== "");
+    const parts = [["columns", state.columns], ["where", where.query()]].filter(([, value]) => value !== "");
     return parts.length > 0 ? `?${new URLSearchParams(parts)}` : "";
   }
 
@@ -72,28 +73,38 @@ export function showTable(root, signal, study, contents) {
     say(message, `${rows.length === table.rows.length ? "" : `${rows.length} of `}${table.rows.length} ${table.rows.length === 1 ? "case" : "cases"}; values ± one standard error.${lacking.length > 0 ? ` Errors not known: ${lacking.join("; ")}.` : ""}`);
   }
 
-  async function load() {
+  function nameColumns({ scalars }) {
+    names.append(...scalars.map((name) => make("option", { value: name })));
+  }
+
+  /** Asks for the columns that were chosen last; quietly, where the table was there before. */
+  async function load(quietly = false) {
     const mine = ++turn;
     if (!table) say(message, "Loading …");
     try {
-      const asked = columns.value.replaceAll(" ", "");
-      const answer = await getJson(path + (asked ? `?columns=${encodeURIComponent(asked)}` : ""), { signal, headers: { Accept: "application/json" } });
+      const answer = await getJson(path + (state.columns ? `?columns=${encodeURIComponent(state.columns)}` : ""), { signal, headers: { Accept: "application/json" } });
       if (mine !== turn) return;
       table = answer;
       place.hidden = false;
       draw();
     } catch (error) {
       if (signal.aborted || mine !== turn) return;
-      table = null;
-      place.hidden = pages.hidden = true;
+      if (!quietly) {
+        table = null;
+        place.hidden = pages.hidden = true;
+      }
       message.textContent = reasonOf(error);
     }
   }
 
-  root.append(make("form", { class: "tools", onsubmit: (event) => { event.preventDefault(); load(); } },
+  root.append(make("form", { class: "tools", onsubmit: (event) => { event.preventDefault(); state.columns = columns.value.replaceAll(" ", ""); load(); } },
     make("label", {}, "Columns ", columns), make("button", {}, "Show"), where.controls,
     make("button", { type: "button", onclick: () => download(path + query(), `${study.name}-table.csv`, "text/csv").catch((error) => { message.textContent = error.message; }) }, "CSV")),
-    make("datalist", { id: "scalars" }, contents.scalars.map((name) => make("option", { value: name }))), message, pages, place);
+    names, message, pages, place);
+  nameColumns(contents);
   load();
-  return load;
+  return async () => {
+    if (names.childElementCount === 0) await getJson(`/v1/studies/${encodeURIComponent(study.id)}/contents`, { signal }).then(nameColumns, () => {}); // the next results ask again
+    await load(true);
+  };
 }
