@@ -137,7 +137,8 @@ static double deviation_along(const struct grid *grid, const double *z, int line
                               double *room) {
     struct sum squares = {0};
     size_t count = 0;
-    const size_t sampled = grid_points(grid) / SAMPLE, every = sampled > 1 ? sampled : 1;
+    const size_t sampled = grid_points(grid) / SAMPLE, rows = sampled > 1 ? sampled : 1;
+    const size_t every = rows < grid->ny ? rows : grid->ny;
     for (size_t j = every / 2; j < grid->ny; j += every)
         for (size_t i = 0; i < grid->nx; i++)
             take(fabs(one ? off_one(grid, z, i, j, line, 1) : off_both(grid, z, i, j, line)), room,

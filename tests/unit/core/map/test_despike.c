@@ -182,6 +182,22 @@ static void hard_spikes_are_found(void **state) {
     }
 }
 
+/* What is looked at for the deviation is a part of many rows; a profile has one. */
+static void spikes_of_long_profiles_are_found(void **state) {
+    (void)state;
+    const size_t points = 600000, every = 50000;
+    const struct grid grid = {points, 1, (double)points, 1};
+    double *z = array_create(points, sizeof *z);
+    struct despike_result result;
+    assert_non_null(z);
+    for (size_t point = 0; point < points; point++)
+        z[point] = sin(0.05 * (double)point) + (point % every == every / 2 ? 200 : 0);
+    assert_int_equal(despike(&grid, z, standard(), &result, NULL), 0);
+    assert_int_equal(result.spikes, points / every);
+    assert_true(result.deviation > 0);
+    free(z);
+}
+
 static void little_is_left_alone(void **state) {
     (void)state;
     double two[] = {0, 100}, level[] = {1, 1, 1, 1, 1, 1}, empty[] = {NAN, NAN, NAN, NAN};
@@ -199,6 +215,7 @@ int main(void) {
         cmocka_unit_test(true_peaks_stay),       cmocka_unit_test(true_peaks_of_profiles_stay),
         cmocka_unit_test(noise_has_no_spikes),   cmocka_unit_test(spikes_are_found),
         cmocka_unit_test(hard_spikes_are_found), cmocka_unit_test(little_is_left_alone),
+        cmocka_unit_test(spikes_of_long_profiles_are_found),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
