@@ -212,9 +212,12 @@ static void little_is_left_alone(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(true_peaks_stay),       cmocka_unit_test(true_peaks_of_profiles_stay),
-        cmocka_unit_test(noise_has_no_spikes),   cmocka_unit_test(spikes_are_found),
-        cmocka_unit_test(hard_spikes_are_found), cmocka_unit_test(little_is_left_alone),
+        cmocka_unit_test(true_peaks_stay),
+        cmocka_unit_test(true_peaks_of_profiles_stay),
+        cmocka_unit_test(noise_has_no_spikes),
+        cmocka_unit_test(spikes_are_found),
+        cmocka_unit_test(hard_spikes_are_found),
+        cmocka_unit_test(little_is_left_alone),
         cmocka_unit_test(spikes_of_long_profiles_are_found),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
