@@ -182,7 +182,7 @@ RUGO_API void rugo_map_clear(struct rugo_map *map);
 RUGO_API int rugo_map_write(const char *path, const struct rugo_grid *grid, const double *z,
                             struct rugo_error *err);
 
-/* --- statistics of a map --- */
+/* --- statistics of a periodic map: INPUT, too, where a height is NaN --- */
 
 /* Moments are about the mean; slopes and curvatures are finite differences on the grid. */
 struct rugo_roughness {

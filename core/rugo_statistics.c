@@ -1,15 +1,23 @@
 /* Implements the statistics of rugo.h. */
+#include "core/map/height_map.h"
 #include "core/rugo_shared.h"
 #include "core/statistics/heights/roughness.h"
 #include "core/statistics/summits/summits.h"
 #include <stdlib.h>
+
+/* Takes the grid of a periodic map, which has no holes. */
+static int map_take(struct grid *out, const struct rugo_grid *grid, const double *z,
+                    struct error *err) {
+    int status = grid_take(out, grid, err);
+    return status == 0 ? heights_check_whole(out, z, err) : status;
+}
 
 int rugo_roughness(const struct rugo_grid *grid, const double *z, struct rugo_roughness *out,
                    struct rugo_error *err) {
     struct error why = {0};
     struct grid cell;
     struct roughness r;
-    int status = grid_take(&cell, grid, &why);
+    int status = map_take(&cell, grid, z, &why);
     if (status != 0)
         return error_give(status, &why, err);
     roughness_measure(&cell, z, &r);
@@ -22,7 +30,7 @@ int rugo_moments(const struct rugo_grid *grid, const double *z, struct rugo_mome
     struct error why = {0};
     struct grid cell;
     struct moments moments;
-    int status = grid_take(&cell, grid, &why);
+    int status = map_take(&cell, grid, z, &why);
     if (status == 0)
         status = roughness_spectral(&cell, z, &moments, &why);
     if (status == 0)
@@ -39,7 +47,7 @@ int rugo_psd(const struct rugo_grid *grid, const double *z, double *wave_number,
              struct rugo_error *err) {
     struct error why = {0};
     struct grid cell;
-    int status = grid_take(&cell, grid, &why);
+    int status = map_take(&cell, grid, z, &why);
     if (status == 0)
         status = psd_measure(&cell, z, wave_number, density, &why);
     return error_give(status, &why, err);
@@ -51,7 +59,7 @@ int rugo_summits_find(struct rugo_summits *out, const struct rugo_grid *grid, co
     struct grid cell;
     struct summit_finder *finder = NULL;
     struct summit_list list = {0};
-    int status = grid_take(&cell, grid, &why);
+    int status = map_take(&cell, grid, z, &why);
     enum summit_stencil stencil = SUMMITS_NINE_POINT;
     if (status == 0)
         status = stencil_take(&stencil, rule, &why);

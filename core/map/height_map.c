@@ -50,22 +50,29 @@ int height_map_shape(struct height_map *map, size_t ny, size_t nx, double dx, st
     return grid_check(&map->grid, err);
 }
 
-size_t height_map_holes(const struct height_map *map) {
+static size_t holes_count(const struct grid *grid, const double *z) {
     size_t holes = 0;
-    for (size_t point = 0; point < grid_points(&map->grid); point++)
-        holes += isnan(map->z[point]) ? 1 : 0;
+    for (size_t point = 0; point < grid_points(grid); point++)
+        holes += isnan(z[point]) ? 1 : 0;
     return holes;
 }
 
-int height_map_check_whole(const struct height_map *map, struct error *err) {
-    size_t points = grid_points(&map->grid), first = 0;
-    while (first < points && !isnan(map->z[first]))
+size_t height_map_holes(const struct height_map *map) {
+    return holes_count(&map->grid, map->z);
+}
+
+int heights_check_whole(const struct grid *grid, const double *z, struct error *err) {
+    size_t points = grid_points(grid), first = 0;
+    while (first < points && !isnan(z[first]))
         first++;
     if (first == points)
         return 0;
-    return error_set(
-        err, ERROR_INPUT,
-        "%zu of %zu heights are holes (NaN), the first in row %zu, column %zu, counted "
-        "from 1; all heights are needed here",
-        height_map_holes(map), points, first / map->grid.nx + 1, first % map->grid.nx + 1);
+    return error_set(err, ERROR_INPUT,
+                     "%zu of %zu heights are holes (NaN), the first in row %zu, column %zu, "
+                     "counted from 1; all heights are needed here",
+                     holes_count(grid, z), points, first / grid->nx + 1, first % grid->nx + 1);
+}
+
+int height_map_check_whole(const struct height_map *map, struct error *err) {
+    return heights_check_whole(&map->grid, map->z, err);
 }

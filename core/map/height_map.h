@@ -25,6 +25,9 @@ size_t height_map_holes(const struct height_map *map);
  * that need all heights. */
 int height_map_check_whole(const struct height_map *map, struct error *err);
 
+/* The same of heights z[grid_points(grid)]. */
+int heights_check_whole(const struct grid *grid, const double *z, struct error *err);
+
 /* Checks the counts and sets the grid of a map with spacing dx. */
 int height_map_shape(struct height_map *map, size_t ny, size_t nx, double dx, struct error *err);
 

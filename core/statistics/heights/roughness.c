@@ -38,6 +38,8 @@ static void heights_measure(const struct measured_map *map, struct roughness *ou
         out->highest = z > out->highest ? z : out->highest;
     }
     out->mean = average_value(&mean);
+    if (out->lowest > out->highest) /* no height is known */
+        out->lowest = out->highest = NAN;
 }
 
 enum { TOGETHER = 64 };

@@ -35,6 +35,8 @@ __all__ = ["Server", "Study", "Rows", "RugoError"]
 
 CSV_CASES_MOST = 64  # of one answer; each case of a larger study is asked for by itself
 MAIN_SERIES = "main"  # in rows, of a curve that is the only one of its quantity: pandas drops rows without a name
+SNAPSHOT_SILENCE = 300  # seconds
+AWAY = (None, 502, 503, 504)  # statuses of answers that are none of the service, or say that it is busy
 ENDS = ("done", "failed", "cancelled")
 # What the package rugo has besides, whose name this file may have.
 IN_PACKAGE = ("LibraryError", "Pressed", "Result", "characterise", "choices", "detrend", "generate", "library_version", "press",
@@ -92,11 +94,27 @@ def rows_of_csv(text):
     return rows
 
 
+def _parameter_names(pointers, swept):
+    """The columns of parameters by pointer: the last word where it is the only one, of what is swept and then of the rest; else
+    the pointer without its first slash."""
+    of_swept = [pointer for pointer in pointers if any((pointer + "/").startswith(one + "/") for one in swept)]
+    rest = [pointer for pointer in pointers if pointer not in of_swept]
+    words, names = set(), {}
+    for group in (of_swept, rest):
+        last = [pointer.rsplit("/", 1)[1] for pointer in group]
+        names.update({pointer: word if last.count(word) == 1 and word not in words else pointer[1:]
+                      for pointer, word in zip(group, last)})
+        words.update(last)
+    return names
+
+
 def rows_of_scalars(document):
     """The rows of the scalars of a document of curves."""
     rows = Rows()
+    pointers = dict.fromkeys(pointer for one in document["cases"] for pointer in one["parameters"])
+    names = _parameter_names(list(pointers), document.get("swept") or ())
     for one in document["cases"]:
-        parameters = {pointer.rsplit("/", 1)[1]: value for pointer, value in one["parameters"].items()}
+        parameters = {names[pointer]: value for pointer, value in one["parameters"].items()}
         for name, scalar in one.get("scalars", {}).items():
             rows.append({"case": one["case"], **parameters, "name": name, **scalar})
     return rows
@@ -250,9 +268,10 @@ class Server:
             raise ValueError(f"{url} would get the token in clear text over the network: use https://")
         if not ca_file and not fingerprint:
             ca_file, fingerprint = os.environ.get("RUGO_CA_FILE"), os.environ.get("RUGO_FINGERPRINT")
-        self._open = urllib.request.build_opener(_Plain, _Tls(ca_file, fingerprint), _NoRedirect).open
+        direct = [urllib.request.ProxyHandler({})] if _is_here(parts.hostname) else []  # no token leaves this machine
+        self._open = urllib.request.build_opener(_Plain, _Tls(ca_file, fingerprint), _NoRedirect, *direct).open
 
-    def ask(self, method, path, query=None, body=None, accept="application/json", headers=None):
+    def ask(self, method, path, query=None, body=None, accept="application/json", headers=None, timeout=None):
         """One request; the open answer, whose read() gives bytes as they were before compression."""
         pairs = {name: value for name, value in (query or {}).items() if value is not None}
         url = self.url + path + ("?" + urllib.parse.urlencode(pairs) if pairs else "")
@@ -266,11 +285,14 @@ class Server:
         for name, value in (headers or {}).items():
             request.add_header(name, value)
         try:
-            answer = self._open(request, timeout=self.timeout)
+            answer = self._open(request, timeout=timeout or self.timeout)
         except urllib.error.HTTPError as error:
             raise _problem(error) from None
         except (OSError, http.client.HTTPException) as error:
             raise _no_answer(self.url, error) from error
+        if "Rugo-Version" not in answer.headers:
+            answer.close()
+            raise RugoError(None, f"{self.url} is no server of Rugo: its answer, of status {answer.status}, is not one of rugo serve")
         return gzip.GzipFile(fileobj=answer) if answer.headers.get("Content-Encoding") == "gzip" else answer
 
     def text(self, method, path, **more):
@@ -363,10 +385,12 @@ class Server:
 
     def snapshot(self, path):
         """Copies the database of the service to a file, for SQLite and pandas.read_sql. The file is there, in place of
-        one of that name, when it is whole."""
+        one of that name, when it is whole. The service copies it before it answers: five minutes of silence at least are
+        waited for."""
         part = f"{path}.part-{os.urandom(3).hex()}"
         try:
-            with open(part, "xb") as file, self.ask("GET", "/v1/snapshot", accept="*/*") as answer:
+            with open(part, "xb") as file, self.ask("GET", "/v1/snapshot", accept="*/*",
+                                                        timeout=max(self.timeout, SNAPSHOT_SILENCE)) as answer:
                 for data in self._parts(answer):
                     file.write(data)
             os.replace(part, path)
@@ -434,7 +458,7 @@ class Study:
             try:
                 status, known = self.status(), True
             except RugoError as error:
-                if not known or error.status not in (None, 503):
+                if not known or error.status not in AWAY:
                     raise
                 status = None
             if status is not None:
@@ -481,8 +505,9 @@ class Study:
         return self.server.json("GET", self._path("/curves"), query={"quantity": quantity, "case": case})
 
     def scalars(self):
-        """A row a case and scalar: case, its parameters, name, value, standard_error, theory,
-        total_low, total_high and a list unknown_errors."""
+        """A row a case and scalar: case, its parameters (by the last word, where several have it by the pointer without
+        its first slash), name, value, standard_error, theory, total_low, total_high and
+        a list unknown_errors."""
         return rows_of_scalars(self.results())
 
     def report(self):

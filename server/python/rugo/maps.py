@@ -8,6 +8,7 @@ passed by their addresses; others are copied. NaN and masked heights are holes, 
 from __future__ import annotations
 
 import ctypes
+import operator
 import typing
 from ctypes import byref
 
@@ -119,7 +120,7 @@ def characterise(z: ArrayLike, dx: float = 1.0, *, dy: typing.Optional[float] = 
     rms_curvature, that of (z_xx + z_yy)/2, of a profile of z_xx, by second differences. spectral: moments m_pq,
     the sums of kx^p ky^q over all waves, Nayak's alpha, slope and curvature by derivatives that are exact for
     waves which the grid holds; of open maps interpolated, by derivatives of polynomials through the points nearby.
-    summits_RULE: count, density (per area, of a profile per length), mean and deviation of heights, mean curvature.
+    summits_RULE, of a profile its peaks: count, density (per area, of a profile per length), mean and deviation of heights, mean curvature.
     areal: parameters of ISO 25178-2 (surfaces alone).
 
     boundary: "periodic", or "open" for a map that ends at its sides, such as a measured one, and may have holes.
@@ -205,7 +206,7 @@ def press(z: ArrayLike, dx: float = 1.0, pressures: ArrayLike = (), *, dy: typin
     Hardness, friction, leak and conductance are for the command `rugo press` and for studies.
 
     z: heights towards the flat, the highest touch first; any mean. pressures: mean pressures over E*, one after
-    the other; a load p/(E* h') of studies times the RMS slope h' (characterise: spectral). boundary: "periodic", or
+    the other; a load p/(E* h') of studies times the RMS slope h' (characterise: spectral, of open maps interpolated). boundary: "periodic", or
     "open" for a half-space in free space that touches within the map alone. model, of periodic maps: "halfspace", "layered" or
     "full" (finite strain; far slower). poisson (0.3; without influence on a half-space), height of the block in
     the unit of dx (1.5 times the longer side of the map; of a half-space infinite), layer_growth (1.1): of the block. maps: whether to keep p
@@ -228,6 +229,14 @@ def press(z: ArrayLike, dx: float = 1.0, pressures: ArrayLike = (), *, dy: typin
         full_pressure = library.library().rugo_contact_full_pressure(contact)
         states = [_press_one(contact, load, [out[n] for out in kept]) for n, load in enumerate(loads)]
     return Pressed(states, full_pressure, *(kept or (None, None)))
+
+
+def _whole(name: str, value, least: int = 0) -> int:
+    """A whole number that 64 bits hold; what wraps around would be another one."""
+    number = operator.index(value)
+    if not least <= number < 2**64:
+        raise ValueError(f"{name} is {number}; allowed: whole numbers from {least} to 2^64 - 1")
+    return number
 
 
 def surface(shape: typing.Union[int, typing.Sequence[int]], dx: float = 1.0, *, dy: typing.Optional[float] = None,
@@ -264,7 +273,11 @@ def surface(shape: typing.Union[int, typing.Sequence[int]], dx: float = 1.0, *, 
     options = library.library().rugo_surface_defaults()
     options.heights = library.choice("distributions", heights)
     options.second_shape = second_shape
-    options.keep_heights, options.random_amplitudes = keep_heights, random_amplitudes
+    options.keep_heights, options.random_amplitudes = bool(keep_heights), bool(random_amplitudes)
+    seed, sequence, realisation = (_whole(name, value) for name, value in
+                                   (("seed", seed), ("sequence", sequence), ("realisation", realisation)))
+    if max_iterations is not None:
+        max_iterations = _whole("max_iterations", max_iterations, 1)
     for name, value in (("shape", heights_shape), ("tolerance", tolerance), ("max_iterations", max_iterations)):
         if value is not None:
             setattr(options, name, value)

@@ -11,8 +11,11 @@ import json
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
+import sys
 import tempfile
+import threading
 import typing
 
 from .client import Rows, RugoError, rows_of_csv, rows_of_scalars
@@ -34,6 +37,15 @@ def _program() -> str:
     return found
 
 
+def _listen(stream, said: typing.List[bytes], progress: bool) -> None:
+    """Keeps what comes, by lines, and passes it on where progress is asked for."""
+    for line in stream:
+        said.append(line)
+        if progress:
+            sys.stderr.write(line.decode("utf-8", "replace"))
+            sys.stderr.flush()
+
+
 def _call(command: str, study: Study, changes, options, progress: bool = False) -> bytes:
     """What the program prints about a study: a path, JSON text or a dict. RugoError with what it refuses."""
     line, text = [_program(), command], None
@@ -44,11 +56,35 @@ def _call(command: str, study: Study, changes, options, progress: bool = False) 
     line += ["-" if text is not None else os.fspath(study), *options]
     for name, value in (changes or {}).items():
         line += ["--set", f"{name}={json.dumps(value)}"]
-    ended = subprocess.run(line, input=text, stdout=subprocess.PIPE, stderr=None if progress else subprocess.PIPE)
-    if ended.returncode != 0:
-        reason = (ended.stderr or b"").decode("utf-8", "replace").strip()
-        raise RugoError(None, reason or f"rugo {command} ended with status {ended.returncode}")
-    return ended.stdout
+    with subprocess.Popen(line, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:
+        said: typing.List[bytes] = []
+        listening = threading.Thread(target=_listen, args=(running.stderr, said, progress))
+        listening.start()
+        try:
+            running.stdin.write(text or b"")
+            running.stdin.close()
+            printed = running.stdout.read()
+            running.wait()
+        except KeyboardInterrupt:  # it hands back what it has leased; a second one kills it
+            running.send_signal(signal.SIGINT)
+            try:
+                running.stdout.read()
+                running.wait()
+            except KeyboardInterrupt:
+                running.kill()
+            raise
+        except BrokenPipeError:  # it ended before it read the study, and said why
+            printed = b""
+            running.wait()
+        except BaseException:
+            running.kill()
+            raise
+        finally:
+            listening.join()
+    if running.returncode != 0:
+        reason = b"".join(said).decode("utf-8", "replace").strip()
+        raise RugoError(None, reason or f"rugo {command} ended with status {running.returncode}")
+    return printed
 
 
 def _table(rows: Rows) -> Table:
@@ -90,8 +126,8 @@ class Result:
 
     @functools.cached_property
     def scalars(self) -> Table:
-        """A row a case and scalar: case, its parameters, name, value, standard_error, theory, errors by source,
-        total_low, total_high and a list unknown_errors."""
+        """A row a case and scalar: case, its parameters (by the last word, where several have it by the
+        pointer without its first slash), name, value, standard_error, theory, errors by source, total_low, total_high and a list unknown_errors."""
         return _table(rows_of_scalars(self.document))
 
     def picture(self, quantity: str) -> Picture:

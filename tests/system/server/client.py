@@ -92,8 +92,9 @@ def faults_are_told(server):
     refused(lambda: rugo.Server("http://127.0.0.1:1").studies(), None, "127.0.0.1:1")
 
 
-def answering(head, body):
+def answering(head, body, of_rugo=True):
     """A server on this machine that answers each request with this and ends the connection."""
+    head += b"\r\nRugo-Version: 0.1" if of_rugo else b""
     listening = socket.create_server(("127.0.0.1", 0))
 
     def serve():
@@ -123,7 +124,45 @@ def answers_that_are_cut_off_are_none():
     assert whole.snapshot(path) == path and path.read_text() == "good"
     assert rugo.Study(answering(b"200 OK\r\nContent-Encoding: gzip", gzipped), "1").table() == [{"hurst": 0.8, "kappa": 1}]
     refused(answering(b"422 No\r\nContent-Length: 99", b"{").studies, 422, "HTTP status 422")
+    other = answering(b"200 OK\r\nContent-Type: text/html\r\nContent-Length: 18", b"<html>login</html>", of_rugo=False)
+    for call in (lambda: other.snapshot(path), rugo.Study(other, "1").curves, other.studies):
+        refused(call, None, "is no server of Rugo")
+    assert path.read_text() == "good"
     path.unlink()
+
+
+def a_proxy_gets_no_request_to_this_machine():
+    os.environ["http_proxy"] = "http://127.0.0.1:1"
+    try:
+        assert len(rugo.Server(URL, token="aaaa").studies()) > 0
+    finally:
+        del os.environ["http_proxy"]
+
+
+def a_gateway_that_fails_is_asked_again():
+    study = rugo.Study(None, "1")
+    said = iter([{"state": "running"}, rugo.RugoError(502, "gateway"), rugo.RugoError(504, "gateway"),
+                 {"state": "done", "cases": 1, "cases_valueless": 0}])
+
+    def status():
+        one = next(said)
+        if isinstance(one, Exception):
+            raise one
+        return one
+
+    study.status = status
+    assert study.wait(timeout=60) is study and next(said, None) is None
+
+
+def parameters_have_names_of_their_own():
+    """What is swept has the last word of its pointer; of others those that share it have the whole one."""
+    case = {"case": 0, "scalars": {"m2": {"value": 1}}, "parameters": {
+        "/surface/hurst": 0.2, "/counter_surface/hurst": 0.5, "/surface/heights/tolerance": 0.001, "/contact/tolerance": 1e-6, "/surface/rms_slope": 0.1}}
+    row, = rugo.rows_of_scalars({"swept": ["/surface/hurst"], "cases": [case]})
+    assert row == {"case": 0, "hurst": 0.2, "counter_surface/hurst": 0.5, "surface/heights/tolerance": 0.001, "contact/tolerance": 1e-6,
+                   "rms_slope": 0.1, "name": "m2", "value": 1}, row
+    row, = rugo.rows_of_scalars({"swept": ["/contact/tolerance", "/surface/heights"], "cases": [case]})
+    assert row["contact/tolerance"] == 1e-6 and row["surface/heights/tolerance"] == 0.001 and "tolerance" not in row, row
 
 
 def many_cases_are_asked_for_one_by_one(server):
@@ -203,6 +242,9 @@ studies_are_found_and_changed(here, one)
 faults_are_told(here)
 maps_are_characterised(here)
 answers_that_are_cut_off_are_none()
+a_proxy_gets_no_request_to_this_machine()
+a_gateway_that_fails_is_asked_again()
+parameters_have_names_of_their_own()
 many_cases_are_asked_for_one_by_one(here)
 tokens_are_read_as_commands_do()
 print("client: all as it should be")

@@ -9,8 +9,10 @@ import json
 import os
 import pathlib
 import re
+import signal
 import subprocess
 import sys
+import threading
 
 import rugo
 from rugo import library
@@ -168,6 +170,16 @@ def a_study_is_run():
     assert not folder.exists()
 
 
+def an_interrupt_ends_the_program_well():
+    """It hands back what it leased, and says so; the next run does not wait for it."""
+    long = dict(STUDY, name="long", realisations=1000000)
+    folder = pathlib.Path(FOLDER, "interrupted")
+    threading.Timer(3, os.kill, (os.getpid(), signal.SIGINT)).start()
+    raises(KeyboardInterrupt, lambda: rugo.run(long, folder, workers=1))
+    printed = subprocess.run([os.environ["RUGO_PROGRAM"], "status", "long", "--db", str(folder / "rugo.db")], stdout=subprocess.PIPE, check=True).stdout.decode()
+    assert "(0 running" in printed, printed
+
+
 def a_folder_keeps_it():
     path = pathlib.Path(FOLDER, "kept.json")
     path.write_text(json.dumps(STUDY), encoding="utf-8")
@@ -176,6 +188,9 @@ def a_folder_keeps_it():
     assert rows_of(first.curves)[0]["hurst"] == 0.5 and (again.folder / "rugo.db").exists()
     assert [c["curves"] for c in first.document["cases"]] == [c["curves"] for c in again.document["cases"]]
     fault = raises(rugo.RugoError, lambda: rugo.run(dict(STUDY, surface={"hurst": 1.4})), "/surface/hurst", "1.4 is not in")
+    with contextlib.redirect_stderr(io.StringIO()) as passed:
+        raises(rugo.RugoError, lambda: rugo.run(dict(STUDY, surface={"hurst": 1.4}), progress=True), "1.4 is not in")
+    assert "1.4 is not in" in passed.getvalue()
     assert fault.status is None
 
 
@@ -238,6 +253,11 @@ def surfaces_are_those_of_studies(numpy):
                            heights_shape=1.2, rms_slope=0.1)
     found = rugo.characterise(weibull, dx=1 / 8)
     assert found["heights"]["skewness"] < -1 and abs(found["spectral"]["rms_slope"] - 0.1) < 1e-3
+    for wrong in ({"seed": 2**64 + 1}, {"seed": -1}, {"realisation": -1}, {"max_iterations": 0}):
+        raises(ValueError, lambda: rugo.surface(64, wavelength_long=8, wavelength_short=2, **wrong), "allowed: whole numbers")
+    raises(TypeError, lambda: rugo.surface(64, wavelength_long=8, wavelength_short=2, seed=1.5))
+    kept = rugo.surface((64, 64), wavelength_long=8, wavelength_short=2, heights="gamma", heights_shape=4, keep_heights=numpy.bool_(True))
+    assert abs(kept.std() - 1) < 1e-12
     profile = rugo.surface(512, dx=1 / 8, spectrum="table", table=([0.5, 1, 6], [1, 1, 1]))
     assert profile.shape == (512,) and abs(profile.std() - 1) < 1e-12
     raises(rugo.RugoError, lambda: rugo.generate(STUDY, case=9), "there is no case 9")
@@ -275,6 +295,8 @@ def maps_are_characterised_as_by_the_program(numpy):
     holes[3, 5] = numpy.nan
     assert raises(rugo.LibraryError, lambda: rugo.characterise(holes), "hole").code == -1
     assert rugo.characterise(holes, 1 / 8, boundary="open")["heights"]["rms"] > 0
+    for call in (lambda: rugo.summits(holes, 1 / 8), lambda: rugo.psd(holes, 1 / 8), lambda: rugo.characterise(holes[3], 1 / 8)):
+        raises(rugo.LibraryError, call, "1 of ", "all heights are needed here")
 
 
 def maps_are_pressed_as_by_the_program(numpy):
@@ -333,6 +355,7 @@ choices_are_those_of_the_lists()
 versions_are_one()
 what_is_absent_is_named()
 a_study_is_run()
+an_interrupt_ends_the_program_well()
 a_folder_keeps_it()
 if not skipped("maps as arrays", "numpy"):
     import numpy as arrays

@@ -51,6 +51,30 @@ static void a_piece_is_measured(void **state) {
     free(z);
 }
 
+/* Periodic maps have all heights; of a map without any nothing is known. */
+static void holes_are_refused_where_none_may_be(void **state) {
+    (void)state;
+    double z[64], wave_number[64], density[64];
+    const struct rugo_grid grid = {8, 8, 1, 1};
+    struct rugo_roughness roughness;
+    struct rugo_moments moments;
+    struct rugo_summits summits = {0};
+    struct rugo_error err = {0};
+    for (size_t point = 0; point < 64; point++)
+        z[point] = point == 19 ? (double)NAN : (double)(point % 7);
+    assert_int_equal(rugo_roughness(&grid, z, &roughness, &err), RUGO_ERROR_INPUT);
+    assert_non_null(strstr(err.text, "1 of 64 heights are holes (NaN), the first in row 3"));
+    assert_int_equal(rugo_moments(&grid, z, &moments, &err), RUGO_ERROR_INPUT);
+    assert_true(rugo_psd_size(&grid) <= 64);
+    assert_int_equal(rugo_psd(&grid, z, wave_number, density, &err), RUGO_ERROR_INPUT);
+    assert_int_equal(rugo_summits_find(&summits, &grid, z, RUGO_NINE_POINT, &err),
+                     RUGO_ERROR_INPUT);
+    for (size_t point = 0; point < 64; point++)
+        z[point] = NAN;
+    assert_int_equal(rugo_open_roughness(&grid, z, &roughness, &err), 0);
+    assert_true(isnan(roughness.lowest) && isnan(roughness.highest) && isnan(roughness.mean));
+}
+
 /* Heights that were not measured are read where they are asked for alone, and can be measured on.
  */
 static void a_map_with_holes_is_read(void **state) {
@@ -155,8 +179,11 @@ static void open_map_is_pressed(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_piece_is_measured),          cmocka_unit_test(a_map_with_holes_is_read),
-        cmocka_unit_test(areal_parameters_and_density), cmocka_unit_test(wrong_arguments_are_told),
+        cmocka_unit_test(a_piece_is_measured),
+        cmocka_unit_test(a_map_with_holes_is_read),
+        cmocka_unit_test(holes_are_refused_where_none_may_be),
+        cmocka_unit_test(areal_parameters_and_density),
+        cmocka_unit_test(wrong_arguments_are_told),
         cmocka_unit_test(open_map_is_pressed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
