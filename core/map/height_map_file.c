@@ -236,11 +236,13 @@ static void height_map_csv_write(FILE *file, const struct grid *grid, const doub
             height_write(file, z[j * grid->nx + i], i + 1 < grid->nx ? ',' : '\n');
 }
 
-static void height_map_xyz_write(FILE *file, const struct grid *grid, const double *z) {
+static void height_map_xyz_write(FILE *file, const struct grid *grid, const double origin[2],
+                                 const double *z) {
     double dy = grid_is_profile(grid) ? 0 : grid_dy(grid);
     for (size_t j = 0; j < grid->ny; j++)
         for (size_t i = 0; i < grid->nx; i++) {
-            fprintf(file, "%.17g %.17g ", (double)i * grid_dx(grid), (double)j * dy);
+            fprintf(file, "%.17g %.17g ", origin[0] + (double)i * grid_dx(grid),
+                    origin[1] + (double)j * dy);
             height_write(file, z[j * grid->nx + i], '\n');
         }
 }
@@ -285,8 +287,8 @@ int height_map_parse(struct height_map *out, enum height_map_format format, cons
     return status;
 }
 
-int height_map_write(FILE *file, enum height_map_format format, const struct grid *grid,
-                     const double *z, struct error *err) {
+static int write_from(FILE *file, enum height_map_format format, const struct grid *grid,
+                      const double origin[2], const double *z, struct error *err) {
     locale_t before = point_locale_begin();
     if (before == (locale_t)0)
         return refuse_locale(err);
@@ -296,7 +298,7 @@ int height_map_write(FILE *file, enum height_map_format format, const struct gri
     else if (format == HEIGHT_MAP_CSV)
         height_map_csv_write(file, grid, z);
     else
-        height_map_xyz_write(file, grid, z);
+        height_map_xyz_write(file, grid, origin, z);
     bool failed = fflush(file) != 0 || ferror(file) != 0;
     int reason = errno;
     point_locale_end(before);
@@ -306,13 +308,25 @@ int height_map_write(FILE *file, enum height_map_format format, const struct gri
     return 0;
 }
 
+static const double HERE[2] = {0, 0};
+
+int height_map_write(FILE *file, enum height_map_format format, const struct grid *grid,
+                     const double *z, struct error *err) {
+    return write_from(file, format, grid, HERE, z, err);
+}
+
 int height_map_save(const char *path, enum height_map_format format, const struct grid *grid,
                     const double *z, struct error *err) {
+    return height_map_save_from(path, format, grid, HERE, z, err);
+}
+
+int height_map_save_from(const char *path, enum height_map_format format, const struct grid *grid,
+                         const double origin[2], const double *z, struct error *err) {
     struct written_file file;
     int status = written_file_open(&file, path, err);
     if (status != 0)
         return status;
-    status = height_map_write(file.stream, format, grid, z, err);
+    status = write_from(file.stream, format, grid, origin, z, err);
     if (status != 0)
         error_context(err, "%s", path);
     return written_file_close(&file, status, err);

@@ -31,5 +31,8 @@ int height_map_write(FILE *file, enum height_map_format format, const struct gri
  * begin with the path or name it. */
 int height_map_save(const char *path, enum height_map_format format, const struct grid *grid,
                     const double *z, struct error *err);
+/* The same of values whose first point is at origin, x and y, which xyz alone says. */
+int height_map_save_from(const char *path, enum height_map_format format, const struct grid *grid,
+                         const double origin[2], const double *z, struct error *err);
 
 #endif

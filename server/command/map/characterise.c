@@ -223,20 +223,15 @@ static void value_unit(const struct height_map *map, bool spectral, char out[PLA
         snprintf(out, PLANE_UNIT, "%s^2 %s%s", z, xy, power == 2 ? "^2" : "");
 }
 
-/* Prepares values and labels for a picture, in which 0 is in the middle. A picture of pixels has no
- * units. */
+/* Prepares values and labels for a picture. A picture of pixels has no units. */
 static void plane_show(const struct plane_file *file, const struct height_map *map,
                        struct map_plane *plane, char units[2][PLANE_UNIT],
                        struct map_picture *labels) {
-    const struct grid *grid = &plane->grid;
-    const size_t half_x = grid->nx / 2, half_y = grid->ny / 2;
     double scale = 1;
     plane_unit(map, file->spectral, units[0]);
     value_unit(map, file->spectral, units[1]);
     labels->xy_unit = units[0];
     labels->z_unit = units[1];
-    labels->x0 = -(double)half_x * grid_dx(grid);
-    labels->y0 = -(double)half_y * grid_dy(grid);
     if (!file->spectral)
         return;
     const bool metres = length_unit_is_metre(map->z_unit) && length_unit_is_metre(map->xy_unit);
@@ -255,6 +250,10 @@ static int write_plane(const struct plane_file *file, const struct height_map *m
     struct map_picture labels = file->labels;
     char units[2][PLANE_UNIT];
     int status = file->make(&plane, measured, err);
+    if (status == 0) { /* 0 is in the middle */
+        labels.x0 = -(double)(plane.grid.nx / 2) * grid_dx(&plane.grid);
+        labels.y0 = -(double)(plane.grid.ny / 2) * grid_dy(&plane.grid);
+    }
     if (status == 0 && map_output_is_picture(file->path))
         plane_show(file, map, &plane, units, &labels);
     if (status == 0)

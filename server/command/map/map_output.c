@@ -28,6 +28,6 @@ int map_output_write(const char *path, const struct map_picture *labels, const s
         picture.unmarked = true;
         return output_file_picture(path, &picture, err);
     }
-    return height_map_save(path, format == HEIGHT_MAP_FORMATS ? HEIGHT_MAP_NPY : format, grid,
-                           values, err);
+    return height_map_save_from(path, format == HEIGHT_MAP_FORMATS ? HEIGHT_MAP_NPY : format, grid,
+                                (const double[]){labels->x0, labels->y0}, values, err);
 }

@@ -10,7 +10,8 @@
 int map_output_check(const char *path, struct error *err);
 /* Returns whether a file of this name is a picture. */
 bool map_output_is_picture(const char *path);
-/* Writes the values; a picture has the labels of the picture, whose grid and z are left out. */
+/* Writes the values; a picture has the labels, whose grid and z are left out, and xyz their x0 and
+ * y0. */
 int map_output_write(const char *path, const struct map_picture *labels, const struct grid *grid,
                      const double *values, struct error *err);
 
