@@ -250,9 +250,10 @@ static int write_plane(const struct plane_file *file, const struct height_map *m
     struct map_picture labels = file->labels;
     char units[2][PLANE_UNIT];
     int status = file->make(&plane, measured, err);
-    if (status == 0) { /* 0 is in the middle */
-        labels.x0 = -(double)(plane.grid.nx / 2) * grid_dx(&plane.grid);
-        labels.y0 = -(double)(plane.grid.ny / 2) * grid_dy(&plane.grid);
+    const size_t half_x = plane.grid.nx / 2, half_y = plane.grid.ny / 2; /* 0 is in the middle */
+    if (status == 0) {
+        labels.x0 = -(double)half_x * grid_dx(&plane.grid);
+        labels.y0 = -(double)half_y * grid_dy(&plane.grid);
     }
     if (status == 0 && map_output_is_picture(file->path))
         plane_show(file, map, &plane, units, &labels);

@@ -694,10 +694,11 @@ static void planes_have_units(void **state) {
     assert_true(contains("bare.svg", ">tx<"));
     assert_true(contains("bare.svg", ">R<"));
     /* In xyz 0 is in the middle, too: there an autocorrelation is largest. */
-    assert_int_equal(run_shell("$RUGO characterise plane.csv --boundary open --dx 0.1um --z-unit nm "
-                               "--acf acf.xyz >/dev/null && sort -g -k3 acf.xyz | tail -n 1 | grep "
-                               "-q '^0 0 ' && head -n 1 acf.xyz | grep -q '^-.* -'"),
-                     0);
+    assert_int_equal(
+        run_shell("$RUGO characterise plane.csv --boundary open --dx 0.1um --z-unit nm "
+                  "--acf acf.xyz >/dev/null && sort -g -k3 acf.xyz | tail -n 1 | grep "
+                  "-q '^0 0 ' && head -n 1 acf.xyz | grep -q '^-.* -'"),
+        0);
 }
 
 int main(void) {
