@@ -325,6 +325,32 @@ static void wide_rows(void **state) {
     height_map_clear(&map);
 }
 
+/* Only the beginning of a text, 16384 bytes, shows what it is. Wherever that ends in a row, as
+ * behind 1.00e- too, the header counts, and so do decimal commas. */
+static void long_rows_are_recognised(void **state) {
+    (void)state;
+    enum { COLUMNS = 3000, PAD_MOST = 9, ROW = 9 * COLUMNS };
+    static char text[3 * ROW + 100];
+    static const char *const NUMBERS[2] = {"1.00e-01,", "1,00e-01;"};
+    for (size_t comma = 0; comma < 2; comma++)
+        for (size_t pad = 0; pad < PAD_MOST; pad++) {
+            const char *head = comma ? "" : "# dx: 0.5 um\n# z unit: um\n";
+            int used = snprintf(text, sizeof text, "%s%*s", head, (int)pad, "");
+            for (size_t number = 0; number < 3 * (size_t)COLUMNS; number++) {
+                memcpy(text + used, NUMBERS[comma], 9);
+                used += 9;
+                text[used - 1] = number % COLUMNS == COLUMNS - 1 ? '\n' : text[used - 1];
+            }
+            text[used] = '\0';
+            struct height_map map = bytes_map(bytes_of_text(text), "long.csv", NULL);
+            assert_true(map.grid.nx == COLUMNS && map.grid.ny == 3);
+            assert_string_equal(map.z_unit, comma ? "" : "m");
+            assert_true(fabs(grid_dx(&map.grid) / (comma ? 1 : 5e-7) - 1) <= 1e-12);
+            assert_true(fabs(map.z[ROW / 3 - 1] / (comma ? 0.1 : 1e-7) - 1) <= 1e-12);
+            height_map_clear(&map);
+        }
+}
+
 /* A file without a mark or an ending that is known is read as text; one of bytes is refused with
  * the endings that there are. */
 static void unknown_formats_are_named(void **state) {
@@ -392,6 +418,7 @@ int main(void) {
         cmocka_unit_test(refused),
         cmocka_unit_test(damaged_zygo),
         cmocka_unit_test(wide_rows),
+        cmocka_unit_test(long_rows_are_recognised),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
