@@ -12,6 +12,9 @@ struct height_map {
      * then; "" where it has none; otherwise the file's unit, for layers that hold no heights
      * ("V"). */
     char xy_unit[16], z_unit[16];
+    /* z of a number of 1 in a text whose header has a unit or a scale of heights and no mark of
+     * missing points; 0 elsewhere. */
+    double z_of_one;
 };
 void height_map_clear(struct height_map *map);
 

@@ -110,7 +110,8 @@ static int text_table_read(struct text_table *out, const struct text_block *bloc
     return status;
 }
 
-/* Scales heights in place by the header's scale and unit, and sets map->z_unit. */
+/* Scales heights in place by the header's scale and unit, and sets map->z_unit and
+ * map->z_of_one. */
 static int text_scale_heights(struct height_map *map, const struct text_header *header,
                               struct error *err) {
     const struct text_quantity *scale = &header->numbers[TEXT_Z_SCALE];
@@ -119,6 +120,8 @@ static int text_scale_heights(struct height_map *map, const struct text_header *
     /* The unit of a scale is that of the product: "height conversion factor (-> m)". */
     unit_keep(map->z_unit, scale->there && scale->unit[0] != '\0' ? scale->unit : header->z_unit,
               &metres);
+    if (!empty->there && (*map->z_unit != '\0' || scale->there))
+        map->z_of_one = factor * metres;
     for (size_t point = 0; point < grid_points(&map->grid); point++) {
         bool hole = empty->there && map->z[point] == empty->value;
         map->z[point] = hole ? NAN : map->z[point] * factor * metres;

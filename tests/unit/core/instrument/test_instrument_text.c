@@ -105,6 +105,30 @@ static void matrices(void **state) {
         check_layout(&layouts[l]);
 }
 
+/* What a number of 1 is in metres goes with the heights, so that marks are known by their numbers;
+ * where a header names the mark, or has nothing of heights, there is nothing to look for. */
+static void numbers_of_the_file_are_known(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        double of_one;
+    } FILES[] = {
+        {"dx: 1 mm\nz unit: um\n1 2 3\n4 5 -9999\n", 1e-6},
+        {"h=2 w=3\nheight conversion factor (-> m)=2e-009\n1 2 3\n4 5 -9999\n", 2e-9},
+        {"x [mm];z [nm]\n0;1\n1;2\n2;-9999\n3;5\n", 1e-9},
+        {"x [mm];y [mm];z [nm]\n0;0;1\n1;0;2\n0;1;-9999\n1;1;5\n", 1e-9},
+        {"dx: 1 mm\nz unit: V\n1 2 3\n4 5 -9999\n", 1},
+        {"dx: 1 mm\nno data value: -9999\nz unit: um\n1 2 3\n4 5 -9999\n", 0},
+        {"dx: 1 mm\n1 2 3\n4 5 -9999\n", 0},
+    };
+    for (size_t f = 0; f < sizeof FILES / sizeof *FILES; f++) {
+        struct height_map map = bytes_map(bytes_of_text(FILES[f].text), "a.txt", NULL);
+        if (!(fabs(map.z_of_one - FILES[f].of_one) <= 1e-15 * FILES[f].of_one))
+            fail_msg("%s: %g", FILES[f].text, map.z_of_one);
+        height_map_clear(&map);
+    }
+}
+
 /* Texts of all formats in UTF-16, of either order, as some instruments and spreadsheets write them:
  * as in UTF-8. Latin-1 is UTF-16 with zeros. */
 static void sixteen_bits(void **state) {
@@ -410,6 +434,7 @@ int main(void) {
         cmocka_unit_test(other_formats_are_told_apart),
         cmocka_unit_test(matrices),
         cmocka_unit_test(sixteen_bits),
+        cmocka_unit_test(numbers_of_the_file_are_known),
         cmocka_unit_test(blocks),
         cmocka_unit_test(points),
         cmocka_unit_test(profile_of_points),
