@@ -105,6 +105,38 @@ static void matrices(void **state) {
         check_layout(&layouts[l]);
 }
 
+/* Of SPIP's text a unit of heights counts where there is one, as Gwyddion writes and reads it, and
+ * the nanometres of Bit2nm elsewhere. */
+static void units_beside_a_scale(void **state) {
+    (void)state;
+    static const struct {
+        const char *unit, *kept;
+        double metres;
+    } CASES[] = {{"", "m", 2e-9},
+                 {"# z-unit = um\n", "m", 1e-6},
+                 {"# z-unit = nm\n", "m", 1e-9},
+                 {"# z-unit = V\n", "V", 1},
+                 {"# z-unit = deg\n", "deg", 1},
+                 {"# z-unit = A\n", "A", 1}};
+    for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++)
+        for (size_t after = 0; after < 2; after++) {
+            char text[300];
+            snprintf(text, sizeof text,
+                     "# File Format = ASCII\n# x-pixels = 3\n# y-pixels = 2\n# x-length = 3000\n"
+                     "# y-length = 4000\n%s# Bit2nm = 2.0\n%s# Start of Data:\n"
+                     "1.5\t-2\tBad\n4\t5\t6.25\n",
+                     after ? "" : CASES[c].unit, after ? CASES[c].unit : "");
+            check_layout(&(struct layout){"spip.asc", text, 1e-6, 2e-6, CASES[c].metres, "m",
+                                          CASES[c].kept});
+        }
+    struct height_map map =
+        bytes_map(bytes_of_text("# Channel: A\n# Bit2nm: 1\n# z-unit: V\n1 2\n3 4\n\n"
+                                "# Channel: B\n# Bit2nm: 1\n# z-unit: um\n5 6\n7 8\n"),
+                  "a.txt", NULL);
+    assert_true(fabs(map.z[0] - 5e-6) <= 1e-18); /* the first with heights */
+    height_map_clear(&map);
+}
+
 /* What a number of 1 is in metres goes with the heights, so that marks are known by their numbers;
  * where a header names the mark, or has nothing of heights, there is nothing to look for. */
 static void numbers_of_the_file_are_known(void **state) {
@@ -434,6 +466,7 @@ int main(void) {
         cmocka_unit_test(other_formats_are_told_apart),
         cmocka_unit_test(matrices),
         cmocka_unit_test(sixteen_bits),
+        cmocka_unit_test(units_beside_a_scale),
         cmocka_unit_test(numbers_of_the_file_are_known),
         cmocka_unit_test(blocks),
         cmocka_unit_test(points),
