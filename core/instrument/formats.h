@@ -21,11 +21,11 @@ struct instrument_request {
 
 /* A reader takes the bytes of a file, data[size] being 0, and fills *out, which the caller then
  * owns. Lengths are in metres where the file has their units (height_map.h). z is in rows of rising
- * y, as in the file, NaN where the file has no height. ERROR_INPUT names the fault, its value and
- * what is allowed, and for an absent layer those present; ERROR_MEMORY. *out is untouched on
- * failure. Memory is bounded by a small multiple of the bytes of the file. For a compressed file
- * the bounds are that of height_map_shape and the size that the file states, which is checked while
- * it is unpacked. */
+ * y: as in the file, or reversed where its format has y fall. NaN: the file has no height.
+ * ERROR_INPUT names the fault, its value and what is allowed, and for an absent layer those
+ * present; ERROR_MEMORY. *out is untouched on failure. Memory is bounded by a small multiple of the
+ * bytes of the file. For a compressed file the bounds are that of height_map_shape and the size
+ * that the file states, which is checked while it is unpacked. */
 typedef int instrument_reader(struct height_map *out, const char *data, size_t size,
                               const struct instrument_request *request, struct error *err);
 

@@ -1,6 +1,6 @@
 /* Gwyddion's own format, GWY: the channels of a file by number or title, a channel's mask as its
- * holes. Graphs, spectra, volumes and point clouds are not read, but counted in the message about
- * an absent layer. */
+ * holes. Rows stand from the top of the picture down, and are reversed. Graphs, spectra, volumes
+ * and point clouds are not read, but counted in the message about an absent layer. */
 #include "core/error.h"
 #include "core/instrument/formats.h"
 #include "core/instrument/layers.h"
@@ -465,9 +465,11 @@ static int read_channel(struct height_map *map, const struct channel *channel, s
     if (map->z == NULL)
         return error_memory(err, grid_points(&map->grid) * sizeof *map->z, "a height map");
     status = fill_heights(map->z, &field, err);
-    return status == 0 && channel->mask.at != NULL
-               ? apply_mask(map->z, &map->grid, channel->mask, err)
-               : status;
+    if (status == 0 && channel->mask.at != NULL)
+        status = apply_mask(map->z, &map->grid, channel->mask, err);
+    if (status == 0)
+        height_map_reverse_rows(map);
+    return status;
 }
 
 static int read_file(struct gwy_file *file, struct height_map *map, const char *data, size_t size,
