@@ -193,6 +193,38 @@ static void sixteen_bits(void **state) {
         }
 }
 
+/* Lines that end with CR alone are lines, in texts of all formats, with a mark or none. */
+static void lines_end_with_cr(void **state) {
+    (void)state;
+    static const struct {
+        const char *name, *text;
+        double dx;
+    } FILES[] = {
+        {"plain.csv", "1,2,3\r4,5,6\r", 1},
+        {"plain.txt", "1 2 3\r4 5 6", 1},
+        {"marked.csv",
+         "\xef\xbb\xbf"
+         "1,2,3\r4,5,6\r",
+         1},
+        {"header.txt", "Width: 3 um\r1 2 3\r4 5 6\r", 1e-6},
+        {"plain.xyz", "0 0 1\r2 0 2\r4 0 3\r0 2 4\r2 2 5\r4 2 6\r", 2},
+        {"esri.asc", "ncols 3\rnrows 2\rcellsize 0.5\r4 5 6\r1 2 3\r", 0.5},
+    };
+    for (size_t f = 0; f < sizeof FILES / sizeof *FILES; f++) {
+        struct height_map map = bytes_map(bytes_of_text(FILES[f].text), FILES[f].name, NULL);
+        assert_true(map.grid.nx == 3 && map.grid.ny == 2);
+        assert_true(fabs(grid_dx(&map.grid) / FILES[f].dx - 1) <= 1e-12);
+        for (size_t p = 0; p < 6; p++)
+            assert_true(map.z[p] == (double)p + 1);
+        height_map_clear(&map);
+    }
+    static const char WIDE[] = "\xff\xfe"
+                               "1\0,\0002\0\r\0003\0,\0004\0\r";
+    struct height_map map = bytes_map(bytes_of(WIDE, sizeof WIDE), "wide.csv", NULL);
+    assert_true(map.grid.nx == 2 && map.grid.ny == 2 && map.z[3] == 4);
+    height_map_clear(&map);
+}
+
 /* Several layers, a block each: by title and by number. */
 static void blocks(void **state) {
     (void)state;
@@ -466,6 +498,7 @@ int main(void) {
         cmocka_unit_test(other_formats_are_told_apart),
         cmocka_unit_test(matrices),
         cmocka_unit_test(sixteen_bits),
+        cmocka_unit_test(lines_end_with_cr),
         cmocka_unit_test(units_beside_a_scale),
         cmocka_unit_test(numbers_of_the_file_are_known),
         cmocka_unit_test(blocks),
