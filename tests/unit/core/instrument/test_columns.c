@@ -94,6 +94,42 @@ static void doubt_is_asked_back(void **state) {
     expect_refusal("0 nan\n1 2\n2.7 nan\n3 nan\n", COLUMNS_XZ, "1 of 4 positions have heights");
 }
 
+/* What pandas writes, with and without its index: numbers of rows and columns are no heights. A row
+ * or column of heights that happens to be such is a slope, and those beside it are, too. */
+static void numbered_rows_and_columns_are_refused(void **state) {
+    (void)state;
+    static const char WITH_INDEX[] =
+        ",0,1,2\n0,1e-7,3e-7,2e-7\n1,4e-7,1e-7,5e-7\n2,9e-7,2e-7,6e-7\n";
+    static const char WITHOUT[] = "0,1,2,3\n1e-7,3e-7,2e-7,4e-7\n4e-7,1e-7,5e-7,2e-7\n";
+    expect_refusal(
+        WITH_INDEX, COLUMNS_AUTO,
+        "the first row of the numbers, 0 to 2, numbers the columns, and the first column "
+        "the rows; allowed: heights alone");
+    expect_refusal(WITHOUT, COLUMNS_AUTO, "row of the numbers, 0 to 3, numbers the columns;");
+    expect_refusal("1;2;3;4\n1,5;3;2;4\n4;1;5;2,5\n", COLUMNS_AUTO, "1 to 4, numbers the columns");
+    /* Columns of positions, rows of numbers; a tilt of small heights; a column of a table. */
+    expect_refusal(",0.0,0.5,1.0\n0,3,1,2\n1,1,2,1\n2,5,1,3\n", COLUMNS_AUTO,
+                   "the first column of the numbers, 0 to 2, numbers the rows;");
+    expect_refusal("0,1,2,3\n1e-7,2e-7,3e-7,4e-7\n4e-7,5e-7,6e-7,7e-7\n", COLUMNS_AUTO, "0 to 3");
+    expect_refusal(",0\n0,0.5\n1,0.3\n2,0.4\n", COLUMNS_AUTO, "column of the numbers, 0 to 2");
+    /* The option decides; heights stay heights. */
+    const char *const heights[] = {"0 1 2 3\n1 2 3 4\n2 3 4 5\n",
+                                   "0 1 2 3\n0 1 2 3\n0 1 2 3\n",
+                                   "0 1 2 4\n3 1 2 3\n1 1 2 2\n",
+                                   "0 1 2 3\n5 1 2 3\n",
+                                   "nan 1 2 3\n1 2 3 4\n2 3 4 5\n3 4 5 6\n",
+                                   "2 3 4 5\n3 1 4 1\n1 2 2 1\n"};
+    for (size_t h = 0; h < sizeof heights / sizeof *heights; h++) {
+        struct reading reading = read_as("a.csv", heights[h], COLUMNS_AUTO);
+        if (reading.status != 0 || reading.map.grid.nx != 4)
+            fail_msg("%s: %s", heights[h], reading.err.text);
+        height_map_clear(&reading.map);
+    }
+    struct reading reading = read_as("a.csv", WITHOUT, COLUMNS_MAP);
+    assert_true(reading.status == 0 && reading.map.grid.ny == 3 && reading.map.z[1] == 1);
+    height_map_clear(&reading.map);
+}
+
 /* A format that names its own shape leaves the option nothing to decide. */
 static void other_formats_refuse(void **state) {
     (void)state;
@@ -285,6 +321,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(columns_are_chosen),
         cmocka_unit_test(doubt_is_asked_back),
+        cmocka_unit_test(numbered_rows_and_columns_are_refused),
         cmocka_unit_test(other_formats_refuse),
         cmocka_unit_test(even_positions_keep_heights),
         cmocka_unit_test(missing_positions_are_holes),
