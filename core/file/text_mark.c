@@ -61,19 +61,25 @@ static bool has_old_ends(const char *text, size_t size) {
            memchr(text, 0, size) == NULL;
 }
 
+int unmarked_text_own(struct unmarked_text *text, struct error *err) {
+    if (text->owned != NULL)
+        return 0;
+    char *copy = malloc(text->size + 1);
+    if (copy == NULL)
+        return error_memory(err, text->size + 1, "a text");
+    if (text->size > 0)
+        memcpy(copy, text->text, text->size);
+    copy[text->size] = '\0';
+    *text = (struct unmarked_text){copy, text->size, copy};
+    return 0;
+}
+
 /* Ends lines with LF in place of CR. */
 static int end_lines(struct unmarked_text *text, struct error *err) {
-    if (text->owned == NULL) {
-        char *copy = malloc(text->size + 1);
-        if (copy == NULL)
-            return error_memory(err, text->size + 1, "a text");
-        memcpy(copy, text->text, text->size);
-        copy[text->size] = '\0';
-        *text = (struct unmarked_text){copy, text->size, copy};
-    }
-    for (size_t c = 0; c < text->size; c++)
+    int status = unmarked_text_own(text, err);
+    for (size_t c = 0; status == 0 && c < text->size; c++)
         text->owned[c] = (char)(text->owned[c] == '\r' ? '\n' : text->owned[c]);
-    return 0;
+    return status;
 }
 
 int text_unmark(struct unmarked_text *out, const char *data, size_t size, struct error *err) {

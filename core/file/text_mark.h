@@ -25,6 +25,8 @@ struct unmarked_text {
  * which the first Macintosh ended lines and some programs still do, becomes one. ERROR_MEMORY; *out
  * is then untouched. */
 int text_unmark(struct unmarked_text *out, const char *data, size_t size, struct error *err);
+/* Makes its bytes owned, so that they can be changed. ERROR_MEMORY; it is then untouched. */
+int unmarked_text_own(struct unmarked_text *text, struct error *err);
 void unmarked_text_clear(struct unmarked_text *text);
 
 #endif

@@ -130,6 +130,69 @@ static void numbered_rows_and_columns_are_refused(void **state) {
     height_map_clear(&reading.map);
 }
 
+/* Rows of N heights, as "%.3f" with a decimal comma or another format, behind a header. */
+static const char *comma_column(const char *header, const char *format, int n) {
+    static char text[2000];
+    size_t used = (size_t)snprintf(text, sizeof text, "%s", header);
+    for (int i = 0; i < n; i++) {
+        char number[32];
+        snprintf(number, sizeof number, format, 3 * sin(1.7 * i) + 0.05 * (i % 2));
+        char *point = strchr(number, '.');
+        *(point != NULL ? point : number) = ',';
+        used += (size_t)snprintf(text + used, sizeof text - used, "%s\r\n", number);
+    }
+    return text;
+}
+
+/* One column with decimal commas is one, where leading zeros show it, and asked about where not. */
+static void decimal_commas_make_one_column(void **state) {
+    (void)state;
+    static const char *const HEADERS[] = {"", "# dx: 0.5 um\n# z unit: um\n", "# a profile\n\n"};
+    for (size_t h = 0; h < 3; h++) {
+        const double metres = h == 1 ? 1e-6 : 1;
+        struct reading reading =
+            read_as("a.csv", comma_column(HEADERS[h], "%.3f", 40), COLUMNS_AUTO);
+        if (reading.status != 0 || reading.map.grid.nx != 40 || reading.map.grid.ny != 1)
+            fail_msg("%zu: %zu x %zu, %s", h, reading.map.grid.nx, reading.map.grid.ny,
+                     reading.err.text);
+        assert_string_equal(reading.done, "z, 40 rows with decimal commas");
+        assert_true(fabs(grid_dx(&reading.map.grid) / (h == 1 ? 5e-7 : 1) - 1) <= 1e-12);
+        for (int i = 0; i < 40; i++) /* a printed height is off by half of its last digit */
+            assert_true(fabs(reading.map.z[i] / metres - 3 * sin(1.7 * i) - 0.05 * (i % 2)) <=
+                        0.0005001);
+        height_map_clear(&reading.map);
+    }
+    /* One digit behind each comma, which has no leading zero, of positive numbers. */
+    static const char OPEN[] = "1,5\n2,1\n1,7\n3,4\n2,2\n1,9\n2,0\n1,1\n";
+    expect_refusal(OPEN, COLUMNS_AUTO,
+                   "8 rows of digits, a comma and digits are either one height");
+    expect_refusal("1,05\n2,1\n1,7\n3,4\n2,2\n1,9\n2,0\n1,1\n", COLUMNS_AUTO,
+                   "points in place of the commas, or --columns xz or --columns map");
+    struct reading reading = read_as("a.csv", OPEN, COLUMNS_MAP);
+    assert_true(reading.status == 0 && reading.map.grid.nx == 2 && reading.map.grid.ny == 8);
+    height_map_clear(&reading.map);
+    /* Two numbers: fewer rows, positions that rise evenly, other forms, columns that are named. */
+    static const struct {
+        const char *text;
+        size_t nx, ny;
+    } TWO[] = {
+        {"1,05\n2,01\n1,07\n3,04\n2,02\n1,09\n2,00\n", 2, 7},
+        {"0,5\n1,1\n2,7\n3,4\n4,2\n5,9\n6,0\n7,1\n", 8, 1},
+        {"1,05\n2,01\n1,07\n3,04\n2,02\n1,09\n2,00\n1,-1\n", 2, 8},
+        {"1,05\n2,01\n1,07\n3,04\n2,02\n1,09\n2,00\n1,5e1\n", 2, 8},
+        {"1,05\n2,01\n1,07\n3,04\n2,02\n1,09\n2,00\n1.0,5\n", 2, 8},
+        {"x,z\n0,05\n1,01\n2,07\n3,04\n4,02\n5,09\n6,00\n7,01\n", 8, 1},
+    };
+    for (size_t t = 0; t < sizeof TWO / sizeof *TWO; t++) {
+        reading = read_as("a.csv", TWO[t].text, COLUMNS_AUTO);
+        if (reading.status != 0 || reading.map.grid.nx != TWO[t].nx ||
+            reading.map.grid.ny != TWO[t].ny)
+            fail_msg("%s: %zu x %zu, %s", TWO[t].text, reading.map.grid.nx, reading.map.grid.ny,
+                     reading.err.text);
+        height_map_clear(&reading.map);
+    }
+}
+
 /* A format that names its own shape leaves the option nothing to decide. */
 static void other_formats_refuse(void **state) {
     (void)state;
@@ -322,6 +385,7 @@ int main(void) {
         cmocka_unit_test(columns_are_chosen),
         cmocka_unit_test(doubt_is_asked_back),
         cmocka_unit_test(numbered_rows_and_columns_are_refused),
+        cmocka_unit_test(decimal_commas_make_one_column),
         cmocka_unit_test(other_formats_refuse),
         cmocka_unit_test(even_positions_keep_heights),
         cmocka_unit_test(missing_positions_are_holes),
