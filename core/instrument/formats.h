@@ -8,7 +8,7 @@
 /* What plain columns of a text are; in the order of INSTRUMENT_COLUMNS. */
 enum instrument_columns { COLUMNS_AUTO, COLUMNS_XZ, COLUMNS_XYZ, COLUMNS_MAP };
 #define INSTRUMENT_COLUMNS "auto|xz|xyz|map"
-enum { INSTRUMENT_DONE = 160 };
+enum { INSTRUMENT_DONE = 160, INSTRUMENT_LAYER = 120 };
 
 /* The caller's request. */
 struct instrument_request {
@@ -17,6 +17,8 @@ struct instrument_request {
     enum instrument_columns columns;
     char *done; /* borrowed, NULL or INSTRUMENT_DONE bytes: gets what was made of plain columns, ""
                    where they are a map */
+    char *layer_read; /* borrowed, NULL or INSTRUMENT_LAYER bytes: gets which of several layers was
+                         read, "1 'Amplitude' of 2"; "" where the file has one */
 };
 
 /* A reader takes the bytes of a file, data[size] being 0, and fills *out, which the caller then

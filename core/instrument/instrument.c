@@ -145,6 +145,8 @@ static int read_unmarked(struct height_map *out, const char *name, const char *d
         return status;
     if (request->done != NULL)
         *request->done = '\0';
+    if (request->layer_read != NULL)
+        *request->layer_read = '\0';
     status = foreign != NULL ? foreign->read(out, data, size, request, err)
                              : read_plain(out, own, data, size, dx, request, err);
     if (status != 0)

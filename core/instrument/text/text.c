@@ -279,8 +279,8 @@ static int text_trace_map(struct height_map *map, const struct text_table *table
     return text_scale_heights(map, &block->header, err);
 }
 
-static int choose_block(const struct text_blocks *blocks, const char *asked, size_t *out,
-                        struct error *err) {
+static int choose_block(const struct text_blocks *blocks, const struct instrument_request *request,
+                        size_t *out, struct error *err) {
     struct layer *layers = array_create(blocks->count, sizeof *layers);
     if (layers == NULL)
         return error_memory(err, blocks->count * sizeof *layers, "the blocks of a text");
@@ -289,7 +289,8 @@ static int choose_block(const struct text_blocks *blocks, const char *asked, siz
         layers[b] = (struct layer){*header->title != '\0' ? header->title : NULL,
                                    unit_for(&header->numbers[TEXT_Z_SCALE], header->z_unit)};
     }
-    int status = layer_choose(layers, blocks->count, asked, "", out, err);
+    int status =
+        layer_choose(layers, blocks->count, request->layer, "", out, request->layer_read, err);
     free(layers);
     return status;
 }
@@ -359,7 +360,7 @@ static int read_text(struct height_map *out, const char *data, size_t size, bool
     if (status == 0)
         status = text_blocks_find(&blocks, data, size, err);
     if (status == 0)
-        status = choose_block(&blocks, request->layer, &chosen, err);
+        status = choose_block(&blocks, request, &chosen, err);
     if (status == 0)
         status = read_block(&map, &blocks.blocks[chosen], data + size, points, request, err);
     text_blocks_clear(&blocks);

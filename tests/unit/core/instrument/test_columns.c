@@ -14,7 +14,7 @@ struct reading {
 static struct reading read_as(const char *name, const char *text, enum instrument_columns columns) {
     struct reading reading = {.status = 0};
     struct bytes bytes = bytes_of_text(text);
-    const struct instrument_request request = {NULL, columns, reading.done};
+    const struct instrument_request request = {.columns = columns, .done = reading.done};
     reading.status = instrument_read(&reading.map, name, bytes.data, bytes.size, 0, &request, NULL,
                                      &reading.err);
     free(bytes.data);

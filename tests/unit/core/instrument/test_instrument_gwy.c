@@ -23,6 +23,14 @@ static void heights(void **state) {
     }
 }
 
+/* Of several channels the one that was read is named; one alone is not. */
+static void the_channel_is_named(void **state) {
+    (void)state;
+    expect_layer(bytes_of_fixture(NAME), NULL, "2 'Topography' of 2");
+    expect_layer(bytes_of_fixture(NAME), "1", "1 'Phase' of 2");
+    expect_layer(bytes_of_fixture("gwyddion.sdf"), NULL, "");
+}
+
 /* By its first bytes, whatever its name. */
 static void other_name(void **state) {
     (void)state;
@@ -189,7 +197,7 @@ int main(void) {
         cmocka_unit_test(heights),       cmocka_unit_test(other_name),
         cmocka_unit_test(other_channel), cmocka_unit_test(absent_channel),
         cmocka_unit_test(cut_off),       cmocka_unit_test(damaged),
-        cmocka_unit_test(by_hand),
+        cmocka_unit_test(by_hand),       cmocka_unit_test(the_channel_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

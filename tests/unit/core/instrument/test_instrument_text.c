@@ -242,6 +242,14 @@ static void blocks(void **state) {
     assert_string_equal(map.z_unit, "deg");
     assert_true(map.z[3] == 4);
     height_map_clear(&map);
+    expect_layer(bytes_of_text(text), NULL, "2 'Height' of 2");
+    expect_layer(bytes_of_text(text), "Phase", "1 'Phase' of 2");
+    expect_layer(bytes_of_text("Width: 2 um\n1 2\n3 4\n\nWidth: 2 um\n5 6\n7 8\n"), "2", "2 of 2");
+    expect_layer(bytes_of_text("# Channel: A\nWidth: 2 um\n1 2\n3 4\n"), NULL, "");
+    /* A title is shown, whatever its bytes. */
+    expect_layer(bytes_of_text("# Channel: A\x1b[2J\xe9\nWidth: 2 um\n1 2\n3 4\n"
+                               "# Channel: B\nWidth: 2 um\n1 2\n3 4\n"),
+                 NULL, "1 'A?[2J?' of 2");
 }
 
 /* Points in any order, some of them missing, with units in the names of columns, behind them, or in
