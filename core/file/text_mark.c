@@ -55,13 +55,50 @@ static int decode_utf16(struct unmarked_text *out, const char *data, size_t size
     return 0;
 }
 
-int text_unmark(struct unmarked_text *out, const char *data, size_t size, struct error *err) {
-    bool low_first;
-    if (text_mark_is_utf16(data, size, &low_first))
-        return decode_utf16(out, data, size, low_first, err);
-    const size_t mark = text_mark_length(data, size);
-    *out = (struct unmarked_text){data + mark, size - mark, NULL};
+/* Returns whether bytes are a text whose lines end with CR alone. */
+static bool has_old_ends(const char *text, size_t size) {
+    return size > 0 && memchr(text, '\n', size) == NULL && memchr(text, '\r', size) != NULL &&
+           memchr(text, 0, size) == NULL;
+}
+
+int unmarked_text_own(struct unmarked_text *text, struct error *err) {
+    if (text->owned != NULL)
+        return 0;
+    char *copy = malloc(text->size + 1);
+    if (copy == NULL)
+        return error_memory(err, text->size + 1, "a text");
+    if (text->size > 0)
+        memcpy(copy, text->text, text->size);
+    copy[text->size] = '\0';
+    *text = (struct unmarked_text){copy, text->size, copy};
     return 0;
+}
+
+/* Ends lines with LF in place of CR. */
+static int end_lines(struct unmarked_text *text, struct error *err) {
+    int status = unmarked_text_own(text, err);
+    for (size_t c = 0; status == 0 && c < text->size; c++)
+        text->owned[c] = (char)(text->owned[c] == '\r' ? '\n' : text->owned[c]);
+    return status;
+}
+
+int text_unmark(struct unmarked_text *out, const char *data, size_t size, struct error *err) {
+    struct unmarked_text text = {0};
+    bool low_first;
+    int status = 0;
+    if (text_mark_is_utf16(data, size, &low_first)) {
+        status = decode_utf16(&text, data, size, low_first, err);
+    } else {
+        const size_t mark = text_mark_length(data, size);
+        text = (struct unmarked_text){data + mark, size - mark, NULL};
+    }
+    if (status == 0 && has_old_ends(text.text, text.size))
+        status = end_lines(&text, err);
+    if (status == 0)
+        *out = text;
+    else
+        unmarked_text_clear(&text);
+    return status;
 }
 
 void unmarked_text_clear(struct unmarked_text *text) {

@@ -13,7 +13,7 @@ size_t text_mark_length(const char *text, size_t size);
  * first; may be NULL. */
 bool text_mark_is_utf16(const char *text, size_t size, bool *low_first);
 
-/* Bytes without the mark that they began with. */
+/* Bytes without the mark that they began with, and with LF at the ends of lines. */
 struct unmarked_text {
     const char *text; /* borrowed from the bytes, or owned; text[size] is 0 where data[size] is */
     size_t size;
@@ -21,9 +21,12 @@ struct unmarked_text {
 };
 
 /* Removes the mark of UTF-8, and converts UTF-16 with a mark to UTF-8; what has no mark stays as it
- * is. Surrogates, which no file of numbers needs, become '?'. ERROR_MEMORY; *out is then untouched.
- */
+ * is. Surrogates, which no file of numbers needs, become '?'. In a text without LF each CR, with
+ * which the first Macintosh ended lines and some programs still do, becomes one. ERROR_MEMORY; *out
+ * is then untouched. */
 int text_unmark(struct unmarked_text *out, const char *data, size_t size, struct error *err);
+/* Makes its bytes owned, so that they can be changed. ERROR_MEMORY; it is then untouched. */
+int unmarked_text_own(struct unmarked_text *text, struct error *err);
 void unmarked_text_clear(struct unmarked_text *text);
 
 #endif

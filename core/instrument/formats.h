@@ -8,7 +8,7 @@
 /* What plain columns of a text are; in the order of INSTRUMENT_COLUMNS. */
 enum instrument_columns { COLUMNS_AUTO, COLUMNS_XZ, COLUMNS_XYZ, COLUMNS_MAP };
 #define INSTRUMENT_COLUMNS "auto|xz|xyz|map"
-enum { INSTRUMENT_DONE = 160 };
+enum { INSTRUMENT_DONE = 160, INSTRUMENT_LAYER = 120 };
 
 /* The caller's request. */
 struct instrument_request {
@@ -17,15 +17,17 @@ struct instrument_request {
     enum instrument_columns columns;
     char *done; /* borrowed, NULL or INSTRUMENT_DONE bytes: gets what was made of plain columns, ""
                    where they are a map */
+    char *layer_read; /* borrowed, NULL or INSTRUMENT_LAYER bytes: gets which of several layers was
+                         read, "1 'Amplitude' of 2"; "" where the file has one */
 };
 
 /* A reader takes the bytes of a file, data[size] being 0, and fills *out, which the caller then
  * owns. Lengths are in metres where the file has their units (height_map.h). z is in rows of rising
- * y, as in the file, NaN where the file has no height. ERROR_INPUT names the fault, its value and
- * what is allowed, and for an absent layer those present; ERROR_MEMORY. *out is untouched on
- * failure. Memory is bounded by a small multiple of the bytes of the file. For a compressed file
- * the bounds are that of height_map_shape and the size that the file states, which is checked while
- * it is unpacked. */
+ * y: as in the file, or reversed where its format has y fall. NaN: the file has no height.
+ * ERROR_INPUT names the fault, its value and what is allowed, and for an absent layer those
+ * present; ERROR_MEMORY. *out is untouched on failure. Memory is bounded by a small multiple of the
+ * bytes of the file. For a compressed file the bounds are that of height_map_shape and the size
+ * that the file states, which is checked while it is unpacked. */
 typedef int instrument_reader(struct height_map *out, const char *data, size_t size,
                               const struct instrument_request *request, struct error *err);
 

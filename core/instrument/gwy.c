@@ -1,6 +1,6 @@
 /* Gwyddion's own format, GWY: the channels of a file by number or title, a channel's mask as its
- * holes. Graphs, spectra, volumes and point clouds are not read, but counted in the message about
- * an absent layer. */
+ * holes. Rows stand from the top of the picture down, and are reversed. Graphs, spectra, volumes
+ * and point clouds are not read, but counted in the message about an absent layer. */
 #include "core/error.h"
 #include "core/instrument/formats.h"
 #include "core/instrument/layers.h"
@@ -391,8 +391,8 @@ static int read_z_units(const struct gwy_file *file, struct layer *layers, struc
     return status;
 }
 
-static int choose_channel(const struct gwy_file *file, const char *asked, size_t *out,
-                          struct error *err) {
+static int choose_channel(const struct gwy_file *file, const struct instrument_request *request,
+                          size_t *out, struct error *err) {
     char others[100] = "";
     struct layer *layers = array_create(file->count > 0 ? file->count : 1, sizeof *layers);
     if (layers == NULL)
@@ -403,7 +403,8 @@ static int choose_channel(const struct gwy_file *file, const char *asked, size_t
                  file->spectra, file->volumes, file->clouds);
     int status = read_z_units(file, layers, err);
     if (status == 0)
-        status = layer_choose(layers, file->count, asked, others, out, err);
+        status = layer_choose(layers, file->count, request->layer, others, out, request->layer_read,
+                              err);
     free(layers);
     return status;
 }
@@ -465,13 +466,15 @@ static int read_channel(struct height_map *map, const struct channel *channel, s
     if (map->z == NULL)
         return error_memory(err, grid_points(&map->grid) * sizeof *map->z, "a height map");
     status = fill_heights(map->z, &field, err);
-    return status == 0 && channel->mask.at != NULL
-               ? apply_mask(map->z, &map->grid, channel->mask, err)
-               : status;
+    if (status == 0 && channel->mask.at != NULL)
+        status = apply_mask(map->z, &map->grid, channel->mask, err);
+    if (status == 0)
+        height_map_reverse_rows(map);
+    return status;
 }
 
 static int read_file(struct gwy_file *file, struct height_map *map, const char *data, size_t size,
-                     const char *asked, struct error *err) {
+                     const struct instrument_request *request, struct error *err) {
     struct gwy_span rest = {data, data + 4, size - 4};
     struct gwy_component root = {0};
     size_t chosen;
@@ -482,7 +485,7 @@ static int read_file(struct gwy_file *file, struct height_map *map, const char *
     if (status == 0)
         status = find_channels(file, root.value, err);
     if (status == 0)
-        status = choose_channel(file, asked, &chosen, err);
+        status = choose_channel(file, request, &chosen, err);
     if (status != 0)
         return status;
     status = read_channel(map, &file->channels[chosen], err);
@@ -499,7 +502,7 @@ static int read_gwy(struct height_map *out, const char *data, size_t size,
         return error_set(
             err, ERROR_INPUT, "this is no file of Gwyddion 2: it does not begin with %s%s", MAGIC,
             owns(data, size) ? " but with GWYO, of Gwyddion 1; save it anew there" : "");
-    int status = read_file(&file, &map, data, size, request->layer, err);
+    int status = read_file(&file, &map, data, size, request, err);
     free(file.channels);
     if (status == 0)
         *out = map;

@@ -3,6 +3,7 @@
 #include "core/instrument/foreign.h"
 #include "core/instrument/formats.h"
 #include "core/instrument/text/columns.h"
+#include "core/instrument/text/decimal_column.h"
 #include "core/map/height_map_file.h"
 #include <math.h>
 #include <stdio.h>
@@ -144,6 +145,8 @@ static int read_unmarked(struct height_map *out, const char *name, const char *d
         return status;
     if (request->done != NULL)
         *request->done = '\0';
+    if (request->layer_read != NULL)
+        *request->layer_read = '\0';
     status = foreign != NULL ? foreign->read(out, data, size, request, err)
                              : read_plain(out, own, data, size, dx, request, err);
     if (status != 0)
@@ -155,13 +158,50 @@ static int read_unmarked(struct height_map *out, const char *name, const char *d
     return 0;
 }
 
+static int ask_for_commas(size_t rows, struct error *err) {
+    return error_set(err, ERROR_INPUT,
+                     "%zu rows of digits, a comma and digits are either one height each, with a "
+                     "decimal comma, or two whole numbers; allowed: points in place of the commas, "
+                     "or --columns xz or --columns map, which take them for two (\"columns\" in "
+                     "studies and requests)",
+                     rows);
+}
+
+/* Reads a text whose rows have one comma each: one column of heights where that is sure. A map of
+ * two columns is asked about. */
+static int read_commas(struct height_map *out, const char *name, struct unmarked_text *file,
+                       double dx, const struct instrument_request *request, const char **format,
+                       struct error *err) {
+    size_t rows;
+    struct height_map map = {0};
+    enum decimal_column column = decimal_column_judge(file->text, file->size, &rows);
+    const bool may = request->columns == COLUMNS_AUTO || request->columns == COLUMNS_MAP;
+    const bool one = column == DECIMAL_YES && may;
+    int status = one ? unmarked_text_own(file, err) : 0;
+    if (status == 0 && one)
+        decimal_column_point(file->owned, file->size);
+    if (status == 0)
+        status = read_unmarked(&map, name, file->text, file->size, dx, request, format, err);
+    if (status == 0 && column == DECIMAL_OPEN && request->columns == COLUMNS_AUTO &&
+        map.grid.nx == 2 && map.grid.ny == rows)
+        status = ask_for_commas(rows, err);
+    if (status != 0) {
+        height_map_clear(&map);
+        return status;
+    }
+    if (one && request->done != NULL)
+        snprintf(request->done, INSTRUMENT_DONE, "z, %zu rows with decimal commas", rows);
+    *out = map;
+    return 0;
+}
+
 int instrument_read(struct height_map *out, const char *name, const char *data, size_t size,
                     double dx, const struct instrument_request *request, const char **format,
                     struct error *err) {
     struct unmarked_text file = {0}; /* texts of all formats may have a mark */
     int status = text_unmark(&file, data, size, err);
     if (status == 0)
-        status = read_unmarked(out, name, file.text, file.size, dx, request, format, err);
+        status = read_commas(out, name, &file, dx, request, format, err);
     unmarked_text_clear(&file);
     return status;
 }

@@ -1,4 +1,6 @@
 #include "core/instrument/layers.h"
+#include "core/file/plain_text.h"
+#include "core/instrument/formats.h"
 #include "core/instrument/unit_of.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -42,20 +44,38 @@ static bool by_position(size_t count, const char *asked, size_t *out) {
     return true;
 }
 
-int layer_choose(const struct layer *layers, size_t count, const char *asked, const char *others,
-                 size_t *out, struct error *err) {
+void layer_say(char *said, const char *title, size_t layer, size_t count) {
+    if (said == NULL)
+        return;
+    *said = '\0';
+    if (count < 2)
+        return;
+    if (title != NULL)
+        snprintf(said, INSTRUMENT_LAYER, "%zu '%.64s' of %zu", layer + 1, title, count);
+    else
+        snprintf(said, INSTRUMENT_LAYER, "%zu of %zu", layer + 1, count);
+    (void)text_make_plain(said);
+}
+
+/* Returns the first layer whose unit is a length, or else the first. */
+static size_t first_heights(const struct layer *layers, size_t count) {
     double metres;
+    for (size_t layer = 0; layer < count; layer++)
+        if (unit_is_length(layers[layer].z_unit, &metres))
+            return layer;
+    return 0;
+}
+
+int layer_choose(const struct layer *layers, size_t count, const char *asked, const char *others,
+                 size_t *out, char *said, struct error *err) {
     if (count == 0)
         return error_set(err, ERROR_INPUT, "the file holds no layer of heights%s", others);
-    if (asked == NULL) {
-        *out = 0;
-        for (size_t layer = count; layer-- > 0;)
-            if (unit_is_length(layers[layer].z_unit, &metres))
-                *out = layer;
+    if (asked == NULL)
+        *out = first_heights(layers, count);
+    if (asked == NULL || by_title(layers, count, asked, out) || by_position(count, asked, out)) {
+        layer_say(said, layers[*out].title, *out, count);
         return 0;
     }
-    if (by_title(layers, count, asked, out) || by_position(count, asked, out))
-        return 0;
     char text[300];
     list_layers(layers, count, text, sizeof text);
     return error_set(err, ERROR_INPUT,

@@ -23,6 +23,16 @@ int height_map_mirror(struct height_map *map, struct error *err) {
     return 0;
 }
 
+void height_map_reverse_rows(struct height_map *map) {
+    const size_t nx = map->grid.nx, ny = map->grid.ny;
+    for (size_t j = 0; j < ny / 2; j++)
+        for (size_t i = 0; i < nx; i++) {
+            double *low = &map->z[j * nx + i], *high = &map->z[(ny - 1 - j) * nx + i], kept = *low;
+            *low = *high;
+            *high = kept;
+        }
+}
+
 const char *height_map_unit_note(const struct height_map *map) {
     if (*map->xy_unit == '\0' && *map->z_unit == '\0')
         return "units: the file names none; --dx 0.5um and --z-unit nm (or others) say what x, y "

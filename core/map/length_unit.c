@@ -87,6 +87,13 @@ const char *length_unit_readable(double metres, double *metres_in_one) {
     return READABLE[u].name;
 }
 
+const char *length_unit_typed(double metres) {
+    for (size_t u = 0; u < UNIT_COUNT; u++)
+        if (UNITS[u].metres == metres && (unsigned char)*UNITS[u].name < 0x80)
+            return UNITS[u].name;
+    return NULL;
+}
+
 bool length_unit_is_metre(const char *unit) {
     return strcmp(unit, "m") == 0;
 }

@@ -14,6 +14,9 @@ bool length_unit_metres(const char *name, size_t size, double *metres);
  * ...); static. */
 const char *length_unit_readable(double metres, double *metres_in_one);
 
+/* Returns the unit of so many metres whose name can be typed ("um", "A"), or NULL; static. */
+const char *length_unit_typed(double metres);
+
 /* Returns whether it is the unit "m", that of maps whose unit of length is known. */
 bool length_unit_is_metre(const char *unit);
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 static void note_file(struct preparation_record *record, const struct map_source *source,
-                      const char *format, const char *done) {
+                      const char *format, const char *done, const char *layer) {
     unsigned char digest[DIGEST_SIZE];
     char digits[2 * DIGEST_SIZE + 1];
     const char *slash = strrchr(source->name, '/');
@@ -21,8 +21,8 @@ static void note_file(struct preparation_record *record, const struct map_source
     if (source->converted != NULL)
         preparation_note(record, "converted", "%s", source->converted);
     preparation_note(record, "format", "%s", format);
-    if (source->layer != NULL)
-        preparation_note(record, "layer", "%s", source->layer);
+    if (layer != NULL)
+        preparation_note(record, "layer", "%s", layer);
     if (*done != '\0')
         preparation_note(record, "columns", "%s", done);
 }
@@ -37,7 +37,8 @@ static bool has_one_layer(const char *format) {
 int map_source_read(struct height_map *out, struct preparation_record *record,
                     const struct map_source *source, struct error *err) {
     char done[INSTRUMENT_DONE] = "";
-    const struct instrument_request request = {source->layer, source->columns, done};
+    char layer_read[INSTRUMENT_LAYER] = "";
+    const struct instrument_request request = {source->layer, source->columns, done, layer_read};
     const bool other = source->content != NULL;
     const char *format = NULL, *layer = source->layer;
     int status = instrument_read(
@@ -52,7 +53,7 @@ int map_source_read(struct height_map *out, struct preparation_record *record,
                          format, layer);
     }
     if (record != NULL)
-        note_file(record, source, format, done);
+        note_file(record, source, format, done, *layer_read != '\0' ? layer_read : layer);
     return 0;
 }
 

@@ -99,6 +99,19 @@ static inline void bytes_refused(struct bytes bytes, const char *name, const cha
         fail_msg("%s: status %d, '%s', not '%s'", name, status, err.text, words);
 }
 
+/* Takes the bytes: of this layer, NULL for none, the reader must say so much. */
+static inline void expect_layer(struct bytes bytes, const char *layer, const char *said) {
+    char read[INSTRUMENT_LAYER] = "?";
+    const struct instrument_request request = {.layer = layer, .layer_read = read};
+    struct height_map map = {0};
+    struct error err = {0};
+    if (instrument_read(&map, "a.txt", bytes.data, bytes.size, 0, &request, NULL, &err) != 0)
+        fail_msg("%s", err.text);
+    assert_string_equal(read, said);
+    height_map_clear(&map);
+    free(bytes.data);
+}
+
 /* A small file cut at every byte, and with each byte changed: an error, of most of these, or a map
  * that check takes and may clear. */
 static inline void expect_damage_told(const char *name, const char *file, size_t size,

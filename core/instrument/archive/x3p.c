@@ -5,6 +5,7 @@
 #include "core/instrument/archive/x3p_points.h"
 #include "core/instrument/archive/zip_archive.h"
 #include "core/instrument/formats.h"
+#include "core/instrument/layers.h"
 #include <nettle/md5.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -106,6 +107,8 @@ static int begin_points(struct x3p *x3p, const struct x3p_fields *fields, size_t
         status = choose_layer(x3p, &layer, err);
     if (status == 0)
         status = x3p_points_create(&x3p->points, &x3p->layout, layer, err);
+    if (status == 0 && x3p->request != NULL)
+        layer_say(x3p->request->layer_read, NULL, layer, x3p->layout.layers);
     return status;
 }
 

@@ -11,9 +11,11 @@
  * printed digit, which is half of one and a little for the fit. */
 static const double EVEN = 0.05, ROUNDING = 0.55;
 enum {
-    ROWS_LEAST = 4,     /* of what can be a trace or a list */
-    ROWS_TRACE = 8,     /* heights that are not positions rise throughout in 1 of 8! cases */
-    ROWS_ROUNDED = 16,  /* of positions whose last digit is no small part of a step */
+    ROWS_LEAST = 4,    /* of what can be a trace or a list */
+    ROWS_TRACE = 8,    /* heights that are not positions rise throughout in 1 of 8! cases */
+    ROWS_ROUNDED = 16, /* of positions whose last digit is no small part of a step */
+    ROWS_NUMBERED = 3, /* with a row or column that numbers the others */
+    COLUMNS_NUMBERED = 4,
     DIGITS_MOST = 12,   /* behind the decimal mark */
     POSITIONS_LEAST = 3 /* of a trace */
 };
@@ -147,9 +149,68 @@ static int choose_of_three(enum instrument_columns *out, const struct columns_ta
     return grid ? 0 : ask_back(table, err);
 }
 
+/* --- rows and columns that are numbered --- */
+
+/* A row or column of a table. */
+struct series {
+    const double *at;
+    size_t count, stride;
+};
+
+/* Returns whether it is 0, 1, 2 ... or 1, 2, 3 ... throughout. */
+static bool is_numbering(const struct series *series) {
+    const double first = series->at[0];
+    if (first != 0 && first != 1)
+        return false;
+    for (size_t k = 1; k < series->count; k++)
+        if (series->at[k * series->stride] != first + (double)k)
+            return false;
+    return true;
+}
+
+/* Returns whether the one after a numbering rises throughout as well, by a tenth of it or more:
+ * both are then heights of a slope. */
+static bool goes_on(const struct series *series) {
+    const double *at = series->at;
+    for (size_t k = 1; k < series->count; k++)
+        if (!(at[k * series->stride] > at[(k - 1) * series->stride]))
+            return false;
+    return at[(series->count - 1) * series->stride] - at[0] >= 0.1 * (double)(series->count - 1);
+}
+
+/* Spreadsheets and pandas number columns in a first row, and rows in a first column below an empty
+ * corner. Fewer than four numbers without a corner may be heights. */
+static int check_numberings(const struct columns_table *table, struct error *err) {
+    if (table->rows < ROWS_NUMBERED || table->columns < 2)
+        return 0;
+    const bool corner = isnan(table->numbers[0]);
+    const size_t from = corner ? 1 : 0, stride = table->columns;
+    const struct series row = {table->numbers + from, stride - from, 1};
+    const struct series after = {row.at + stride, row.count, 1};
+    const struct series column = {table->numbers + stride, table->rows - 1, stride};
+    const struct series beside = {column.at + 1, column.count, stride};
+    const bool columns =
+        row.count >= (corner ? 2 : COLUMNS_NUMBERED) && is_numbering(&row) && !goes_on(&after);
+    const bool rows =
+        corner && column.count >= ROWS_NUMBERED && is_numbering(&column) && !goes_on(&beside);
+    if (!columns && !rows)
+        return 0;
+    return error_set(err, ERROR_INPUT,
+                     "the first %s of the numbers, %g to %g, numbers the %s%s; allowed: heights "
+                     "alone, without it, or --columns map, which takes it for heights (\"columns\" "
+                     "in studies and requests)",
+                     columns ? "row" : "column", columns ? row.at[0] : column.at[0],
+                     columns ? row.at[row.count - 1] : column.at[(column.count - 1) * stride],
+                     columns ? "columns" : "rows",
+                     columns && rows ? ", and the first column the rows" : "");
+}
+
 int columns_choose(enum instrument_columns *out, const struct columns_table *table,
                    struct error *err) {
+    int status = check_numberings(table, err);
     *out = COLUMNS_MAP;
+    if (status != 0)
+        return status;
     if (table->columns < 2 || table->columns > 3 || table->rows < ROWS_LEAST ||
         has_holes(table, table->columns - 1))
         return 0;

@@ -15,7 +15,7 @@ struct columns_table {
  * as well. Three columns are a list of points where the first two lie on a regular grid of which at
  * least half is there. Fewer than four rows, other numbers of columns, holes among the positions
  * and first columns that go up and down are maps. ERROR_INPUT asks back, naming the option, where
- * it can be either. */
+ * it can be either, and where a first row or column numbers the others. */
 int columns_choose(enum instrument_columns *out, const struct columns_table *table,
                    struct error *err);
 

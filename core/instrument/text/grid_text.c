@@ -231,17 +231,6 @@ static int check_pairs(struct esri *grid, struct error *err) {
     return 0;
 }
 
-/* Reverses the rows, which stand in the file from the highest y down. */
-static void turn_rows(struct height_map *map) {
-    size_t nx = map->grid.nx, ny = map->grid.ny;
-    for (size_t j = 0; j < ny / 2; j++)
-        for (size_t i = 0; i < nx; i++) {
-            double *low = &map->z[j * nx + i], *high = &map->z[(ny - 1 - j) * nx + i], kept = *low;
-            *low = *high;
-            *high = kept;
-        }
-}
-
 static int esri(struct height_map *map, struct word_reader *reader, struct error *err) {
     struct esri grid = {.values[EMPTY] = -9999, .there[EMPTY] = true};
     int status = read_pairs(&grid, reader, err);
@@ -261,7 +250,7 @@ static int esri(struct height_map *map, struct word_reader *reader, struct error
     for (size_t point = 0; point < grid_points(&map->grid); point++)
         if (map->z[point] == grid.values[EMPTY])
             map->z[point] = NAN;
-    turn_rows(map);
+    height_map_reverse_rows(map); /* they stand from the highest y down */
     return 0;
 }
 

@@ -110,15 +110,25 @@ static int text_table_read(struct text_table *out, const struct text_block *bloc
     return status;
 }
 
-/* Scales heights in place by the header's scale and unit, and sets map->z_unit. */
+/* Returns the unit of a quantity: its own, or that of its axis in the header. */
+static const char *unit_for(const struct text_quantity *quantity, const char *of_axis) {
+    bool own = quantity->unit[0] != '\0' && !(quantity->usual && of_axis[0] != '\0');
+    return own ? quantity->unit : of_axis;
+}
+
+/* Scales heights in place by the header's scale and unit, and sets map->z_unit and
+ * map->z_of_one. */
 static int text_scale_heights(struct height_map *map, const struct text_header *header,
                               struct error *err) {
     const struct text_quantity *scale = &header->numbers[TEXT_Z_SCALE];
     const struct text_quantity *empty = &header->numbers[TEXT_VOID];
-    double metres, factor = scale->there ? scale->value : 1;
+    /* SPIP's Bit2nm makes nanometres of numbers without a unit; beside one it has no effect. */
+    const bool scaled = scale->there && !(scale->usual && header->z_unit[0] != '\0');
+    double metres, factor = scaled ? scale->value : 1;
     /* The unit of a scale is that of the product: "height conversion factor (-> m)". */
-    unit_keep(map->z_unit, scale->there && scale->unit[0] != '\0' ? scale->unit : header->z_unit,
-              &metres);
+    unit_keep(map->z_unit, unit_for(scale, header->z_unit), &metres);
+    if (!empty->there && (*map->z_unit != '\0' || scaled))
+        map->z_of_one = factor * metres;
     for (size_t point = 0; point < grid_points(&map->grid); point++) {
         bool hole = empty->there && map->z[point] == empty->value;
         map->z[point] = hole ? NAN : map->z[point] * factor * metres;
@@ -139,12 +149,6 @@ static int text_lateral_units(struct height_map *map, const char *x_unit, const 
     return error_set(err, ERROR_INPUT,
                      "x is in '%.20s' and y in '%.20s'; allowed: lengths for both, or one unit",
                      x_unit, y_unit);
-}
-
-/* Returns the unit of a quantity: its own, or that of its axis in the header. */
-static const char *unit_for(const struct text_quantity *quantity, const char *of_axis) {
-    bool own = quantity->unit[0] != '\0' && !(quantity->usual && of_axis[0] != '\0');
-    return own ? quantity->unit : of_axis;
 }
 
 /* Returns the distance between points along an axis, in the file's unit; 0 where the header has
@@ -275,18 +279,18 @@ static int text_trace_map(struct height_map *map, const struct text_table *table
     return text_scale_heights(map, &block->header, err);
 }
 
-static int choose_block(const struct text_blocks *blocks, const char *asked, size_t *out,
-                        struct error *err) {
+static int choose_block(const struct text_blocks *blocks, const struct instrument_request *request,
+                        size_t *out, struct error *err) {
     struct layer *layers = array_create(blocks->count, sizeof *layers);
     if (layers == NULL)
         return error_memory(err, blocks->count * sizeof *layers, "the blocks of a text");
     for (size_t b = 0; b < blocks->count; b++) {
         const struct text_header *header = &blocks->blocks[b].header;
-        const char *scaled = header->numbers[TEXT_Z_SCALE].unit;
         layers[b] = (struct layer){*header->title != '\0' ? header->title : NULL,
-                                   *scaled != '\0' ? scaled : header->z_unit};
+                                   unit_for(&header->numbers[TEXT_Z_SCALE], header->z_unit)};
     }
-    int status = layer_choose(layers, blocks->count, asked, "", out, err);
+    int status =
+        layer_choose(layers, blocks->count, request->layer, "", out, request->layer_read, err);
     free(layers);
     return status;
 }
@@ -356,7 +360,7 @@ static int read_text(struct height_map *out, const char *data, size_t size, bool
     if (status == 0)
         status = text_blocks_find(&blocks, data, size, err);
     if (status == 0)
-        status = choose_block(&blocks, request->layer, &chosen, err);
+        status = choose_block(&blocks, request, &chosen, err);
     if (status == 0)
         status = read_block(&map, &blocks.blocks[chosen], data + size, points, request, err);
     text_blocks_clear(&blocks);

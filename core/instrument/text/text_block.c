@@ -521,10 +521,19 @@ static bool has_decimal_comma(struct text_line line) {
     return dialect.decimal == ',';
 }
 
+/* Returns the end of the lines by which a text is recognised. It is that of a line, since a number
+ * that is cut, as 1.5e-, is none. */
+static const char *end_of_seen(const char *text, size_t size) {
+    if (size <= BYTES_SEEN)
+        return text + size;
+    const char *stop = memchr(text + BYTES_SEEN, '\n', size - BYTES_SEEN);
+    return stop != NULL ? stop : text + size;
+}
+
 bool text_blocks_own(const char *text, size_t size) {
     struct text_block block = {0};
     struct text_line line = {0};
-    const char *next = text, *end = text + (size < BYTES_SEEN ? size : BYTES_SEEN);
+    const char *next = text, *end = end_of_seen(text, size);
     size_t rows = 0;
     if (memchr(text, 0, (size_t)(end - text)) != NULL)
         return false;

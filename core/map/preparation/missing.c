@@ -23,10 +23,15 @@ static bool is_usual(double z) {
     return fabs(z) >= HUGE_LEAST;
 }
 
+/* Returns a height as the number that stands in the file, which a mark has. */
+static double number_at(const struct height_map *map, size_t point) {
+    return map->z_of_one != 0 ? map->z[point] / map->z_of_one : map->z[point];
+}
+
 static size_t count_value(const struct height_map *map, double value) {
     size_t count = 0;
     for (size_t point = 0; point < grid_points(&map->grid); point++)
-        count += is_value(map->z[point], value) ? 1 : 0;
+        count += is_value(number_at(map, point), value) ? 1 : 0;
     return count;
 }
 
@@ -34,13 +39,13 @@ static size_t count_value(const struct height_map *map, double value) {
 static bool has_usual_end(const struct height_map *map) {
     double low = INFINITY, high = -INFINITY;
     for (size_t point = 0; point < grid_points(&map->grid); point++) {
-        low = fmin(low, map->z[point]); /* holes are passed over */
-        high = fmax(high, map->z[point]);
+        low = fmin(low, number_at(map, point)); /* holes are passed over */
+        high = fmax(high, number_at(map, point));
     }
     return is_usual(low) || is_usual(high);
 }
 
-/* Heights of other than usual values. */
+/* Heights of other than usual values, as numbers of the file. */
 struct others {
     double low, high, deviation;
 };
@@ -50,7 +55,7 @@ static void others_measure(struct others *out, const struct height_map *map) {
     struct average mean = {0}, square = {0};
     *out = (struct others){INFINITY, -INFINITY, 0};
     for (size_t point = 0; point < points; point++) {
-        const double z = map->z[point];
+        const double z = number_at(map, point);
         if (isnan(z) || is_usual(z))
             continue;
         out->low = fmin(out->low, z);
@@ -58,8 +63,8 @@ static void others_measure(struct others *out, const struct height_map *map) {
         average_add(&mean, z);
     }
     for (size_t point = 0; point < points; point++)
-        if (!is_usual(map->z[point]))
-            average_add(&square, pow(map->z[point] - average_value(&mean), 2));
+        if (!is_usual(number_at(map, point)))
+            average_add(&square, pow(number_at(map, point) - average_value(&mean), 2));
     out->deviation = sqrt(average_value(&square));
 }
 
@@ -69,36 +74,63 @@ static double next_far(const struct height_map *map, const struct others *others
     const double most = others->high + FAR * others->deviation;
     double next = INFINITY;
     for (size_t point = 0; point < grid_points(&map->grid); point++) {
-        const double z = map->z[point];
+        const double z = number_at(map, point);
         if (z > after && (z < least || z > most) && !is_value(z, after))
             next = fmin(next, z);
     }
     return next;
 }
 
+/* A list of values with commas between. */
+struct list {
+    char text[120];
+    size_t used;
+};
+
+static void list_add(struct list *list, double value, const char *unit) {
+    const size_t room = sizeof list->text - list->used;
+    const int length =
+        snprintf(list->text + list->used, room, "%s%.9g%s", list->used > 0 ? "," : "", value, unit);
+    list->used += length > 0 && (size_t)length < room ? (size_t)length : 0;
+}
+
+/* Adds a number of the file as --missing takes it: with a unit where the heights have one, that of
+ * the file where there is such a unit. */
+static void list_asked(struct list *list, const struct height_map *map, double number) {
+    const double z = map->z_of_one != 0 ? number * map->z_of_one : number;
+    const char *unit = length_unit_typed(map->z_of_one);
+    if (!length_unit_is_metre(map->z_unit))
+        list_add(list, z, "");
+    else if (unit != NULL)
+        list_add(list, number, unit);
+    else
+        list_add(list, z / 1e-9, "nm");
+}
+
 /* Other heights that are all alike, as in a mask, have no scale to be far by. */
 static int find(const struct height_map *map, struct error *err) {
     struct others others = {0};
-    char values[100] = "";
-    size_t used = 0, count = 0, listed = 0;
+    struct list values = {"", 0}, asked = {"", 0};
+    size_t count = 0, listed = 0;
     if (has_usual_end(map))
         others_measure(&others, map);
     if (!(others.deviation > 0))
         return 0;
     double value = next_far(map, &others, -DBL_MAX);
     for (; isfinite(value) && listed < MISSING_MOST; value = next_far(map, &others, value)) {
-        used += (size_t)snprintf(values + used, sizeof values - used, "%s%.9g",
-                                 listed > 0 ? "," : "", value);
+        list_add(&values, value, "");
+        list_asked(&asked, map, value);
         count += count_value(map, value);
         listed++;
     }
     if (listed == 0)
         return 0;
     return error_set(err, ERROR_INPUT,
-                     "%zu of %zu heights are %s, far from all others, %.6g to %.6g, as marks of "
+                     "%zu of %zu heights are %s%s, far from all others, %.6g to %.6g, as marks of "
                      "points that were not measured are: --missing %s makes holes of them, "
                      "--missing none keeps them (missing in studies and requests)",
-                     count, grid_points(&map->grid), values, others.low, others.high, values);
+                     count, grid_points(&map->grid), values.text,
+                     map->z_of_one != 0 ? " in the file" : "", others.low, others.high, asked.text);
 }
 
 static int check_unit(const struct height_map *map, const struct missing_marks *marks,
@@ -122,9 +154,12 @@ int missing_take_out(struct height_map *map, const struct missing_marks *marks,
     const size_t points = grid_points(&map->grid);
     size_t holes = 0;
     *text = '\0';
-    if (!marks->asked)
-        return *map->z_unit == '\0' ? find(map, err) : 0;
-    int status = check_unit(map, marks, err);
+    int status = 0;
+    if (!marks->asked && (*map->z_unit == '\0' || map->z_of_one != 0))
+        status = find(map, err);
+    else if (marks->asked)
+        status = check_unit(map, marks, err);
+    map->z_of_one = 0; /* what is done from here on is no longer what the file has */
     if (status != 0 || marks->count == 0)
         return status;
     for (size_t point = 0; point < points; point++)

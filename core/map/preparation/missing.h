@@ -17,9 +17,10 @@ struct missing_marks {
 
 /* Makes holes of all heights that have one of the values, but for rounding to 32 bits, and writes
  * how many they are to text; "" where nothing was asked. Where nothing was, ERROR_INPUT names
- * heights that look like marks: of a map without a unit of heights, those of a usual value that are
- * farther than ten standard deviations below or above all others. ERROR_INPUT also where values
- * have a unit and heights none, or the reverse. The heights are untouched then. */
+ * heights that look like marks: of a map without a unit of heights, or of a text whose header has
+ * one and no mark, those whose number in the file has a usual value and is farther than ten
+ * standard deviations below or above all others. ERROR_INPUT also where values have a unit and
+ * heights none, or the reverse. The heights are untouched then; z_of_one is 0 afterwards. */
 int missing_take_out(struct height_map *map, const struct missing_marks *marks,
                      char text[MISSING_TEXT], struct error *err);
 

@@ -45,6 +45,8 @@ static void others(void **state) {
     each("trace.csv", bytes_of_text("X,Z\n0,1\n1,3\n2.2,2\n3,5\n4.1,4\n"));
     each("plain.csv", bytes_of_text("0 1\n1 3\n2 2\n3 5\n"));
     each("list.csv", bytes_of_text("0 0 1\n1 0 3\n0 1 2\n1 1 5\n"));
+    each("old.csv", bytes_of_text("1,2,4\r3,4,5\r"));
+    each("commas.csv", bytes_of_text("0,01\n0,02\n0,01\n0,05\n0,03\n0,02\n0,01\n0,04\n"));
     each("surfer.grd", bytes_of_text("DSAA\n2 2\n0 1\n0 1\n0 1\n1 2 3 4\n"));
     each("esri.asc", bytes_of_text("ncols 2\nnrows 1\ncellsize 1\n1 2\n"));
     each("zygo.xyz", bytes_of_text("Zygo XYZ Data File - Format 1\n0\n0\n0 0 2 1\n\n\n\n"

@@ -13,9 +13,9 @@ static inline int fuzz_instrument(const struct instrument_format *format, const 
     static const char *const layers[] = {NULL, "1", "2", "Topography"};
     if (size == 0)
         return 0;
-    char done[INSTRUMENT_DONE] = "";
+    char done[INSTRUMENT_DONE] = "", read[INSTRUMENT_LAYER] = "";
     const struct instrument_request request = {
-        layers[*data % 4], (enum instrument_columns)(*data / 20 % (COLUMNS_MAP + 1)), done};
+        layers[*data % 4], (enum instrument_columns)(*data / 20 % (COLUMNS_MAP + 1)), done, read};
     char *text = text_of(data + 1, size - 1);
     struct height_map map = {0};
     struct error err = {0};

@@ -75,6 +75,11 @@ static void files_are_converted(void **state) {
     assert_true(contains("shell.out", "file: patch.al3d\nbytes: 24\n"));
     assert_true(contains("shell.out", "converted: by Gwyddion 9.87 from Alicona's AL3D\n"));
     assert_true(contains("shell.out", "written: 7 by 5 points"));
+    assert_true(contains("shell.out", "\nlayer: 2 'Topography' of 2\n"));
+    assert_int_equal(run_shell("$RUGO convert patch.al3d map.csv"), 0);
+    assert_true(contains("map.csv", "# done: layer, 2 'Topography' of 2\n"));
+    assert_int_equal(run_shell("$RUGO characterise patch.al3d"), 0);
+    assert_true(contains("shell.out", "bytes, layer 2 'Topography' of 2"));
     assert_true(contains("asked", "measured.al3d\n"));
     expect_nothing_left();
     assert_int_equal(run_shell("$RUGO characterise patch.al3d --format json | grep -c "

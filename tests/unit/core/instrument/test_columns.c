@@ -14,7 +14,7 @@ struct reading {
 static struct reading read_as(const char *name, const char *text, enum instrument_columns columns) {
     struct reading reading = {.status = 0};
     struct bytes bytes = bytes_of_text(text);
-    const struct instrument_request request = {NULL, columns, reading.done};
+    const struct instrument_request request = {.columns = columns, .done = reading.done};
     reading.status = instrument_read(&reading.map, name, bytes.data, bytes.size, 0, &request, NULL,
                                      &reading.err);
     free(bytes.data);
@@ -92,6 +92,105 @@ static void doubt_is_asked_back(void **state) {
     expect_refusal("0 1\n1 2\n", COLUMNS_XYZ, "--columns xyz needs 3 numbers a row, not 2");
     expect_refusal("0 1 2\n1 5.37 7\n3.141 2 2\n8 1.777 2\n", COLUMNS_XYZ, "no regular grid");
     expect_refusal("0 nan\n1 2\n2.7 nan\n3 nan\n", COLUMNS_XZ, "1 of 4 positions have heights");
+}
+
+/* What pandas writes, with and without its index: numbers of rows and columns are no heights. A row
+ * or column of heights that happens to be such is a slope, and those beside it are, too. */
+static void numbered_rows_and_columns_are_refused(void **state) {
+    (void)state;
+    static const char WITH_INDEX[] =
+        ",0,1,2\n0,1e-7,3e-7,2e-7\n1,4e-7,1e-7,5e-7\n2,9e-7,2e-7,6e-7\n";
+    static const char WITHOUT[] = "0,1,2,3\n1e-7,3e-7,2e-7,4e-7\n4e-7,1e-7,5e-7,2e-7\n";
+    expect_refusal(
+        WITH_INDEX, COLUMNS_AUTO,
+        "the first row of the numbers, 0 to 2, numbers the columns, and the first column "
+        "the rows; allowed: heights alone");
+    expect_refusal(WITHOUT, COLUMNS_AUTO, "row of the numbers, 0 to 3, numbers the columns;");
+    expect_refusal("1;2;3;4\n1,5;3;2;4\n4;1;5;2,5\n", COLUMNS_AUTO, "1 to 4, numbers the columns");
+    /* Columns of positions, rows of numbers; a tilt of small heights; a column of a table. */
+    expect_refusal(",0.0,0.5,1.0\n0,3,1,2\n1,1,2,1\n2,5,1,3\n", COLUMNS_AUTO,
+                   "the first column of the numbers, 0 to 2, numbers the rows;");
+    expect_refusal("0,1,2,3\n1e-7,2e-7,3e-7,4e-7\n4e-7,5e-7,6e-7,7e-7\n", COLUMNS_AUTO, "0 to 3");
+    expect_refusal(",0\n0,0.5\n1,0.3\n2,0.4\n", COLUMNS_AUTO, "column of the numbers, 0 to 2");
+    /* The option decides; heights stay heights. */
+    const char *const heights[] = {"0 1 2 3\n1 2 3 4\n2 3 4 5\n",
+                                   "0 1 2 3\n0 1 2 3\n0 1 2 3\n",
+                                   "0 1 2 4\n3 1 2 3\n1 1 2 2\n",
+                                   "0 1 2 3\n5 1 2 3\n",
+                                   "nan 1 2 3\n1 2 3 4\n2 3 4 5\n3 4 5 6\n",
+                                   "2 3 4 5\n3 1 4 1\n1 2 2 1\n"};
+    for (size_t h = 0; h < sizeof heights / sizeof *heights; h++) {
+        struct reading reading = read_as("a.csv", heights[h], COLUMNS_AUTO);
+        if (reading.status != 0 || reading.map.grid.nx != 4)
+            fail_msg("%s: %s", heights[h], reading.err.text);
+        height_map_clear(&reading.map);
+    }
+    struct reading reading = read_as("a.csv", WITHOUT, COLUMNS_MAP);
+    assert_true(reading.status == 0 && reading.map.grid.ny == 3 && reading.map.z[1] == 1);
+    height_map_clear(&reading.map);
+}
+
+/* Rows of N heights, as "%.3f" with a decimal comma or another format, behind a header. */
+static const char *comma_column(const char *header, const char *format, int n) {
+    static char text[2000];
+    size_t used = (size_t)snprintf(text, sizeof text, "%s", header);
+    for (int i = 0; i < n; i++) {
+        char number[32];
+        snprintf(number, sizeof number, format, 3 * sin(1.7 * i) + 0.05 * (i % 2));
+        char *point = strchr(number, '.');
+        *(point != NULL ? point : number) = ',';
+        used += (size_t)snprintf(text + used, sizeof text - used, "%s\r\n", number);
+    }
+    return text;
+}
+
+/* One column with decimal commas is one, where leading zeros show it, and asked about where not. */
+static void decimal_commas_make_one_column(void **state) {
+    (void)state;
+    static const char *const HEADERS[] = {"", "# dx: 0.5 um\n# z unit: um\n", "# a profile\n\n"};
+    for (size_t h = 0; h < 3; h++) {
+        const double metres = h == 1 ? 1e-6 : 1;
+        struct reading reading =
+            read_as("a.csv", comma_column(HEADERS[h], "%.3f", 40), COLUMNS_AUTO);
+        if (reading.status != 0 || reading.map.grid.nx != 40 || reading.map.grid.ny != 1)
+            fail_msg("%zu: %zu x %zu, %s", h, reading.map.grid.nx, reading.map.grid.ny,
+                     reading.err.text);
+        assert_string_equal(reading.done, "z, 40 rows with decimal commas");
+        assert_true(fabs(grid_dx(&reading.map.grid) / (h == 1 ? 5e-7 : 1) - 1) <= 1e-12);
+        for (int i = 0; i < 40; i++) /* a printed height is off by half of its last digit */
+            assert_true(fabs(reading.map.z[i] / metres - 3 * sin(1.7 * i) - 0.05 * (i % 2)) <=
+                        0.0005001);
+        height_map_clear(&reading.map);
+    }
+    /* One digit behind each comma, which has no leading zero, of positive numbers. */
+    static const char OPEN[] = "1,5\n2,1\n1,7\n3,4\n2,2\n1,9\n2,0\n1,1\n";
+    expect_refusal(OPEN, COLUMNS_AUTO,
+                   "8 rows of digits, a comma and digits are either one height");
+    expect_refusal("1,05\n2,1\n1,7\n3,4\n2,2\n1,9\n2,0\n1,1\n", COLUMNS_AUTO,
+                   "points in place of the commas, or --columns xz or --columns map");
+    struct reading reading = read_as("a.csv", OPEN, COLUMNS_MAP);
+    assert_true(reading.status == 0 && reading.map.grid.nx == 2 && reading.map.grid.ny == 8);
+    height_map_clear(&reading.map);
+    /* Two numbers: fewer rows, positions that rise evenly, other forms, columns that are named. */
+    static const struct {
+        const char *text;
+        size_t nx, ny;
+    } TWO[] = {
+        {"1,05\n2,01\n1,07\n3,04\n2,02\n1,09\n2,00\n", 2, 7},
+        {"0,5\n1,1\n2,7\n3,4\n4,2\n5,9\n6,0\n7,1\n", 8, 1},
+        {"1,05\n2,01\n1,07\n3,04\n2,02\n1,09\n2,00\n1,-1\n", 2, 8},
+        {"1,05\n2,01\n1,07\n3,04\n2,02\n1,09\n2,00\n1,5e1\n", 2, 8},
+        {"1,05\n2,01\n1,07\n3,04\n2,02\n1,09\n2,00\n1.0,5\n", 2, 8},
+        {"x,z\n0,05\n1,01\n2,07\n3,04\n4,02\n5,09\n6,00\n7,01\n", 8, 1},
+    };
+    for (size_t t = 0; t < sizeof TWO / sizeof *TWO; t++) {
+        reading = read_as("a.csv", TWO[t].text, COLUMNS_AUTO);
+        if (reading.status != 0 || reading.map.grid.nx != TWO[t].nx ||
+            reading.map.grid.ny != TWO[t].ny)
+            fail_msg("%s: %zu x %zu, %s", TWO[t].text, reading.map.grid.nx, reading.map.grid.ny,
+                     reading.err.text);
+        height_map_clear(&reading.map);
+    }
 }
 
 /* A format that names its own shape leaves the option nothing to decide. */
@@ -285,6 +384,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(columns_are_chosen),
         cmocka_unit_test(doubt_is_asked_back),
+        cmocka_unit_test(numbered_rows_and_columns_are_refused),
+        cmocka_unit_test(decimal_commas_make_one_column),
         cmocka_unit_test(other_formats_refuse),
         cmocka_unit_test(even_positions_keep_heights),
         cmocka_unit_test(missing_positions_are_holes),

@@ -4,22 +4,38 @@
 
 static const char NAME[] = "gwyddion.gwy";
 
+/* The map as it stands in the file, from the top down, within so much. */
+static size_t check_downwards(struct height_map *map, double tolerance) {
+    height_map_reverse_rows(map);
+    return check_fixture_map(map, tolerance);
+}
+
 static void heights(void **state) {
     (void)state;
     const char *const layers[] = {NULL, "Topography", "2"};
     for (size_t l = 0; l < 3; l++) {
         struct height_map map = bytes_map(bytes_of_fixture(NAME), NAME, layers[l]);
-        assert_int_equal(check_fixture_map(&map, 0), 2);
-        assert_true(isnan(map.z[1 * 7 + 2]) && isnan(map.z[4 * 7 + 6])); /* masked */
+        /* y rises: the first row of the map is the last of the file's five. */
+        assert_true(map.z[0] == fixture_height(0, 4) && map.z[4 * 7 + 1] == fixture_height(1, 0));
+        assert_true(isnan(map.z[3 * 7 + 2]) && isnan(map.z[0 * 7 + 6])); /* masked */
+        assert_int_equal(check_downwards(&map, 0), 2);
         height_map_clear(&map);
     }
+}
+
+/* Of several channels the one that was read is named; one alone is not. */
+static void the_channel_is_named(void **state) {
+    (void)state;
+    expect_layer(bytes_of_fixture(NAME), NULL, "2 'Topography' of 2");
+    expect_layer(bytes_of_fixture(NAME), "1", "1 'Phase' of 2");
+    expect_layer(bytes_of_fixture("gwyddion.sdf"), NULL, "");
 }
 
 /* By its first bytes, whatever its name. */
 static void other_name(void **state) {
     (void)state;
     struct height_map map = bytes_map(bytes_of_fixture(NAME), "surface.csv", NULL);
-    assert_int_equal(check_fixture_map(&map, 0), 2);
+    assert_int_equal(check_downwards(&map, 0), 2);
     height_map_clear(&map);
 }
 
@@ -28,7 +44,7 @@ static void other_channel(void **state) {
     struct height_map map = bytes_map(bytes_of_fixture(NAME), NAME, "Phase");
     assert_string_equal(map.xy_unit, "m");
     assert_string_equal(map.z_unit, "V");
-    assert_true(fabs(map.z[6] - 36) <= 1e-12);
+    assert_true(fabs(map.z[4 * 7 + 6] - 36) <= 1e-12); /* the first row of the file */
     height_map_clear(&map);
 }
 
@@ -168,7 +184,7 @@ static void by_hand(void **state) {
     struct height_map map = bytes_map(file_of(NULL, "A", 2), NAME, "1");
     assert_string_equal(map.xy_unit, "");
     assert_string_equal(map.z_unit, "A"); /* the ampere of a current's channel */
-    assert_true(map.z[0] == 0 && height_map_holes(&map) == 3);
+    assert_true(map.z[2] == 0 && height_map_holes(&map) == 3);
     height_map_clear(&map);
     bytes_refused(file_of("m", "m", 3), NAME, NULL,
                   "channel 1 of 1 (/7): its mask: 2 x 3 points; allowed: as the channel, 2 x 2");
@@ -181,7 +197,7 @@ int main(void) {
         cmocka_unit_test(heights),       cmocka_unit_test(other_name),
         cmocka_unit_test(other_channel), cmocka_unit_test(absent_channel),
         cmocka_unit_test(cut_off),       cmocka_unit_test(damaged),
-        cmocka_unit_test(by_hand),
+        cmocka_unit_test(by_hand),       cmocka_unit_test(the_channel_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

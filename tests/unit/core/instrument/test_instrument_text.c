@@ -105,6 +105,62 @@ static void matrices(void **state) {
         check_layout(&layouts[l]);
 }
 
+/* Of SPIP's text a unit of heights counts where there is one, as Gwyddion writes and reads it, and
+ * the nanometres of Bit2nm elsewhere. */
+static void units_beside_a_scale(void **state) {
+    (void)state;
+    static const struct {
+        const char *unit, *kept;
+        double metres;
+    } CASES[] = {{"", "m", 2e-9},
+                 {"# z-unit = um\n", "m", 1e-6},
+                 {"# z-unit = nm\n", "m", 1e-9},
+                 {"# z-unit = V\n", "V", 1},
+                 {"# z-unit = deg\n", "deg", 1},
+                 {"# z-unit = A\n", "A", 1}};
+    for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++)
+        for (size_t after = 0; after < 2; after++) {
+            char text[300];
+            snprintf(text, sizeof text,
+                     "# File Format = ASCII\n# x-pixels = 3\n# y-pixels = 2\n# x-length = 3000\n"
+                     "# y-length = 4000\n%s# Bit2nm = 2.0\n%s# Start of Data:\n"
+                     "1.5\t-2\tBad\n4\t5\t6.25\n",
+                     after ? "" : CASES[c].unit, after ? CASES[c].unit : "");
+            check_layout(&(struct layout){"spip.asc", text, 1e-6, 2e-6, CASES[c].metres, "m",
+                                          CASES[c].kept});
+        }
+    struct height_map map =
+        bytes_map(bytes_of_text("# Channel: A\n# Bit2nm: 1\n# z-unit: V\n1 2\n3 4\n\n"
+                                "# Channel: B\n# Bit2nm: 1\n# z-unit: um\n5 6\n7 8\n"),
+                  "a.txt", NULL);
+    assert_true(fabs(map.z[0] - 5e-6) <= 1e-18); /* the first with heights */
+    height_map_clear(&map);
+}
+
+/* What a number of 1 is in metres goes with the heights, so that marks are known by their numbers;
+ * where a header names the mark, or has nothing of heights, there is nothing to look for. */
+static void numbers_of_the_file_are_known(void **state) {
+    (void)state;
+    static const struct {
+        const char *text;
+        double of_one;
+    } FILES[] = {
+        {"dx: 1 mm\nz unit: um\n1 2 3\n4 5 -9999\n", 1e-6},
+        {"h=2 w=3\nheight conversion factor (-> m)=2e-009\n1 2 3\n4 5 -9999\n", 2e-9},
+        {"x [mm];z [nm]\n0;1\n1;2\n2;-9999\n3;5\n", 1e-9},
+        {"x [mm];y [mm];z [nm]\n0;0;1\n1;0;2\n0;1;-9999\n1;1;5\n", 1e-9},
+        {"dx: 1 mm\nz unit: V\n1 2 3\n4 5 -9999\n", 1},
+        {"dx: 1 mm\nno data value: -9999\nz unit: um\n1 2 3\n4 5 -9999\n", 0},
+        {"dx: 1 mm\n1 2 3\n4 5 -9999\n", 0},
+    };
+    for (size_t f = 0; f < sizeof FILES / sizeof *FILES; f++) {
+        struct height_map map = bytes_map(bytes_of_text(FILES[f].text), "a.txt", NULL);
+        if (!(fabs(map.z_of_one - FILES[f].of_one) <= 1e-15 * FILES[f].of_one))
+            fail_msg("%s: %g", FILES[f].text, map.z_of_one);
+        height_map_clear(&map);
+    }
+}
+
 /* Texts of all formats in UTF-16, of either order, as some instruments and spreadsheets write them:
  * as in UTF-8. Latin-1 is UTF-16 with zeros. */
 static void sixteen_bits(void **state) {
@@ -137,6 +193,38 @@ static void sixteen_bits(void **state) {
         }
 }
 
+/* Lines that end with CR alone are lines, in texts of all formats, with a mark or none. */
+static void lines_end_with_cr(void **state) {
+    (void)state;
+    static const struct {
+        const char *name, *text;
+        double dx;
+    } FILES[] = {
+        {"plain.csv", "1,2,3\r4,5,6\r", 1},
+        {"plain.txt", "1 2 3\r4 5 6", 1},
+        {"marked.csv",
+         "\xef\xbb\xbf"
+         "1,2,3\r4,5,6\r",
+         1},
+        {"header.txt", "Width: 3 um\r1 2 3\r4 5 6\r", 1e-6},
+        {"plain.xyz", "0 0 1\r2 0 2\r4 0 3\r0 2 4\r2 2 5\r4 2 6\r", 2},
+        {"esri.asc", "ncols 3\rnrows 2\rcellsize 0.5\r4 5 6\r1 2 3\r", 0.5},
+    };
+    for (size_t f = 0; f < sizeof FILES / sizeof *FILES; f++) {
+        struct height_map map = bytes_map(bytes_of_text(FILES[f].text), FILES[f].name, NULL);
+        assert_true(map.grid.nx == 3 && map.grid.ny == 2);
+        assert_true(fabs(grid_dx(&map.grid) / FILES[f].dx - 1) <= 1e-12);
+        for (size_t p = 0; p < 6; p++)
+            assert_true(map.z[p] == (double)p + 1);
+        height_map_clear(&map);
+    }
+    static const char WIDE[] = "\xff\xfe"
+                               "1\0,\0002\0\r\0003\0,\0004\0\r";
+    struct height_map map = bytes_map(bytes_of(WIDE, sizeof WIDE), "wide.csv", NULL);
+    assert_true(map.grid.nx == 2 && map.grid.ny == 2 && map.z[3] == 4);
+    height_map_clear(&map);
+}
+
 /* Several layers, a block each: by title and by number. */
 static void blocks(void **state) {
     (void)state;
@@ -154,6 +242,14 @@ static void blocks(void **state) {
     assert_string_equal(map.z_unit, "deg");
     assert_true(map.z[3] == 4);
     height_map_clear(&map);
+    expect_layer(bytes_of_text(text), NULL, "2 'Height' of 2");
+    expect_layer(bytes_of_text(text), "Phase", "1 'Phase' of 2");
+    expect_layer(bytes_of_text("Width: 2 um\n1 2\n3 4\n\nWidth: 2 um\n5 6\n7 8\n"), "2", "2 of 2");
+    expect_layer(bytes_of_text("# Channel: A\nWidth: 2 um\n1 2\n3 4\n"), NULL, "");
+    /* A title is shown, whatever its bytes. */
+    expect_layer(bytes_of_text("# Channel: A\x1b[2J\xe9\nWidth: 2 um\n1 2\n3 4\n"
+                               "# Channel: B\nWidth: 2 um\n1 2\n3 4\n"),
+                 NULL, "1 'A?[2J?' of 2");
 }
 
 /* Points in any order, some of them missing, with units in the names of columns, behind them, or in
@@ -325,6 +421,32 @@ static void wide_rows(void **state) {
     height_map_clear(&map);
 }
 
+/* Only the beginning of a text, 16384 bytes, shows what it is. Wherever that ends in a row, as
+ * behind 1.00e- too, the header counts, and so do decimal commas. */
+static void long_rows_are_recognised(void **state) {
+    (void)state;
+    enum { COLUMNS = 3000, PAD_MOST = 9, ROW = 9 * COLUMNS };
+    static char text[3 * ROW + 100];
+    static const char *const NUMBERS[2] = {"1.00e-01,", "1,00e-01;"};
+    for (size_t comma = 0; comma < 2; comma++)
+        for (size_t pad = 0; pad < PAD_MOST; pad++) {
+            const char *head = comma ? "" : "# dx: 0.5 um\n# z unit: um\n";
+            int used = snprintf(text, sizeof text, "%s%*s", head, (int)pad, "");
+            for (size_t number = 0; number < 3 * (size_t)COLUMNS; number++) {
+                memcpy(text + used, NUMBERS[comma], 9);
+                used += 9;
+                text[used - 1] = number % COLUMNS == COLUMNS - 1 ? '\n' : text[used - 1];
+            }
+            text[used] = '\0';
+            struct height_map map = bytes_map(bytes_of_text(text), "long.csv", NULL);
+            assert_true(map.grid.nx == COLUMNS && map.grid.ny == 3);
+            assert_string_equal(map.z_unit, comma ? "" : "m");
+            assert_true(fabs(grid_dx(&map.grid) / (comma ? 1 : 5e-7) - 1) <= 1e-12);
+            assert_true(fabs(map.z[ROW / 3 - 1] / (comma ? 0.1 : 1e-7) - 1) <= 1e-12);
+            height_map_clear(&map);
+        }
+}
+
 /* A file without a mark or an ending that is known is read as text; one of bytes is refused with
  * the endings that there are. */
 static void unknown_formats_are_named(void **state) {
@@ -384,6 +506,9 @@ int main(void) {
         cmocka_unit_test(other_formats_are_told_apart),
         cmocka_unit_test(matrices),
         cmocka_unit_test(sixteen_bits),
+        cmocka_unit_test(lines_end_with_cr),
+        cmocka_unit_test(units_beside_a_scale),
+        cmocka_unit_test(numbers_of_the_file_are_known),
         cmocka_unit_test(blocks),
         cmocka_unit_test(points),
         cmocka_unit_test(profile_of_points),
@@ -392,6 +517,7 @@ int main(void) {
         cmocka_unit_test(refused),
         cmocka_unit_test(damaged_zygo),
         cmocka_unit_test(wide_rows),
+        cmocka_unit_test(long_rows_are_recognised),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

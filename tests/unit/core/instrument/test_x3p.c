@@ -157,6 +157,11 @@ static void profiles(void **state) {
     expect(&map, 3, 1, 2e-6, 2e-6, SIX);
     assert_int_equal(read_layer(&map, &sheet, "2", &err), 0);
     expect(&map, 3, 1, 2e-6, 2e-6, SIX + 3);
+    size_t size = 0;
+    char *file = x3p_file_create(&sheet, &size);
+    expect_layer(bytes_of(file, size), NULL, "1 of 2");
+    expect_layer(bytes_of(file, size), "2", "2 of 2");
+    free(file);
     assert_int_equal(read_layer(&map, &sheet, "3", &err), ERROR_INPUT);
     assert_string_equal(err.text,
                         "there is no layer '3'; allowed: 1 to 2, layers of X3P have no names");

@@ -59,6 +59,40 @@ static void marks_are_found(void **state) {
     assert_int_equal(missing_take_out(&map, &(struct missing_marks){0}, text, NULL), 0);
 }
 
+/* Of texts the number in the file counts, whatever its unit, and the option is proposed in it. */
+static void marks_of_texts_with_units_are_found(void **state) {
+    (void)state;
+    const struct {
+        const char *unit;
+        double of_one;
+        const char *says; /* NULL: they are heights */
+    } CASES[] = {
+        {"m", 1e-6, "3 of 200 heights are -9999 in the file, far from all others, "},
+        {"m", 1e-6, ": --missing -9999um makes holes of them"},
+        {"m", 1e-9, ": --missing -9999nm makes"},
+        {"m", 2e-11, "heights are -9999 in the file"},
+        {"m", 2e-11, ": --missing -199.98nm makes"},
+        {"m", 1, ": --missing -9999m makes"},
+        {"V", 1, ": --missing -9999 makes"},
+        {"V", -0.5, ": --missing 4999.5 makes"},
+        {"m", 0, NULL}, /* a format with marks of its own, or a text that names its mark */
+    };
+    for (size_t c = 0; c < sizeof CASES / sizeof *CASES; c++) {
+        char text[MISSING_TEXT];
+        struct error err = {0};
+        struct height_map map = make(1, -9999, 5);
+        for (size_t point = 0; point < POINTS && CASES[c].of_one != 0; point++)
+            z[point] *= CASES[c].of_one;
+        map.z_of_one = CASES[c].of_one;
+        map.z_unit[0] = *CASES[c].unit;
+        int status = missing_take_out(&map, &(struct missing_marks){0}, text, &err);
+        if (status != (CASES[c].says != NULL ? ERROR_INPUT : 0) ||
+            (CASES[c].says != NULL && strstr(err.text, CASES[c].says) == NULL))
+            fail_msg("case %zu: %d, %s", c, status, err.text);
+        assert_true(map.z_of_one == 0);
+    }
+}
+
 static void what_is_named_becomes_holes(void **state) {
     (void)state;
     const struct {
@@ -93,6 +127,7 @@ static void what_is_named_becomes_holes(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(marks_are_found),
+        cmocka_unit_test(marks_of_texts_with_units_are_found),
         cmocka_unit_test(what_is_named_becomes_holes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
