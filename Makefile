@@ -329,13 +329,14 @@ run-threads:
 		RUGO=$(abspath $(BUILD))/rugo tests/run-tests $(THREADED)
 .PHONY: run-unit run-threads
 
-# All that .ci/run leaves out, or tries only where its paths changed: an hour and a half on two processors.
+# All that .ci/run leaves out, or tries only where its paths changed: some four hours on two processors, a good half of
+# them check-book and what has RUGO_EFFORT.
 nightly: all
 	-@tests/install-deps "" calculix-ccx ccx
 	$(MAKE) test
 	$(MAKE) lint
-	RUGO_EFFORT=4 $(MAKE) unit validation
-	RUGO_EFFORT=4 $(MAKE) faults
+	RUGO_EFFORT=4 LIMIT=2400 $(MAKE) unit validation
+	RUGO_EFFORT=4 LIMIT=2400 $(MAKE) faults
 	$(MAKE) check-documents check-install check-python check-units check-openapi check-contract check-figures check-results tour
 	$(MAKE) check-book
 	-@tests/install-deps "" "slurmctld slurmd slurm-client munge sqlite3" munged slurmctld slurmd sbatch sqlite3
