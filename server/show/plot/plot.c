@@ -224,12 +224,32 @@ static void set_ticks(const struct plot *plot, struct frame *frame) {
     frame->x.tick_count = plot->tick_count;
 }
 
+/* Points of a curve from `first` on, before `end`. */
+struct stretch {
+    size_t first, end;
+};
+
+/* Returns which points must be seen: those of a density between its empty bins at the ends, none
+ * where all of its bins are empty; else all. */
+static struct stretch stretch_of(const struct plot *plot, const struct curve *curve) {
+    const char *const *densities = view_of(plot->lines->kind)->densities;
+    struct stretch seen = {0, curve->n};
+    if (plot->words->points || curve->minuend != NULL || !view_lists(densities, curve->quantity))
+        return seen;
+    while (seen.end > 0 && !(fabs(curve->y[seen.end - 1]) > 0))
+        seen.end--;
+    while (seen.first < seen.end && !(fabs(curve->y[seen.first]) > 0))
+        seen.first++;
+    return seen;
+}
+
 /* Includes what is seen of a line: its points, the errors of differences and of single points, and
  * theories as far as the line goes, or as a whole. */
 static void include(struct frame *frame, const struct plot *plot, const struct curve *curve) {
     bool points = plot->words->points, errors = points || curve->minuend != NULL;
+    const struct stretch seen = stretch_of(plot, curve);
     if (!points)
-        frame_include(frame, curve->n, curve->x, curve->y);
+        frame_include(frame, seen.end - seen.first, curve->x + seen.first, curve->y + seen.first);
     for (size_t n = 0; n < curve->n && errors; n++) {
         double error = isfinite(curve->standard_error[n]) ? curve->standard_error[n] : 0;
         frame_include_point(frame, curve->x[n], curve->y[n] - error);
@@ -237,10 +257,8 @@ static void include(struct frame *frame, const struct plot *plot, const struct c
     }
     for (size_t t = 0; t < curve->theory_count; t++)
         for (size_t n = 0; n < curve->n && curve->theories[t].y != NULL; n++) {
-            if (points)
+            if (points || plot->request->theories_whole)
                 frame_include_point(frame, curve->x[n], curve->theories[t].y[n]);
-            else if (plot->request->theories_whole)
-                frame_include(frame, 1, &curve->x[n], &curve->theories[t].y[n]);
         }
 }
 
@@ -272,7 +290,24 @@ static void widen(struct plot_axis *axis, double share) {
     axis->high = axis->logarithmic ? high * factor : high + margin;
 }
 
-/* Fits one frame to the lines of all panels, which share their axes. */
+/* Returns whether no point has been included yet. */
+static bool is_empty(const struct frame *frame) {
+    return !(frame->x.low <= frame->x.high);
+}
+
+/* Includes the lines of all panels, which share their axes; where all of them are densities without
+ * a thing in any bin, these bins. */
+static void include_lines(const struct plot *plot, struct frame *frame) {
+    const struct plot_lines *lines = plot->lines;
+    for (size_t n = 0; n < lines->count; n++)
+        if (lines->list[n].at[CHANNEL_PANEL] < plot->panels)
+            include(frame, plot, lines->list[n].curve);
+    for (size_t n = 0, empty = is_empty(frame); n < lines->count && empty; n++)
+        frame_include(frame, lines->list[n].curve->n, lines->list[n].curve->x,
+                      lines->list[n].curve->y);
+}
+
+/* Fits one frame to the lines. Returns false where no point can be drawn on the axes. */
 static bool fit(struct plot *plot, const struct study_result *study) {
     struct frame *frame = &plot->pen.frame;
     bool x, y;
@@ -282,9 +317,7 @@ static bool fit(struct plot *plot, const struct study_result *study) {
     set_logarithmic(plot, study, &x, &y);
     frame_start(frame, x, y);
     frame->y.plus = is_one_plus(plot) ? 1 : 0;
-    for (size_t n = 0; n < plot->lines->count; n++)
-        if (plot->lines->list[n].at[CHANNEL_PANEL] < plot->panels)
-            include(frame, plot, plot->lines->list[n].curve);
+    include_lines(plot, frame);
     if (plot->errors.total)
         plot_errors_include(frame, plot->lines, plot->panels, !plot->errors.bands,
                             plot->words->points || plot->lines->list[0].curve->minuend != NULL);
@@ -456,6 +489,36 @@ static void lay_out(struct plot *plot, const struct study_result *study) {
     plot->errors.scale = plot->layout.scale;
 }
 
+static void draw_picture(struct plot *plot, const struct study_result *study) {
+    const struct plot_layout *layout = &plot->layout;
+    FILE *file = plot->pen.file;
+    pen_head_sized(&plot->pen, &layout->size);
+    pen_study(&plot->pen, study);
+    (plot->request->millimetres > 0 ? pen_subject : pen_title)(&plot->pen, study->name,
+                                                               plot->words->subject);
+    for (size_t panel = 0; panel < plot->panels; panel++)
+        draw_panel(plot, panel);
+    if (plot->panels == 1)
+        draw_second(plot);
+    draw_labels(plot);
+    legend_draw(&plot->legend, file, layout->scale, layout->legend_left, layout->legend_top,
+                layout->legend_width);
+    fputs("</svg>\n", file);
+}
+
+/* Says why there is nothing to draw. */
+static int refuse_empty(const struct plot *plot, struct error *err) {
+    const struct frame *frame = &plot->pen.frame;
+    const bool x = frame->x.logarithmic, y = frame->y.logarithmic;
+    const char *axes = x && y ? "x and y" : x ? "x" : "y";
+    if (x || y)
+        return error_set(err, ERROR_ABSENT,
+                         "%.120s: no point to draw: none is above 0 on the logarithmic %s",
+                         plot->words->subject, axes);
+    return error_set(err, ERROR_ABSENT, "%.120s: no point to draw: no value is a finite number",
+                     plot->words->subject);
+}
+
 int plot_lines_draw(const struct plot_lines *lines, const struct study_result *study,
                     const struct plot_request *request, const struct plot_words *words, FILE *file,
                     struct error *err) {
@@ -467,21 +530,11 @@ int plot_lines_draw(const struct plot_lines *lines, const struct study_result *s
     plot->words = words;
     plot->pen.file = file;
     lay_out(plot, study);
-    pen_head_sized(&plot->pen, &plot->layout.size);
-    pen_study(&plot->pen, study);
-    (request->millimetres > 0 ? pen_subject : pen_title)(&plot->pen, study->name, words->subject);
-    if (fit(plot, study)) {
-        for (size_t panel = 0; panel < plot->panels; panel++)
-            draw_panel(plot, panel);
-        if (plot->panels == 1)
-            draw_second(plot);
-        draw_labels(plot);
-        legend_draw(&plot->legend, file, plot->layout.scale, plot->layout.legend_left,
-                    plot->layout.legend_top, plot->layout.legend_width);
-    }
-    fputs("</svg>\n", file);
+    int status = fit(plot, study) ? 0 : refuse_empty(plot, err);
+    if (status == 0)
+        draw_picture(plot, study);
     free(plot);
-    return 0;
+    return status;
 }
 
 /* Returns what a series shows, where all cases agree in it, or its name; NULL for NULL. */

@@ -37,14 +37,16 @@ bool frame_has_place(const struct frame *frame, double x, double y) {
     return axis_has(&frame->x, x) && axis_has(&frame->y, y);
 }
 
+void frame_include_point(struct frame *frame, double x, double y) {
+    if (!frame_has_place(frame, x, y))
+        return;
+    axis_include(&frame->x, x);
+    axis_include(&frame->y, y);
+}
+
 void frame_include(struct frame *frame, size_t n, const double *x, const double *y) {
-    for (size_t a = 0; a < n; a++) {
-        /* Points at zero at the ends of a histogram say nothing: they do not widen the frame. */
-        if (!frame_has_place(frame, x[a], y[a]) || y[a] == 0)
-            continue;
-        axis_include(&frame->x, x[a]);
-        axis_include(&frame->y, y[a]);
-    }
+    for (size_t a = 0; a < n; a++)
+        frame_include_point(frame, x[a], y[a]);
 }
 
 void frame_start(struct frame *frame, bool x_logarithmic, bool y_logarithmic) {
@@ -55,13 +57,6 @@ void frame_start(struct frame *frame, bool x_logarithmic, bool y_logarithmic) {
                             .right = FRAME_RIGHT,
                             .bottom = FRAME_BOTTOM,
                             .scale = 1};
-}
-
-void frame_include_point(struct frame *frame, double x, double y) {
-    if (!frame_has_place(frame, x, y))
-        return;
-    axis_include(&frame->x, x);
-    axis_include(&frame->y, y);
 }
 
 double frame_set(struct frame *frame, const double x[2], const double y[2], bool same_lengths) {

@@ -32,7 +32,6 @@ bool range_widen(double low, double *high);
 void frame_start(struct frame *frame, bool x_logarithmic, bool y_logarithmic);
 void frame_include(struct frame *frame, size_t n, const double *x, const double *y);
 bool frame_finish(struct frame *frame);
-/* Includes a point as it is, also one at zero. */
 void frame_include_point(struct frame *frame, double x, double y);
 /* In place of all of these: linear axes between exactly these ends. same_lengths: the frame is
  * narrower or lower than others, so that a length of y is as long as one of x; up to this ratio of

@@ -1,0 +1,119 @@
+/* Protects: the axes of a picture of lines hold all that is drawn, and their numbers differ. */
+#include "server/show/plot/plot.h"
+#include "tests/support/check.h"
+#include "tests/support/count_of.h"
+#include "tests/support/result_builder.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { POINTS = 4 };
+static const double LOADS[POINTS] = {0.1, 0.2, 0.4, 0.8};
+static const double NO_ERRORS[POINTS] = {0};
+
+/* A study of one curve of contact. */
+static struct study_result study_of(const char *quantity, const double y[POINTS],
+                                    const double errors[POINTS]) {
+    struct study_result study = built_study("contact", "one", 1);
+    struct curve curve = built_points(&study.cases[0], quantity, POINTS, LOADS, y, errors);
+    built_curve(&study.cases[0], &curve);
+    return study;
+}
+
+static int draw(const struct study_result *study, const struct plot_request *request, char **text,
+                struct error *err) {
+    size_t size = 0;
+    *text = NULL;
+    FILE *file = open_memstream(text, &size);
+    assert_non_null(file);
+    int status = plot_quantity(study, request, file, err);
+    fclose(file);
+    return status;
+}
+
+static char *picture_of(const struct study_result *study, const char *quantity,
+                        enum plot_axes axes) {
+    const struct plot_request request = {
+        .lines = {.quantity = quantity}, .axes = axes, .without_total = true};
+    struct error err = {0};
+    char *text;
+    if (draw(study, &request, &text, &err) != 0)
+        fail_msg("%s", err.text);
+    assert_null(strstr(text, "nan"));
+    assert_null(strstr(text, "inf"));
+    return text;
+}
+
+/* Returns how many points the first curve of a picture is drawn through. */
+static size_t drawn_points(const char *text) {
+    const char *at = strstr(text, "class=\"curve\"");
+    at = at != NULL ? strstr(at, " d=\"") : NULL;
+    assert_non_null(at);
+    size_t count = 0;
+    for (at += strlen(" d=\""); at != NULL && *at != '"' && *at != '\0'; at++)
+        count += *at == 'M' || *at == 'L';
+    return count;
+}
+
+/* Values of zero at the ends are values: a surface that is closed at the highest loads. */
+static void curves_are_drawn_to_their_ends(void **state) {
+    (void)state;
+    static const double Y[][POINTS] = {{1, 1, 0, 0}, {0, 0, 1, 1}, {0, 0, 0, 0}};
+    for (size_t n = 0; n < sizeof Y / sizeof *Y; n++) {
+        struct study_result study = study_of("percolates", Y[n], NO_ERRORS);
+        char *text = picture_of(&study, "percolates", AXES_AUTOMATIC);
+        assert_int_equal(drawn_points(text), POINTS);
+        assert_int_equal(count_of(text, "class=\"middle\">0.8</text>"), 1); /* the highest load */
+        free(text);
+        study_result_clear(&study);
+    }
+}
+
+/* Empty bins at the ends of a density do not widen its picture, unless all are empty. */
+static void empty_bins_are_left_out_of_densities(void **state) {
+    (void)state;
+    static const double Y[][POINTS] = {{1, 1, 0, 0}, {0, 0, 0, 0}};
+    for (size_t n = 0; n < 2; n++) {
+        struct study_result study = study_of("contact_pressure_pdf", Y[n], NO_ERRORS);
+        char *text = picture_of(&study, "contact_pressure_pdf", AXES_AUTOMATIC);
+        assert_int_equal(count_of(text, "class=\"middle\">0.8</text>"), n);
+        free(text);
+        study_result_clear(&study);
+    }
+}
+
+/* A picture without a point is refused in words, not drawn as an empty page. */
+static void pictures_without_points_are_refused(void **state) {
+    (void)state;
+    static const double ZERO[POINTS] = {0}, NONE[POINTS] = {NAN, NAN, NAN, NAN};
+    static const struct {
+        const double *y;
+        enum plot_axes axes;
+        const char *words;
+    } CASES[] = {{ZERO, AXES_Y, "no point to draw: none is above 0 on the logarithmic y"},
+                 {ZERO, AXES_XY, "none is above 0 on the logarithmic x and y"},
+                 {NONE, AXES_LINEAR, "no point to draw: no value is a finite number"}};
+    for (size_t n = 0; n < sizeof CASES / sizeof *CASES; n++) {
+        struct study_result study = study_of("percolates", CASES[n].y, NO_ERRORS);
+        const struct plot_request request = {.lines = {.quantity = "percolates"},
+                                             .axes = CASES[n].axes};
+        struct error err = {0};
+        char *text;
+        assert_int_equal(draw(&study, &request, &text, &err), ERROR_ABSENT);
+        assert_non_null(strstr(err.text, "open directions"));
+        assert_non_null(strstr(err.text, CASES[n].words));
+        assert_true(text == NULL || *text == '\0');
+        free(text);
+        study_result_clear(&study);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(curves_are_drawn_to_their_ends),
+        cmocka_unit_test(empty_bins_are_left_out_of_densities),
+        cmocka_unit_test(pictures_without_points_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
