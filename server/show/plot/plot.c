@@ -243,18 +243,11 @@ static struct stretch stretch_of(const struct plot *plot, const struct curve *cu
     return seen;
 }
 
-/* Includes what is seen of a line: its points, the errors of differences and of single points, and
- * theories as far as the line goes, or as a whole. */
+/* Includes what is seen of a line: its points, and theories over a parameter, or as a whole. */
 static void include(struct frame *frame, const struct plot *plot, const struct curve *curve) {
-    bool points = plot->words->points, errors = points || curve->minuend != NULL;
+    bool points = plot->words->points;
     const struct stretch seen = stretch_of(plot, curve);
-    if (!points)
-        frame_include(frame, seen.end - seen.first, curve->x + seen.first, curve->y + seen.first);
-    for (size_t n = 0; n < curve->n && errors; n++) {
-        double error = isfinite(curve->standard_error[n]) ? curve->standard_error[n] : 0;
-        frame_include_point(frame, curve->x[n], curve->y[n] - error);
-        frame_include_point(frame, curve->x[n], curve->y[n] + error);
-    }
+    frame_include(frame, seen.end - seen.first, curve->x + seen.first, curve->y + seen.first);
     for (size_t t = 0; t < curve->theory_count; t++)
         for (size_t n = 0; n < curve->n && curve->theories[t].y != NULL; n++) {
             if (points || plot->request->theories_whole)
@@ -307,20 +300,23 @@ static void include_lines(const struct plot *plot, struct frame *frame) {
                       lines->list[n].curve->y);
 }
 
-/* Fits one frame to the lines. Returns false where no point can be drawn on the axes. */
-static bool fit(struct plot *plot, const struct study_result *study) {
-    struct frame *frame = &plot->pen.frame;
+/* Begins the frame: which of its axes are logarithmic, and the ticks of a parameter. */
+static void start_axes(struct plot *plot, const struct study_result *study) {
     bool x, y;
     for (size_t n = 0; n < plot->lines->count && plot->words->points; n++)
         for (size_t k = 0; k < plot->lines->list[n].curve->n; k++)
             add_tick(plot, plot->lines->list[n].curve->x[k]);
     set_logarithmic(plot, study, &x, &y);
-    frame_start(frame, x, y);
-    frame->y.plus = is_one_plus(plot) ? 1 : 0;
+    frame_start(&plot->pen.frame, x, y);
+    plot->pen.frame.y.plus = is_one_plus(plot) ? 1 : 0;
+}
+
+/* Fits one frame to the lines. Returns false where no point can be drawn on the axes. */
+static bool fit(struct plot *plot) {
+    struct frame *frame = &plot->pen.frame;
     include_lines(plot, frame);
-    if (plot->errors.total)
-        plot_errors_include(frame, plot->lines, plot->panels, !plot->errors.bands,
-                            plot->words->points || plot->lines->list[0].curve->minuend != NULL);
+    plot_errors_include(frame, plot->lines, plot->panels, &plot->errors,
+                        plot->words->points || plot->lines->list[0].curve->minuend != NULL);
     struct plot_axis own = frame->x;
     if (!frame_finish(frame))
         return false;
@@ -465,6 +461,23 @@ static size_t columns_of(const struct plot_channel *channel) {
                : 0;
 }
 
+/* Says how many values are not drawn, as a logarithmic axis has no zero. */
+static void note_off_axis(struct plot *plot) {
+    char text[PLOT_LABEL_SIZE];
+    size_t count = 0;
+    for (size_t n = 0; n < plot->lines->count; n++) {
+        const struct curve *curve = plot->lines->list[n].curve;
+        const struct stretch seen = stretch_of(plot, curve);
+        for (size_t k = seen.first; k < seen.end; k++)
+            count += plot->lines->list[n].at[CHANNEL_PANEL] < plot->panels &&
+                     isfinite(curve->x[k]) && isfinite(curve->y[k]) &&
+                     !frame_has_place(&plot->pen.frame, curve->x[k], curve->y[k]);
+    }
+    snprintf(text, sizeof text, "not on this axis: %zu point%s", count, count == 1 ? "" : "s");
+    if (count > 0)
+        (void)legend_add(&plot->legend, text, "");
+}
+
 static void lay_out(struct plot *plot, const struct study_result *study) {
     const struct plot_channel *panels = &plot->lines->channels[CHANNEL_PANEL];
     plot->panels = panels->count < PANELS_MOST ? panels->count : PANELS_MOST;
@@ -478,6 +491,7 @@ static void lay_out(struct plot *plot, const struct study_result *study) {
     if (plot->words->one != NULL)
         plot_legend_case(&plot->legend, study, plot->words->one);
     plot_legend_notes(&plot->legend, plot->lines, plot->words->note);
+    note_off_axis(plot);
     plot->x_unit = common_unit(plot->lines, true);
     plot->y_unit = common_unit(plot->lines, false);
     note_unit(plot, &plot->x_unit, plot->words->x);
@@ -529,8 +543,9 @@ int plot_lines_draw(const struct plot_lines *lines, const struct study_result *s
     plot->request = request;
     plot->words = words;
     plot->pen.file = file;
+    start_axes(plot, study);
     lay_out(plot, study);
-    int status = fit(plot, study) ? 0 : refuse_empty(plot, err);
+    int status = fit(plot) ? 0 : refuse_empty(plot, err);
     if (status == 0)
         draw_picture(plot, study);
     free(plot);

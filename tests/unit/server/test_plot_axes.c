@@ -109,11 +109,67 @@ static void pictures_without_points_are_refused(void **state) {
     }
 }
 
+/* Reads the ends of the first bar, or of the stroke of a total, of a picture. */
+static void bar_of(const char *text, double *top, double *bottom) {
+    const char *bar = strstr(text, "class=\"bar\"");
+    assert_non_null(bar);
+    while (*bar != 'M')
+        bar--;
+    double x;
+    assert_int_equal(sscanf(bar, "M%lf %lfV%lf", &x, top, bottom), 3);
+}
+
+/* Bars of one standard error lie within the frame, also where totals are not drawn. */
+static void standard_errors_are_not_cut(void **state) {
+    (void)state;
+    static const double Y[POINTS] = {1, 1.1, 1.2, 1.3}, WIDE[POINTS] = {0.4, 0, 0, 0};
+    for (int logarithmic = 0; logarithmic < 2; logarithmic++) {
+        struct study_result study = study_of("work", Y, WIDE);
+        char *text = picture_of(&study, "work", logarithmic ? AXES_Y : AXES_LINEAR);
+        double top, bottom;
+        bar_of(text, &top, &bottom);
+        assert_true(top > FRAME_TOP + 1 && bottom < FRAME_BOTTOM - 1);
+        free(text);
+        study_result_clear(&study);
+    }
+}
+
+/* A bar that reaches zero ends at the frame of a logarithmic axis, and a band likewise. */
+static void errors_that_reach_zero_end_at_a_logarithmic_axis(void **state) {
+    (void)state;
+    static const double Y[POINTS] = {1, 2, 4, 8}, WIDE[POINTS] = {1.5, 0, 0, 0};
+    struct study_result study = study_of("work", Y, WIDE);
+    char *text = picture_of(&study, "work", AXES_Y);
+    double top, bottom;
+    bar_of(text, &top, &bottom);
+    assert_true(top > FRAME_TOP && fabs(bottom - FRAME_BOTTOM) < 0.1);
+    free(text);
+    study_result_clear(&study);
+}
+
+/* Values that a logarithmic axis has not are counted in the legend. */
+static void values_off_a_logarithmic_axis_are_counted(void **state) {
+    (void)state;
+    static const double Y[][POINTS] = {{1, 2, 0, -1}, {1, 2, 4, 0}, {1, 2, 4, 8}};
+    static const char *const NOTES[] = {">not on this axis: 2 points<",
+                                        ">not on this axis: 1 point<", "not on this axis"};
+    for (size_t n = 0; n < 3; n++) {
+        struct study_result study = study_of("work", Y[n], NO_ERRORS);
+        char *text = picture_of(&study, "work", AXES_Y);
+        assert_int_equal(count_of(text, NOTES[n]), n < 2);
+        free(text);
+        study_result_clear(&study);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(curves_are_drawn_to_their_ends),
         cmocka_unit_test(empty_bins_are_left_out_of_densities),
         cmocka_unit_test(pictures_without_points_are_refused),
+        cmocka_unit_test(standard_errors_are_not_cut),
+        cmocka_unit_test(errors_that_reach_zero_end_at_a_logarithmic_axis),
+        cmocka_unit_test(values_off_a_logarithmic_axis_are_counted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
