@@ -113,8 +113,22 @@ static void plot_theories_draw(const struct plot_lines *lines, size_t panel,
     }
 }
 
-/* Adds a row for each theory of any line. */
-static void plot_theories_name(const struct plot_lines *lines, struct legend *legend) {
+/* Returns whether the theory of some line in the first panels reaches the frame of the pen. */
+static bool is_seen(const struct plot_lines *lines, size_t panels, const char *name,
+                    const struct plot_pen *pen) {
+    for (size_t n = 0; n < lines->count; n++) {
+        const struct curve *curve = lines->list[n].curve;
+        const double *y = theory_of(&lines->list[n], name);
+        if (lines->list[n].at[CHANNEL_PANEL] < panels && y != NULL &&
+            pen_meets(pen, curve->n, curve->x, y))
+            return true;
+    }
+    return false;
+}
+
+/* Adds a row for each theory of any line. The pen has the frame of all panels. */
+static void plot_theories_name(const struct plot_lines *lines, size_t panels,
+                               const struct plot_pen *pen, struct legend *legend) {
     const char *names[NAMES_MOST];
     size_t count = names_of(lines, names), first;
     for (size_t t = 0; t < count; t++) {
@@ -123,9 +137,10 @@ static void plot_theories_name(const struct plot_lines *lines, struct legend *le
         for (size_t panel = 0; panel < lines->channels[CHANNEL_PANEL].count && shared; panel++)
             shared = is_shared(lines, panel, names[t], &first);
         plot_in_words(view_words(view_of(lines->kind), names[t]), name, sizeof name);
-        snprintf(label, sizeof label, "%s%s%s",
+        snprintf(label, sizeof label, "%s%s%s%s",
                  strncmp(name, "theory", 6) == 0 ? "" : "theory: ", name,
-                 shared ? "" : ", of each case");
+                 shared ? "" : ", of each line",
+                 is_seen(lines, panels, names[t], pen) ? "" : ", beyond the axes");
         plot_theory_style(t, shared ? BLACK : "#777777", style);
         legend_add(legend, label, style);
     }
@@ -311,15 +326,44 @@ static void start_axes(struct plot *plot, const struct study_result *study) {
     plot->pen.frame.y.plus = is_one_plus(plot) ? 1 : 0;
 }
 
+/* Lets the y axis reach a theory that would not be seen at all, be it in part: each end by half of
+ * its range, or of its decades, at most. */
+static void reach_theories(const struct plot *plot, struct frame *frame) {
+    static const double PART = 0.5;
+    const struct plot_axis points = frame->y;
+    const bool logarithmic = points.logarithmic;
+    double part =
+        logarithmic ? pow(points.high / points.low, PART) : PART * (points.high - points.low);
+    double least = logarithmic ? points.low / part : points.low - part;
+    double most = logarithmic ? points.high * part : points.high + part;
+    for (size_t n = 0; n < plot->lines->count; n++) {
+        const struct curve *curve = plot->lines->list[n].curve;
+        for (size_t t = 0; t < curve->theory_count; t++) {
+            struct frame own = *frame;
+            own.y.low = INFINITY;
+            own.y.high = -INFINITY;
+            for (size_t k = 0; k < curve->n && curve->theories[t].y != NULL; k++)
+                if (curve->x[k] >= frame->x.low && curve->x[k] <= frame->x.high)
+                    frame_include_point(&own, curve->x[k], curve->theories[t].y[k]);
+            if (own.y.low > points.high || own.y.high < points.low) {
+                frame->y.low = fmin(frame->y.low, fmax(least, own.y.low));
+                frame->y.high = fmax(frame->y.high, fmin(most, own.y.high));
+            }
+        }
+    }
+}
+
 /* Fits one frame to the lines. Returns false where no point can be drawn on the axes. */
 static bool fit(struct plot *plot) {
     struct frame *frame = &plot->pen.frame;
     include_lines(plot, frame);
+    if (is_empty(frame))
+        return false;
+    reach_theories(plot, frame);
     plot_errors_include(frame, plot->lines, plot->panels, &plot->errors,
                         plot->words->points || plot->lines->list[0].curve->minuend != NULL);
     struct plot_axis own = frame->x;
-    if (!frame_finish(frame))
-        return false;
+    (void)frame_finish(frame); /* there are points */
     static const double POINTS = 0.06, MARKS = 0.03;
     if (plot->words->points) {
         frame->x = own;
@@ -478,15 +522,22 @@ static void note_off_axis(struct plot *plot) {
         (void)legend_add(&plot->legend, text, "");
 }
 
-static void lay_out(struct plot *plot, const struct study_result *study) {
+/* Chooses what is drawn of the lines, and on which axes. */
+static void choose(struct plot *plot, const struct study_result *study) {
     const struct plot_channel *panels = &plot->lines->channels[CHANNEL_PANEL];
     plot->panels = panels->count < PANELS_MOST ? panels->count : PANELS_MOST;
     plot->marks = plot_marks_of(plot->lines, plot->words);
-    plot_legend_lines(&plot->legend, plot->lines, plot->marks, plot->words);
-    plot_theories_name(plot->lines, &plot->legend);
     plot_errors_choose(&plot->errors, plot->lines, plot->panels,
                        plot->marks == MARKS_NONE || plot->lines->list[0].curve->minuend != NULL,
                        !plot->request->without_total);
+    start_axes(plot, study);
+}
+
+/* Lays out a picture whose axes are fitted, as its legend says what they lack. */
+static void lay_out(struct plot *plot, const struct study_result *study) {
+    const struct plot_channel *panels = &plot->lines->channels[CHANNEL_PANEL];
+    plot_legend_lines(&plot->legend, plot->lines, plot->marks, plot->words);
+    plot_theories_name(plot->lines, plot->panels, &plot->pen, &plot->legend);
     plot_errors_note(&plot->legend, plot->lines, &plot->errors);
     if (plot->words->one != NULL)
         plot_legend_case(&plot->legend, study, plot->words->one);
@@ -543,11 +594,12 @@ int plot_lines_draw(const struct plot_lines *lines, const struct study_result *s
     plot->request = request;
     plot->words = words;
     plot->pen.file = file;
-    start_axes(plot, study);
-    lay_out(plot, study);
+    choose(plot, study);
     int status = fit(plot) ? 0 : refuse_empty(plot, err);
-    if (status == 0)
+    if (status == 0) {
+        lay_out(plot, study);
         draw_picture(plot, study);
+    }
     free(plot);
     return status;
 }

@@ -162,6 +162,62 @@ static void values_off_a_logarithmic_axis_are_counted(void **state) {
     }
 }
 
+/* Returns the path of the first line of a class; *end: behind it. */
+static const char *path_of(const char *text, const char *class, const char **end) {
+    static const char BEGIN[] = " d=\"";
+    const char *at = strstr(text, class);
+    at = at != NULL ? strstr(at, BEGIN) : NULL;
+    *end = at != NULL ? strchr(at + strlen(BEGIN), '"') : NULL;
+    assert_non_null(*end);
+    return at;
+}
+
+/* A theory that leaves the frame is drawn to its edge, on linear and on logarithmic axes, and does
+ * not widen it. */
+static void theories_are_drawn_to_the_frame(void **state) {
+    (void)state;
+    static const double Y[POINTS] = {1, 2, 3, 4}, FAR[POINTS] = {1e-3, 2, 1e9, 3};
+    for (int logarithmic = 0; logarithmic < 2; logarithmic++) {
+        struct study_result study = study_of("work", Y, NO_ERRORS);
+        built_theory(&study.cases[0], &study.cases[0].curves[0], "persson", FAR);
+        char *text = picture_of(&study, "work", logarithmic ? AXES_XY : AXES_LINEAR);
+        const char *end, *path = path_of(text, "class=\"theory\"", &end);
+        double x, y, top = INFINITY;
+        for (const char *at = path; at < end; at++)
+            if (sscanf(at, "%*[ML]%lf %lf", &x, &y) == 2) {
+                assert_true(x >= FRAME_LEFT && x <= FRAME_RIGHT);
+                assert_true(y >= FRAME_TOP && y <= FRAME_BOTTOM);
+                top = fmin(top, y);
+            }
+        assert_true(top == FRAME_TOP); /* where it leaves the frame, and comes back */
+        assert_int_equal(count_of(text, "class=\"end\">4</text>"), !logarithmic);
+        assert_int_equal(count_of(text, "beyond the axes"), 0);
+        free(text);
+        study_result_clear(&study);
+    }
+}
+
+/* A theory near the curve is seen; the legend says which is not. */
+static void near_theories_are_seen(void **state) {
+    (void)state;
+    static const double Y[POINTS] = {1, 2, 3, 4}, NEAR[POINTS] = {5, 5, 5, 5},
+                        FAR[POINTS] = {1e9, 1e9, 1e9, 1e9};
+    struct study_result study = study_of("work", Y, NO_ERRORS);
+    struct curve *curve = &study.cases[0].curves[0];
+    built_theory(&study.cases[0], curve, "persson", NEAR);
+    char *text = picture_of(&study, "work", AXES_LINEAR);
+    assert_int_equal(count_of(text, "class=\"end\">5</text>"), 1);
+    assert_int_equal(count_of(text, ">theory: Persson<"), 1);
+    free(text);
+    curve->theory_count = 0;
+    built_theory(&study.cases[0], curve, "persson", FAR);
+    text = picture_of(&study, "work", AXES_LINEAR);
+    assert_int_equal(count_of(text, ">theory: Persson, beyond the axes<"), 1);
+    assert_int_equal(count_of(text, "class=\"end\">4</text>"), 1);
+    free(text);
+    study_result_clear(&study);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(curves_are_drawn_to_their_ends),
@@ -170,6 +226,8 @@ int main(void) {
         cmocka_unit_test(standard_errors_are_not_cut),
         cmocka_unit_test(errors_that_reach_zero_end_at_a_logarithmic_axis),
         cmocka_unit_test(values_off_a_logarithmic_axis_are_counted),
+        cmocka_unit_test(theories_are_drawn_to_the_frame),
+        cmocka_unit_test(near_theories_are_seen),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

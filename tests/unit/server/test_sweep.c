@@ -126,7 +126,7 @@ static void each_setting_is_a_line(void **state) {
     check_count(&study, &DENSITY, ">0.6</text>", 1); /* what was swept has the ticks */
     study.cases[0].scalars[0].theory = 9;
     check_count(&study, &DENSITY, "class=\"theory\"", 3);
-    check_count(&study, &DENSITY, ">theory, of each case<", 1);
+    check_count(&study, &DENSITY, ">theory, of each line<", 1);
     study.cases[0].scalars[0].grid = 9;
     check_count(&study, &DENSITY, ">theory of the grid<", 1);
     study_result_clear(&study);
