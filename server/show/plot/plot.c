@@ -291,9 +291,8 @@ static bool is_one_plus(const struct plot *plot) {
 
 /* Marks at the ends keep away from the frame by this share of it. */
 static void widen(struct plot_axis *axis, double share) {
-    double low = axis->low, high = axis->high;
-    double margin = low < high ? share * (high - low) : 0.5 * fabs(low) + (low == 0);
-    double factor = low < high ? pow(high / low, share) : 2;
+    double low = axis->low, high = axis->high, margin = share * (high - low);
+    double factor = axis->logarithmic ? pow(high / low, share) : 1;
     axis->low = axis->logarithmic ? low / factor : low - margin;
     axis->high = axis->logarithmic ? high * factor : high + margin;
 }
@@ -359,6 +358,7 @@ static bool fit(struct plot *plot) {
     include_lines(plot, frame);
     if (is_empty(frame))
         return false;
+    axis_widen_single(&frame->y);
     reach_theories(plot, frame);
     plot_errors_include(frame, plot->lines, plot->panels, &plot->errors,
                         plot->words->points || plot->lines->list[0].curve->minuend != NULL);
@@ -366,7 +366,7 @@ static bool fit(struct plot *plot) {
     (void)frame_finish(frame); /* there are points */
     static const double POINTS = 0.06, MARKS = 0.03;
     if (plot->words->points) {
-        frame->x = own;
+        frame->x = frame->x.single ? frame->x : own;
         widen(&frame->x, POINTS);
     } else if (plot->marks != MARKS_NONE) {
         double low = frame->x.low;

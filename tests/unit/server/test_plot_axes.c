@@ -1,5 +1,6 @@
 /* Protects: the axes of a picture of lines hold all that is drawn, and their numbers differ. */
 #include "server/show/plot/plot.h"
+#include "server/show/plot/plot_heat.h"
 #include "tests/support/check.h"
 #include "tests/support/count_of.h"
 #include "tests/support/result_builder.h"
@@ -169,7 +170,7 @@ static const char *path_of(const char *text, const char *class, const char **end
     at = at != NULL ? strstr(at, BEGIN) : NULL;
     *end = at != NULL ? strchr(at + strlen(BEGIN), '"') : NULL;
     assert_non_null(*end);
-    return at;
+    return at != NULL ? at + strlen(BEGIN) : text;
 }
 
 /* A theory that leaves the frame is drawn to its edge, on linear and on logarithmic axes, and does
@@ -218,6 +219,83 @@ static void near_theories_are_seen(void **state) {
     study_result_clear(&study);
 }
 
+/* Numbers of neighbours differ, at axes and in the legend of colours, however small their step. */
+static void neighbours_have_different_numbers(void **state) {
+    (void)state;
+    static const double Y[POINTS] = {1, 1.00001, 1.00002, 1.00004};
+    struct study_result study = study_of("work", Y, NO_ERRORS);
+    char *text = picture_of(&study, "work", AXES_LINEAR), first[HEAT_LABEL_SIZE];
+    assert_int_equal(count_of(text, "class=\"end\">1.00001</text>"), 1);
+    assert_int_equal(count_of(text, "class=\"end\">1.00002</text>"), 1);
+    assert_int_equal(count_of(text, "class=\"end\">1</text>"), 1);
+    free(text);
+    study_result_clear(&study);
+    char style[HEAT_STYLE_SIZE], second[HEAT_LABEL_SIZE];
+    const struct heat_scale scale = heat_scale_between(25.000012, 25.000048, 4, HEAT_HEIGHT);
+    heat_level(&scale, 0, style, first);
+    heat_level(&scale, 1, style, second);
+    assert_string_equal(first, "25.00001 to 25.00002");
+    assert_string_equal(second, "25.00002 to 25.00003");
+    assert_int_equal(number_digits(0, 1e-5), 4);
+    assert_int_equal(number_digits(123.456, 0), 4);
+}
+
+/* Reads where the first point of the first curve stands. */
+static void first_point(const char *text, double *x, double *y) {
+    const char *end, *path = path_of(text, "class=\"curve\"", &end);
+    if (sscanf(path, "M%lf %lf", x, y) != 2)
+        fail_msg("%.80s", path);
+}
+
+/* Values that are one, or differ by rounding alone, stand in the middle of an axis that is in
+ * proportion to them, with their error. */
+static void one_value_stands_in_the_middle(void **state) {
+    (void)state;
+    static const double Y[][POINTS] = {{1000, 1000, 1000, 1000},
+                                       {1, 1 + 1e-15, 1 - 1e-15, 1},
+                                       {1e-9, 1e-9, 1e-9, 1e-9},
+                                       {-3, -3, -3, -3},
+                                       {0, 0, 0, 0}};
+    for (size_t n = 0; n < sizeof Y / sizeof *Y; n++)
+        for (int logarithmic = 0; logarithmic < (n < 3 ? 2 : 1); logarithmic++) {
+            double x, y, middle = (FRAME_TOP + FRAME_BOTTOM) / 2.0;
+            struct study_result study = study_of("work", Y[n], NO_ERRORS);
+            char *text = picture_of(&study, "work", logarithmic ? AXES_Y : AXES_LINEAR);
+            first_point(text, &x, &y);
+            if (!(fabs(y - middle) < 1))
+                fail_msg("value %g at %g", Y[n][0], y);
+            free(text);
+            study_result_clear(&study);
+        }
+    static const double LARGE[POINTS] = {1, 1, 1, 1}, ERRORS[POINTS] = {3, 0, 0, 0};
+    struct study_result study = study_of("work", LARGE, ERRORS);
+    study.cases[0].curves[0].n = 1; /* one load, too */
+    char *text = picture_of(&study, "work", AXES_LINEAR);
+    double x, y, top, bottom;
+    first_point(text, &x, &y);
+    assert_true(fabs(x - (FRAME_LEFT + FRAME_RIGHT) / 2.0) < 1);
+    bar_of(text, &top, &bottom);
+    assert_true(top > FRAME_TOP && bottom < FRAME_BOTTOM && fabs(top + bottom - 2 * y) < 1);
+    free(text);
+    study_result_clear(&study);
+}
+
+/* A logarithmic axis of a part of a decade has numbers, at their logarithmic positions. */
+static void short_logarithmic_axes_have_numbers(void **state) {
+    (void)state;
+    static const double Y[POINTS] = {2.4, 2.5, 2.9, 3};
+    struct study_result study = study_of("work", Y, NO_ERRORS);
+    char *text = picture_of(&study, "work", AXES_Y), tick[64];
+    const struct frame frame = {.y = {.low = 2.4 / 1.5, .high = 3 * 1.5, .logarithmic = true},
+                                .top = FRAME_TOP,
+                                .bottom = FRAME_BOTTOM};
+    snprintf(tick, sizeof tick, "y=\"%.1f\" class=\"end\">3</text>", frame_y(&frame, 3) + 4);
+    assert_int_equal(count_of(text, tick), 1);
+    assert_true(count_of(text, "class=\"end\">") >= 3);
+    free(text);
+    study_result_clear(&study);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(curves_are_drawn_to_their_ends),
@@ -228,6 +306,9 @@ int main(void) {
         cmocka_unit_test(values_off_a_logarithmic_axis_are_counted),
         cmocka_unit_test(theories_are_drawn_to_the_frame),
         cmocka_unit_test(near_theories_are_seen),
+        cmocka_unit_test(neighbours_have_different_numbers),
+        cmocka_unit_test(one_value_stands_in_the_middle),
+        cmocka_unit_test(short_logarithmic_axes_have_numbers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
