@@ -1,5 +1,5 @@
 /* Protects: the axes of a picture of lines hold all that is drawn, and their numbers differ. */
-#include "server/show/plot/plot.h"
+#include "server/show/plot/picture.h"
 #include "server/show/plot/plot_heat.h"
 #include "tests/support/check.h"
 #include "tests/support/count_of.h"
@@ -296,6 +296,42 @@ static void short_logarithmic_axes_have_numbers(void **state) {
     study_result_clear(&study);
 }
 
+/* Gives a difference with values of either sign. */
+static int difference_of(const void *context, const struct comparison *comparison,
+                         struct study_result *out, struct error *err) {
+    static const double Y[POINTS] = {-1, 2, -3, 4};
+    (void)context;
+    (void)comparison;
+    (void)err;
+    *out = study_of("work", Y, NO_ERRORS);
+    struct case_result *one = &out->cases[0];
+    one->difference = true;
+    one->curves[0].minuend = one->curves[0].subtrahend = one->curves[0].y;
+    return 0;
+}
+
+/* A logarithmic y axis of a difference is refused, not drawn as another one. */
+static void differences_have_a_linear_y_axis(void **state) {
+    (void)state;
+    const struct picture_source source = {.difference = difference_of};
+    const struct comparison comparison = {0};
+    for (enum plot_axes axes = AXES_AUTOMATIC; axes < AXES_COUNT; axes++) {
+        const struct picture_request request = {
+            .quantity = "work", .axes = axes, .case_number = -1, .difference = &comparison};
+        bool allowed = axes == AXES_AUTOMATIC || axes == AXES_LINEAR || axes == AXES_X;
+        struct error err = {0};
+        char *text = NULL, expected[32];
+        size_t size = 0;
+        FILE *file = open_memstream(&text, &size);
+        assert_non_null(file);
+        assert_int_equal(picture_draw(&source, &request, file, &err), allowed ? 0 : ERROR_INPUT);
+        fclose(file);
+        snprintf(expected, sizeof expected, "log %s: a difference", AXES_NAMES[axes]);
+        assert_int_equal(strstr(err.text, expected) == NULL, allowed);
+        free(text);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(curves_are_drawn_to_their_ends),
@@ -309,6 +345,7 @@ int main(void) {
         cmocka_unit_test(neighbours_have_different_numbers),
         cmocka_unit_test(one_value_stands_in_the_middle),
         cmocka_unit_test(short_logarithmic_axes_have_numbers),
+        cmocka_unit_test(differences_have_a_linear_y_axis),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
