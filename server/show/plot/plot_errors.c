@@ -166,15 +166,16 @@ static void find_limits(const struct plot_axis *axis, double part, bool whole, d
 }
 
 /* Returns how far an axis reaches down for a standard error that ends at `low`: a decade below the
- * points where it is logarithmic, and not below zero where this would hardly be seen. */
-static double standard_low(const struct plot_axis *points, bool whole, double low) {
+ * points where it is logarithmic. Where no point lies below zero, it ends there for bands, such as
+ * those of densities, and for bars that would hardly be seen below. */
+static double standard_low(const struct plot_axis *points, bool bands, bool whole, double low) {
     static const double SEEN = 0.05, DECADE = 10;
     if (points->logarithmic)
         return fmax(low, points->low / DECADE);
     if (points->plus > 0)
         return fmax(low, fmin(points->low, 0));
-    bool hidden = !whole && points->low >= 0 && -low < SEEN * (points->high - points->low);
-    return hidden ? fmax(low, 0) : low;
+    bool hidden = bands || -low < SEEN * (points->high - points->low);
+    return !whole && points->low >= 0 && hidden ? fmax(low, 0) : low;
 }
 
 void plot_errors_include(struct frame *frame, const struct plot_lines *lines, size_t panels,
@@ -194,7 +195,8 @@ void plot_errors_include(struct frame *frame, const struct plot_lines *lines, si
             if (!frame_has_place(frame, line->curve->x[k], line->curve->y[k]))
                 continue;
             if (isfinite(standard.low) && isfinite(standard.high)) {
-                frame->y.low = fmin(frame->y.low, standard_low(&points, whole, standard.low));
+                frame->y.low =
+                    fmin(frame->y.low, standard_low(&points, drawn->bands, whole, standard.low));
                 frame->y.high = fmax(frame->y.high, standard.high);
             }
             if (drawn->total && isfinite(total.low) && isfinite(total.high)) {

@@ -135,6 +135,27 @@ static void standard_errors_are_not_cut(void **state) {
     }
 }
 
+/* A density is not drawn below zero, however uncertain it is. */
+static void bands_of_densities_end_at_zero(void **state) {
+    (void)state;
+    enum { BINS = 50 };
+    double x[BINS], y[BINS], errors[BINS];
+    for (size_t n = 0; n < BINS; n++) {
+        x[n] = (double)n;
+        y[n] = 1 + (double)(n % 7);
+        errors[n] = 3;
+    }
+    struct study_result study = built_study("statistics", "one", 1);
+    struct curve curve = built_points(&study.cases[0], "summit_height_pdf", BINS, x, y, errors);
+    built_curve(&study.cases[0], &curve);
+    char *text = picture_of(&study, "summit_height_pdf", AXES_LINEAR);
+    assert_int_equal(count_of(text, "class=\"band\""), 1);
+    assert_int_equal(count_of(text, "y=\"504.0\" class=\"end\">0</text>"), 1); /* at the frame */
+    assert_int_equal(count_of(text, "class=\"end\">10</text>"), 1);            /* 7 + 3 */
+    free(text);
+    study_result_clear(&study);
+}
+
 /* A bar that reaches zero ends at the frame of a logarithmic axis, and a band likewise. */
 static void errors_that_reach_zero_end_at_a_logarithmic_axis(void **state) {
     (void)state;
@@ -338,6 +359,7 @@ int main(void) {
         cmocka_unit_test(empty_bins_are_left_out_of_densities),
         cmocka_unit_test(pictures_without_points_are_refused),
         cmocka_unit_test(standard_errors_are_not_cut),
+        cmocka_unit_test(bands_of_densities_end_at_zero),
         cmocka_unit_test(errors_that_reach_zero_end_at_a_logarithmic_axis),
         cmocka_unit_test(values_off_a_logarithmic_axis_are_counted),
         cmocka_unit_test(theories_are_drawn_to_the_frame),
