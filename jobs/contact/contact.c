@@ -287,6 +287,7 @@ static int measure_like(const void *one_case, const double *z, cJSON *like, stru
 
 static const char *const SCALARS[] = {"kappa", "erf_kappa", NULL};
 static const char *const LEFT_OUT[] = {"persson_light_load", "bgt_light_load", NULL};
+static const char *const DENSITIES[] = {"contact_pressure_pdf", NULL};
 static const struct logarithmic_picture LOGARITHMIC[] = {{"contact_area", "light"}, {NULL, NULL}};
 static const struct quantity_table TABLE = {
     .quantity = "contact_area",
@@ -348,8 +349,11 @@ static const struct shown_name NAMES[] = {
     {"eps_s", "error of the spectrum", "error of the spectrum eps_s"},
     {"nayak_alpha", "Nayak parameter", "Nayak parameter alpha"},
     {NULL, NULL, NULL}};
-static const struct result_view VIEW = {
-    .table = &TABLE, .logarithmic = LOGARITHMIC, .series_names = SERIES_NAMES, .names = NAMES};
+static const struct result_view VIEW = {.table = &TABLE,
+                                        .densities = DENSITIES,
+                                        .logarithmic = LOGARITHMIC,
+                                        .series_names = SERIES_NAMES,
+                                        .names = NAMES};
 
 /* As study_kind.fill has it. */
 static int complete_case(const cJSON *document, cJSON *parameters, struct error *err) {

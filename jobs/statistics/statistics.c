@@ -115,6 +115,8 @@ static const char *const HEADLINES[] = {"nayak_alpha",
                                         "percentile_summit_density",
                                         "percentile_summit_curvature_mean",
                                         NULL};
+static const char *const DENSITIES[] = {"height_pdf", "summit_height_pdf", "summit_curvature_pdf",
+                                        NULL};
 static const struct logarithmic_picture LOGARITHMIC[] = {
     {"psd", NULL}, {"nayak_alpha_by_ratio", NULL}, {NULL, NULL}};
 static const char DISTRIBUTION[] = "/surface/heights/distribution";
@@ -147,6 +149,7 @@ static const struct shown_name NAMES[] = {
     {"eps_s", "error of the spectrum", "error of the spectrum eps_s"},
     {NULL, NULL, NULL}};
 static const struct result_view STATISTICS_VIEW = {.headlines = HEADLINES,
+                                                   .densities = DENSITIES,
                                                    .logarithmic = LOGARITHMIC,
                                                    .series_names = SERIES_NAMES,
                                                    .names = NAMES};

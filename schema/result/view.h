@@ -42,6 +42,8 @@ struct result_view {
     const struct quantity_table *table; /* NULL: a row a case with its scalars */
     const char *const *headlines;       /* scalars of such a row, NULL-terminated; NULL, or where no
                                            case has one of them: all that have a theory */
+    const char *const *densities; /* quantities whose zeros at the ends are empty bins, which a
+                                     picture leaves out; NULL-terminated; NULL: none */
     const struct logarithmic_picture *logarithmic; /* ends with a quantity of NULL; NULL: none */
     const struct series_name *series_names;        /* ends with a series of NULL; NULL: none */
     const struct shown_name *names; /* of what is not called as it is named; ends with a name of

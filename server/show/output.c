@@ -87,6 +87,8 @@ static int write_densities(const struct study_result *study, const char *folder,
     return status;
 }
 
+/* Writes no picture where there is no point to draw: all values are missing, or those of
+ * logarithmic axes are not above 0. */
 static int write_plot(const struct study_result *study, const struct plot_request *request,
                       const char *folder, const char *name, struct error *err) {
     struct written_file file;
@@ -94,7 +96,8 @@ static int write_plot(const struct study_result *study, const struct plot_reques
     if (status != 0)
         return status;
     status = plot_quantity(study, request, file.stream, err);
-    return written_file_close(&file, status, err);
+    status = written_file_close(&file, status, err);
+    return status == ERROR_ABSENT ? 0 : status;
 }
 
 /* A quantity in several units (patches in the cell, patches per wave) takes a picture each, the

@@ -42,7 +42,7 @@ static const struct option_row OPTIONS[] = {
     {"level", 0, OPTION_TEXT, 0, 0, AT(level), "N", NULL, "of curves: of this level alone"},
     {"log", 0, OPTION_CHOICE, 0, 0, AT(axes), AXES_WORDS, "auto",
      "which axes are logarithmic; auto: as suits the quantity and the steps of x; one-plus: y as "
-     "log10(1 + y)"},
+     "log10(1 + y); of a difference x alone"},
     {"total", 0, OPTION_CHOICE, 0, 0, AT(total), "yes|no", "yes",
      "total errors, to 95 %, around the standard errors"},
     {"width", 0, OPTION_TEXT, 0, 0, AT(width), "MM", NULL,

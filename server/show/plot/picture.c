@@ -42,13 +42,25 @@ struct drawing {
     FILE *file;
 };
 
+/* Differences have either sign, which only a linear y axis shows. */
+static int check_difference(const struct picture_request *request, struct error *err) {
+    if (request->case_number >= 0 || request->x != NULL || request->where != NULL)
+        return error_set(err, ERROR_INPUT, "a difference takes no case, x or where");
+    if (request->axes == AXES_Y || request->axes == AXES_XY || request->axes == AXES_ONE_PLUS)
+        return error_set(err, ERROR_INPUT,
+                         "log %s: a difference may be below 0, which a logarithmic y axis has not; "
+                         "allowed: auto, none, x",
+                         AXES_NAMES[request->axes]);
+    return 0;
+}
+
 static int draw_difference(struct drawing *drawing, struct error *err) {
     const struct picture_request *request = drawing->request;
     const struct picture_source *source = drawing->source;
     struct study_result study = {0};
-    if (request->case_number >= 0 || request->x != NULL || request->where != NULL)
-        return error_set(err, ERROR_INPUT, "a difference takes no case, x or where");
-    int status = source->difference(source->context, request->difference, &study, err);
+    int status = check_difference(request, err);
+    if (status == 0)
+        status = source->difference(source->context, request->difference, &study, err);
     if (status == 0)
         status = draw_results(&study, &drawing->plot, drawing->file, err);
     study_result_clear(&study);

@@ -113,8 +113,22 @@ static void plot_theories_draw(const struct plot_lines *lines, size_t panel,
     }
 }
 
-/* Adds a row for each theory of any line. */
-static void plot_theories_name(const struct plot_lines *lines, struct legend *legend) {
+/* Returns whether the theory of some line in the first panels reaches the frame of the pen. */
+static bool is_seen(const struct plot_lines *lines, size_t panels, const char *name,
+                    const struct plot_pen *pen) {
+    for (size_t n = 0; n < lines->count; n++) {
+        const struct curve *curve = lines->list[n].curve;
+        const double *y = theory_of(&lines->list[n], name);
+        if (lines->list[n].at[CHANNEL_PANEL] < panels && y != NULL &&
+            pen_meets(pen, curve->n, curve->x, y))
+            return true;
+    }
+    return false;
+}
+
+/* Adds a row for each theory of any line. The pen has the frame of all panels. */
+static void plot_theories_name(const struct plot_lines *lines, size_t panels,
+                               const struct plot_pen *pen, struct legend *legend) {
     const char *names[NAMES_MOST];
     size_t count = names_of(lines, names), first;
     for (size_t t = 0; t < count; t++) {
@@ -123,9 +137,10 @@ static void plot_theories_name(const struct plot_lines *lines, struct legend *le
         for (size_t panel = 0; panel < lines->channels[CHANNEL_PANEL].count && shared; panel++)
             shared = is_shared(lines, panel, names[t], &first);
         plot_in_words(view_words(view_of(lines->kind), names[t]), name, sizeof name);
-        snprintf(label, sizeof label, "%s%s%s",
+        snprintf(label, sizeof label, "%s%s%s%s",
                  strncmp(name, "theory", 6) == 0 ? "" : "theory: ", name,
-                 shared ? "" : ", of each case");
+                 shared ? "" : ", of each line",
+                 is_seen(lines, panels, names[t], pen) ? "" : ", beyond the axes");
         plot_theory_style(t, shared ? BLACK : "#777777", style);
         legend_add(legend, label, style);
     }
@@ -224,23 +239,34 @@ static void set_ticks(const struct plot *plot, struct frame *frame) {
     frame->x.tick_count = plot->tick_count;
 }
 
-/* Includes what is seen of a line: its points, the errors of differences and of single points, and
- * theories as far as the line goes, or as a whole. */
+/* Points of a curve from `first` on, before `end`. */
+struct stretch {
+    size_t first, end;
+};
+
+/* Returns which points must be seen: those of a density between its empty bins at the ends, none
+ * where all of its bins are empty; else all. */
+static struct stretch stretch_of(const struct plot *plot, const struct curve *curve) {
+    const char *const *densities = view_of(plot->lines->kind)->densities;
+    struct stretch seen = {0, curve->n};
+    if (plot->words->points || curve->minuend != NULL || !view_lists(densities, curve->quantity))
+        return seen;
+    while (seen.end > 0 && !(fabs(curve->y[seen.end - 1]) > 0))
+        seen.end--;
+    while (seen.first < seen.end && !(fabs(curve->y[seen.first]) > 0))
+        seen.first++;
+    return seen;
+}
+
+/* Includes what is seen of a line: its points, and theories over a parameter, or as a whole. */
 static void include(struct frame *frame, const struct plot *plot, const struct curve *curve) {
-    bool points = plot->words->points, errors = points || curve->minuend != NULL;
-    if (!points)
-        frame_include(frame, curve->n, curve->x, curve->y);
-    for (size_t n = 0; n < curve->n && errors; n++) {
-        double error = isfinite(curve->standard_error[n]) ? curve->standard_error[n] : 0;
-        frame_include_point(frame, curve->x[n], curve->y[n] - error);
-        frame_include_point(frame, curve->x[n], curve->y[n] + error);
-    }
+    bool points = plot->words->points;
+    const struct stretch seen = stretch_of(plot, curve);
+    frame_include(frame, seen.end - seen.first, curve->x + seen.first, curve->y + seen.first);
     for (size_t t = 0; t < curve->theory_count; t++)
         for (size_t n = 0; n < curve->n && curve->theories[t].y != NULL; n++) {
-            if (points)
+            if (points || plot->request->theories_whole)
                 frame_include_point(frame, curve->x[n], curve->theories[t].y[n]);
-            else if (plot->request->theories_whole)
-                frame_include(frame, 1, &curve->x[n], &curve->theories[t].y[n]);
         }
 }
 
@@ -265,35 +291,82 @@ static bool is_one_plus(const struct plot *plot) {
 
 /* Marks at the ends keep away from the frame by this share of it. */
 static void widen(struct plot_axis *axis, double share) {
-    double low = axis->low, high = axis->high;
-    double margin = low < high ? share * (high - low) : 0.5 * fabs(low) + (low == 0);
-    double factor = low < high ? pow(high / low, share) : 2;
+    double low = axis->low, high = axis->high, margin = share * (high - low);
+    double factor = axis->logarithmic ? pow(high / low, share) : 1;
     axis->low = axis->logarithmic ? low / factor : low - margin;
     axis->high = axis->logarithmic ? high * factor : high + margin;
 }
 
-/* Fits one frame to the lines of all panels, which share their axes. */
-static bool fit(struct plot *plot, const struct study_result *study) {
-    struct frame *frame = &plot->pen.frame;
+/* Returns whether no point has been included yet. */
+static bool is_empty(const struct frame *frame) {
+    return !(frame->x.low <= frame->x.high);
+}
+
+/* Includes the lines of all panels, which share their axes; where all of them are densities without
+ * a thing in any bin, these bins. */
+static void include_lines(const struct plot *plot, struct frame *frame) {
+    const struct plot_lines *lines = plot->lines;
+    for (size_t n = 0; n < lines->count; n++)
+        if (lines->list[n].at[CHANNEL_PANEL] < plot->panels)
+            include(frame, plot, lines->list[n].curve);
+    for (size_t n = 0, empty = is_empty(frame); n < lines->count && empty; n++)
+        frame_include(frame, lines->list[n].curve->n, lines->list[n].curve->x,
+                      lines->list[n].curve->y);
+}
+
+/* Begins the frame: which of its axes are logarithmic, and the ticks of a parameter. */
+static void start_axes(struct plot *plot, const struct study_result *study) {
     bool x, y;
     for (size_t n = 0; n < plot->lines->count && plot->words->points; n++)
         for (size_t k = 0; k < plot->lines->list[n].curve->n; k++)
             add_tick(plot, plot->lines->list[n].curve->x[k]);
     set_logarithmic(plot, study, &x, &y);
-    frame_start(frame, x, y);
-    frame->y.plus = is_one_plus(plot) ? 1 : 0;
-    for (size_t n = 0; n < plot->lines->count; n++)
-        if (plot->lines->list[n].at[CHANNEL_PANEL] < plot->panels)
-            include(frame, plot, plot->lines->list[n].curve);
-    if (plot->errors.total)
-        plot_errors_include(frame, plot->lines, plot->panels, !plot->errors.bands,
-                            plot->words->points || plot->lines->list[0].curve->minuend != NULL);
-    struct plot_axis own = frame->x;
-    if (!frame_finish(frame))
+    frame_start(&plot->pen.frame, x, y);
+    plot->pen.frame.y.plus = is_one_plus(plot) ? 1 : 0;
+}
+
+/* Lets the y axis reach a theory that would not be seen at all, be it in part: each end by half of
+ * its range, or of its decades, at most. */
+static void reach_theories(const struct plot *plot, struct frame *frame) {
+    static const double PART = 0.5;
+    const struct plot_axis points = frame->y;
+    const bool logarithmic = points.logarithmic;
+    double part =
+        logarithmic ? pow(points.high / points.low, PART) : PART * (points.high - points.low);
+    double least = logarithmic ? points.low / part : points.low - part;
+    double most = logarithmic ? points.high * part : points.high + part;
+    for (size_t n = 0; n < plot->lines->count; n++) {
+        const struct curve *curve = plot->lines->list[n].curve;
+        for (size_t t = 0; t < curve->theory_count; t++) {
+            struct frame own = *frame;
+            own.y.low = INFINITY;
+            own.y.high = -INFINITY;
+            for (size_t k = 0; k < curve->n && curve->theories[t].y != NULL; k++)
+                if (curve->x[k] >= frame->x.low && curve->x[k] <= frame->x.high)
+                    frame_include_point(&own, curve->x[k], curve->theories[t].y[k]);
+            if (own.y.low > points.high || own.y.high < points.low) {
+                frame->y.low = fmin(frame->y.low, fmax(least, own.y.low));
+                frame->y.high = fmax(frame->y.high, fmin(most, own.y.high));
+            }
+        }
+    }
+}
+
+/* Fits one frame to the lines. Returns false where no point can be drawn on the axes. */
+static bool fit(struct plot *plot) {
+    struct frame *frame = &plot->pen.frame;
+    include_lines(plot, frame);
+    if (is_empty(frame))
         return false;
+    axis_widen_single(&frame->y);
+    reach_theories(plot, frame);
+    plot_errors_include(frame, plot->lines, plot->panels, &plot->errors,
+                        plot->words->points || plot->lines->list[0].curve->minuend != NULL);
+    struct plot_axis own = frame->x;
+    (void)frame_finish(frame); /* there are points */
     static const double POINTS = 0.06, MARKS = 0.03;
     if (plot->words->points) {
-        frame->x = own;
+        frame->x = frame->x.single ? frame->x : own;
         widen(&frame->x, POINTS);
     } else if (plot->marks != MARKS_NONE) {
         double low = frame->x.low;
@@ -432,19 +505,44 @@ static size_t columns_of(const struct plot_channel *channel) {
                : 0;
 }
 
-static void lay_out(struct plot *plot, const struct study_result *study) {
+/* Says how many values are not drawn, as a logarithmic axis has no zero. */
+static void note_off_axis(struct plot *plot) {
+    char text[PLOT_LABEL_SIZE];
+    size_t count = 0;
+    for (size_t n = 0; n < plot->lines->count; n++) {
+        const struct curve *curve = plot->lines->list[n].curve;
+        const struct stretch seen = stretch_of(plot, curve);
+        for (size_t k = seen.first; k < seen.end; k++)
+            count += plot->lines->list[n].at[CHANNEL_PANEL] < plot->panels &&
+                     isfinite(curve->x[k]) && isfinite(curve->y[k]) &&
+                     !frame_has_place(&plot->pen.frame, curve->x[k], curve->y[k]);
+    }
+    snprintf(text, sizeof text, "not on this axis: %zu point%s", count, count == 1 ? "" : "s");
+    if (count > 0)
+        (void)legend_add(&plot->legend, text, "");
+}
+
+/* Chooses what is drawn of the lines, and on which axes. */
+static void choose(struct plot *plot, const struct study_result *study) {
     const struct plot_channel *panels = &plot->lines->channels[CHANNEL_PANEL];
     plot->panels = panels->count < PANELS_MOST ? panels->count : PANELS_MOST;
     plot->marks = plot_marks_of(plot->lines, plot->words);
-    plot_legend_lines(&plot->legend, plot->lines, plot->marks, plot->words);
-    plot_theories_name(plot->lines, &plot->legend);
     plot_errors_choose(&plot->errors, plot->lines, plot->panels,
                        plot->marks == MARKS_NONE || plot->lines->list[0].curve->minuend != NULL,
                        !plot->request->without_total);
+    start_axes(plot, study);
+}
+
+/* Lays out a picture whose axes are fitted, as its legend says what they lack. */
+static void lay_out(struct plot *plot, const struct study_result *study) {
+    const struct plot_channel *panels = &plot->lines->channels[CHANNEL_PANEL];
+    plot_legend_lines(&plot->legend, plot->lines, plot->marks, plot->words);
+    plot_theories_name(plot->lines, plot->panels, &plot->pen, &plot->legend);
     plot_errors_note(&plot->legend, plot->lines, &plot->errors);
     if (plot->words->one != NULL)
         plot_legend_case(&plot->legend, study, plot->words->one);
     plot_legend_notes(&plot->legend, plot->lines, plot->words->note);
+    note_off_axis(plot);
     plot->x_unit = common_unit(plot->lines, true);
     plot->y_unit = common_unit(plot->lines, false);
     note_unit(plot, &plot->x_unit, plot->words->x);
@@ -454,6 +552,36 @@ static void lay_out(struct plot *plot, const struct study_result *study) {
     plot_lay_out(&plot->layout, plot->panels, columns_of(panels), &plot->legend,
                  plot->request->millimetres);
     plot->errors.scale = plot->layout.scale;
+}
+
+static void draw_picture(struct plot *plot, const struct study_result *study) {
+    const struct plot_layout *layout = &plot->layout;
+    FILE *file = plot->pen.file;
+    pen_head_sized(&plot->pen, &layout->size);
+    pen_study(&plot->pen, study);
+    (plot->request->millimetres > 0 ? pen_subject : pen_title)(&plot->pen, study->name,
+                                                               plot->words->subject);
+    for (size_t panel = 0; panel < plot->panels; panel++)
+        draw_panel(plot, panel);
+    if (plot->panels == 1)
+        draw_second(plot);
+    draw_labels(plot);
+    legend_draw(&plot->legend, file, layout->scale, layout->legend_left, layout->legend_top,
+                layout->legend_width);
+    fputs("</svg>\n", file);
+}
+
+/* Says why there is nothing to draw. */
+static int refuse_empty(const struct plot *plot, struct error *err) {
+    const struct frame *frame = &plot->pen.frame;
+    const bool x = frame->x.logarithmic, y = frame->y.logarithmic;
+    const char *axes = x && y ? "x and y" : x ? "x" : "y";
+    if (x || y)
+        return error_set(err, ERROR_ABSENT,
+                         "%.120s: no point to draw: none is above 0 on the logarithmic %s",
+                         plot->words->subject, axes);
+    return error_set(err, ERROR_ABSENT, "%.120s: no point to draw: no value is a finite number",
+                     plot->words->subject);
 }
 
 int plot_lines_draw(const struct plot_lines *lines, const struct study_result *study,
@@ -466,22 +594,14 @@ int plot_lines_draw(const struct plot_lines *lines, const struct study_result *s
     plot->request = request;
     plot->words = words;
     plot->pen.file = file;
-    lay_out(plot, study);
-    pen_head_sized(&plot->pen, &plot->layout.size);
-    pen_study(&plot->pen, study);
-    (request->millimetres > 0 ? pen_subject : pen_title)(&plot->pen, study->name, words->subject);
-    if (fit(plot, study)) {
-        for (size_t panel = 0; panel < plot->panels; panel++)
-            draw_panel(plot, panel);
-        if (plot->panels == 1)
-            draw_second(plot);
-        draw_labels(plot);
-        legend_draw(&plot->legend, file, plot->layout.scale, plot->layout.legend_left,
-                    plot->layout.legend_top, plot->layout.legend_width);
+    choose(plot, study);
+    int status = fit(plot) ? 0 : refuse_empty(plot, err);
+    if (status == 0) {
+        lay_out(plot, study);
+        draw_picture(plot, study);
     }
-    fputs("</svg>\n", file);
     free(plot);
-    return 0;
+    return status;
 }
 
 /* Returns what a series shows, where all cases agree in it, or its name; NULL for NULL. */

@@ -20,10 +20,11 @@ struct plot_request {
     double millimetres;  /* the width on paper; 0: for screens */
 };
 /* Draws curves of a study. What is drawn of many is said in the legend (plot_lines.h). Write errors
- * are left to the file's own flag. Fails as plot_lines_choose does. */
+ * are left to the file's own flag. Fails as plot_lines_choose does; ERROR_ABSENT, and nothing is
+ * written, where no point can be drawn. */
 int plot_quantity(const struct study_result *study, const struct plot_request *request, FILE *file,
                   struct error *err);
-/* Draws lines as they are. study: whose picture it is. */
+/* Draws lines as they are, likewise. study: whose picture it is. */
 int plot_lines_draw(const struct plot_lines *lines, const struct study_result *study,
                     const struct plot_request *request, const struct plot_words *words, FILE *file,
                     struct error *err);

@@ -30,7 +30,7 @@ static void draw_bar(const struct plot_pen *pen, const struct curve *curve, size
                      const char *colour) {
     const struct frame *frame = &pen->frame;
     const struct span span = standard_span(curve, n);
-    if (!isfinite(span.high) || (frame->y.logarithmic && span.low <= 0))
+    if (!isfinite(span.high))
         return;
     double top = clamped(frame, span.high), bottom = clamped(frame, span.low);
     if (bottom - top > 1)
@@ -77,12 +77,9 @@ static void draw_bars(const struct plot_pen *pen, const struct curve *curve,
 
 typedef struct span (*span_of)(const struct curve *curve, size_t n);
 
-/* Bands of one standard error end where they reach zero on a logarithmic axis. */
 static bool has_band(const struct plot_pen *pen, const struct curve *curve, size_t n, span_of of) {
-    if (n >= curve->n || !pen_reaches(pen, curve->x[n], curve->y[n]))
-        return false;
-    const struct span span = of(curve, n);
-    return isfinite(span.high) && (of == total_span || !pen->frame.y.logarithmic || span.low > 0);
+    return n < curve->n && pen_reaches(pen, curve->x[n], curve->y[n]) &&
+           isfinite(of(curve, n).high);
 }
 
 static void draw_part(const struct plot_pen *pen, const struct curve *curve, size_t first,
@@ -151,7 +148,8 @@ void plot_errors_draw(const struct plot_pen *pen, const struct curve *curve,
 
 /* --- axis and legend --- */
 
-/* Limits how far an axis grows: by `part` of the range of the points, or of its decades. */
+/* Limits how far an axis grows for totals: by `part` of the range of the points, or of its decades.
+ */
 static void find_limits(const struct plot_axis *axis, double part, bool whole, double *least,
                         double *most) {
     double low = axis->low, high = axis->high, length = part * (high - low);
@@ -167,23 +165,44 @@ static void find_limits(const struct plot_axis *axis, double part, bool whole, d
         *least = low;
 }
 
+/* Returns how far an axis reaches down for a standard error that ends at `low`: a decade below the
+ * points where it is logarithmic. Where no point lies below zero, it ends there for bands, such as
+ * those of densities, and for bars that would hardly be seen below. */
+static double standard_low(const struct plot_axis *points, bool bands, bool whole, double low) {
+    static const double SEEN = 0.05, DECADE = 10;
+    if (points->logarithmic)
+        return fmax(low, points->low / DECADE);
+    if (points->plus > 0)
+        return fmax(low, fmin(points->low, 0));
+    bool hidden = bands || -low < SEEN * (points->high - points->low);
+    return !whole && points->low >= 0 && hidden ? fmax(low, 0) : low;
+}
+
 void plot_errors_include(struct frame *frame, const struct plot_lines *lines, size_t panels,
-                         bool bars, bool whole) {
+                         const struct errors_drawn *drawn, bool whole) {
+    const struct plot_axis points = frame->y;
     double least, most;
-    if (!(frame->y.low <= frame->y.high))
+    if (!(points.low <= points.high))
         return;
-    find_limits(&frame->y, bars && !frame->y.logarithmic ? 1 : 0.5, whole, &least, &most);
+    find_limits(&points, drawn->bands || points.logarithmic ? 0.5 : 1, whole, &least, &most);
     for (size_t n = 0; n < lines->count; n++) {
         const struct plot_line *line = &lines->list[n];
         if (line->at[CHANNEL_PANEL] >= panels || line->coarseness > 0)
             continue;
         for (size_t k = 0; k < line->curve->n; k++) {
-            const struct span span = total_span(line->curve, k);
-            if (!frame_has_place(frame, line->curve->x[k], line->curve->y[k]) ||
-                !isfinite(span.low) || !isfinite(span.high))
+            const struct span standard = standard_span(line->curve, k);
+            const struct span total = total_span(line->curve, k);
+            if (!frame_has_place(frame, line->curve->x[k], line->curve->y[k]))
                 continue;
-            frame->y.low = fmin(frame->y.low, fmax(least, span.low));
-            frame->y.high = fmax(frame->y.high, fmin(most, span.high));
+            if (isfinite(standard.low) && isfinite(standard.high)) {
+                frame->y.low =
+                    fmin(frame->y.low, standard_low(&points, drawn->bands, whole, standard.low));
+                frame->y.high = fmax(frame->y.high, standard.high);
+            }
+            if (drawn->total && isfinite(total.low) && isfinite(total.high)) {
+                frame->y.low = fmin(frame->y.low, fmax(least, total.low));
+                frame->y.high = fmax(frame->y.high, fmin(most, total.high));
+            }
         }
     }
 }

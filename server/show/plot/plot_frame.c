@@ -37,14 +37,16 @@ bool frame_has_place(const struct frame *frame, double x, double y) {
     return axis_has(&frame->x, x) && axis_has(&frame->y, y);
 }
 
+void frame_include_point(struct frame *frame, double x, double y) {
+    if (!frame_has_place(frame, x, y))
+        return;
+    axis_include(&frame->x, x);
+    axis_include(&frame->y, y);
+}
+
 void frame_include(struct frame *frame, size_t n, const double *x, const double *y) {
-    for (size_t a = 0; a < n; a++) {
-        /* Points at zero at the ends of a histogram say nothing: they do not widen the frame. */
-        if (!frame_has_place(frame, x[a], y[a]) || y[a] == 0)
-            continue;
-        axis_include(&frame->x, x[a]);
-        axis_include(&frame->y, y[a]);
-    }
+    for (size_t a = 0; a < n; a++)
+        frame_include_point(frame, x[a], y[a]);
 }
 
 void frame_start(struct frame *frame, bool x_logarithmic, bool y_logarithmic) {
@@ -55,13 +57,6 @@ void frame_start(struct frame *frame, bool x_logarithmic, bool y_logarithmic) {
                             .right = FRAME_RIGHT,
                             .bottom = FRAME_BOTTOM,
                             .scale = 1};
-}
-
-void frame_include_point(struct frame *frame, double x, double y) {
-    if (!frame_has_place(frame, x, y))
-        return;
-    axis_include(&frame->x, x);
-    axis_include(&frame->y, y);
 }
 
 double frame_set(struct frame *frame, const double x[2], const double y[2], bool same_lengths) {
@@ -88,24 +83,38 @@ bool frame_stretch_text(double stretched, char *text, size_t size) {
 
 /* Zero belongs to an axis that begins near it. */
 static void axis_begin_at_zero(struct plot_axis *axis) {
-    if (!axis->logarithmic && axis->low > 0 && axis->low < axis->high / 2)
+    if (!axis->logarithmic && !axis->single && axis->low > 0 && axis->low < axis->high / 2)
         axis->low = 0;
 }
 
-bool range_widen(double low, double *high) {
-    if (*high - low >= RANGE_LEAST)
+bool range_is_single(double low, double high) {
+    static const double ROUNDING = 1e-9; /* of sums of many terms, with much to spare */
+    return !(high - low >= fmax(RANGE_LEAST, ROUNDING * fmax(fabs(low), fabs(high))));
+}
+
+bool range_widen(double *low, double *high) {
+    if (!range_is_single(*low, *high))
         return false;
-    *high = low + fmax(1, 1e-3 * fabs(low));
+    double middle = *low <= *high ? *low + (*high - *low) / 2 : 0;
+    double half = fabs(middle) / 2 >= RANGE_LEAST ? fabs(middle) / 2 : 1;
+    *low = middle - half;
+    *high = middle + half;
     return true;
 }
 
-/* Returns whether the axis had one value. */
-static bool widen_from_one_value(struct plot_axis *axis) {
-    if (!axis->logarithmic)
-        return range_widen(axis->low, &axis->high);
-    const bool one_value = axis->low == axis->high;
-    axis->high *= one_value ? 2 : 1;
-    return one_value;
+void axis_widen_single(struct plot_axis *axis) {
+    if (!range_is_single(axis->low, axis->high))
+        return;
+    axis->single = true;
+    if (axis->logarithmic) {
+        axis->low /= 2;
+        axis->high *= 2;
+        return;
+    }
+    const double low = axis->low;
+    (void)range_widen(&axis->low, &axis->high);
+    if (axis->plus > 0) /* it ends above -plus, and at zero where no value is below */
+        axis->low = fmax(axis->low, low >= 0 ? 0 : (low - axis->plus) / 2);
 }
 
 static void leave_margin(struct plot_axis *axis) {
@@ -130,12 +139,19 @@ static void leave_margin(struct plot_axis *axis) {
 bool frame_finish(struct frame *frame) {
     if (!(frame->x.low <= frame->x.high))
         return false;
+    axis_widen_single(&frame->x);
+    axis_widen_single(&frame->y);
     axis_begin_at_zero(&frame->x);
     axis_begin_at_zero(&frame->y);
-    (void)widen_from_one_value(&frame->x);
-    if (!widen_from_one_value(&frame->y))
-        leave_margin(&frame->y);
+    leave_margin(&frame->y);
     return true;
+}
+
+int number_digits(double value, double step) {
+    enum { LEAST = 4, MOST = 15 };
+    if (!(fabs(value) > step && step > 0))
+        return LEAST;
+    return (int)fmin(MOST, fmax(LEAST, ceil(log10(fabs(value) / step)) + 1));
 }
 
 double round_step(double range, int parts) {
@@ -154,15 +170,22 @@ static void print_power(FILE *file, long power) {
             labs(power));
 }
 
-/* Prints a number of an axis with a minus sign, large and small ones with a power of ten: "2×10" to
- * the 5th; or the power of ten that it is. */
-static void print_number(FILE *file, double value, bool power) {
+enum tick_label { TICK_BARE, TICK_NUMBER, TICK_POWER };
+struct tick {
+    double value, step; /* to its neighbours; 0: they differ by their first digits */
+    enum tick_label label;
+};
+
+/* Prints the number of a tick with a minus sign, large and small ones with a power of ten: "2×10"
+ * to the 5th; or the power of ten that it is. */
+static void print_number(FILE *file, const struct tick *tick) {
     char text[32];
-    if (power) {
+    const double value = tick->value;
+    if (tick->label == TICK_POWER) {
         print_power(file, lrint(log10(value)));
         return;
     }
-    snprintf(text, sizeof text, "%.4g", fabs(value));
+    snprintf(text, sizeof text, "%.*g", number_digits(value, tick->step), fabs(value));
     char *exponent = strchr(text, 'e');
     long ten = exponent != NULL ? strtol(exponent + 1, NULL, 10) : 0;
     if (exponent != NULL)
@@ -174,41 +197,39 @@ static void print_number(FILE *file, double value, bool power) {
         print_power(file, ten);
 }
 
-enum tick_label { TICK_BARE, TICK_NUMBER, TICK_POWER };
-
 /* Draws a tick outside of the frame. */
-static void draw_opposite_tick(FILE *file, const struct frame *frame, bool horizontal, double value,
-                               enum tick_label label) {
+static void draw_opposite_tick(FILE *file, const struct frame *frame, bool horizontal,
+                               const struct tick *tick) {
     static const double LENGTH = 4;
-    double x = horizontal ? frame_x(frame, value) : frame->right;
-    double y = horizontal ? frame->top : frame_y(frame, value);
+    double x = horizontal ? frame_x(frame, tick->value) : frame->right;
+    double y = horizontal ? frame->top : frame_y(frame, tick->value);
     double length = LENGTH * frame->scale;
     fprintf(file, "<path d=\"M%.1f %.1f%c%.1f\" class=\"frame\"/>", x, y, horizontal ? 'v' : 'h',
             horizontal ? -length : length);
-    if (label != TICK_BARE) {
+    if (tick->label != TICK_BARE) {
         fprintf(file, "<text x=\"%.1f\" y=\"%.1f\"%s>", horizontal ? x : x + 7 * frame->scale,
                 y + (horizontal ? -7 : 4) * frame->scale, horizontal ? " class=\"middle\"" : "");
-        print_number(file, value, label == TICK_POWER);
+        print_number(file, tick);
         fputs("</text>", file);
     }
     fputc('\n', file);
 }
 
-static void draw_tick(FILE *file, const struct frame *frame, bool horizontal, double value,
-                      enum tick_label label) {
+static void draw_tick(FILE *file, const struct frame *frame, bool horizontal,
+                      const struct tick *tick) {
     if (frame->opposite) {
-        draw_opposite_tick(file, frame, horizontal, value, label);
+        draw_opposite_tick(file, frame, horizontal, tick);
         return;
     }
-    double x = horizontal ? frame_x(frame, value) : frame->left;
-    double y = horizontal ? frame->bottom : frame_y(frame, value);
+    double x = horizontal ? frame_x(frame, tick->value) : frame->left;
+    double y = horizontal ? frame->bottom : frame_y(frame, tick->value);
     fprintf(file, "<path d=\"M%.1f %.1f%c%d\" class=\"grid\"/>", x, y, horizontal ? 'V' : 'H',
             horizontal ? frame->top : frame->right);
-    if (label != TICK_BARE && !(horizontal ? frame->without_x : frame->without_y)) {
+    if (tick->label != TICK_BARE && !(horizontal ? frame->without_x : frame->without_y)) {
         fprintf(file, "<text x=\"%.1f\" y=\"%.1f\" class=\"%s\">",
                 horizontal ? x : x - 8 * frame->scale, y + (horizontal ? 18 : 4) * frame->scale,
                 horizontal ? "middle" : "end");
-        print_number(file, value, label == TICK_POWER);
+        print_number(file, tick);
         fputs("</text>", file);
     }
     fputc('\n', file);
@@ -226,27 +247,61 @@ static void draw_decades(FILE *file, const struct frame *frame, bool horizontal)
     int each = (int)ceil((horizontal ? ROOM_X : ROOM_Y) * decades / length_of(frame, horizontal));
     int first = (int)ceil(log10(axis->low) - 1e-9);
     for (int decade = first; decade <= log10(axis->high) + 1e-9; decade++)
-        draw_tick(file, frame, horizontal, pow(10, decade),
-                  (decade - first) % each == 0 ? TICK_POWER : TICK_BARE);
+        draw_tick(file, frame, horizontal,
+                  &(struct tick){pow(10, decade), 0,
+                                 (decade - first) % each == 0 ? TICK_POWER : TICK_BARE});
 }
 
-/* Lines at 1, 2 and 5 of each decade; numbers at all of them where they do not crowd. */
+/* Lines at multiples of a round step. */
+static void draw_round_ticks(FILE *file, const struct frame *frame, bool horizontal) {
+    enum { PARTS = 5, PART_ROOM = 55 };
+    const struct plot_axis *axis = horizontal ? &frame->x : &frame->y;
+    double room = floor(length_of(frame, horizontal) / PART_ROOM);
+    double step = round_step(axis->high - axis->low, (int)fmin(PARTS, fmax(2, room)));
+    static const double ROUNDING = 1e-9; /* of a tick at an end */
+    const double first = ceil(axis->low / step - ROUNDING);
+    /* Counted, as one more changes no multiple that is as large as 1e16. */
+    const double count = floor(axis->high / step + ROUNDING) - first;
+    for (int n = 0; n <= count && n <= 2 * PARTS; n++)
+        draw_tick(file, frame, horizontal,
+                  &(struct tick){tick_value((first + n) * step, axis), step, TICK_NUMBER});
+}
+
+static const double STEPS[] = {1, 2, 5};
+enum { STEP_COUNT = sizeof STEPS / sizeof *STEPS };
+
+/* Returns how many multiples by 1, 2 and 5 of powers of ten an axis has. */
+static size_t count_steps(const struct plot_axis *axis) {
+    size_t count = 0;
+    for (int decade = (int)floor(log10(axis->low)); pow(10, decade) <= axis->high; decade++)
+        for (int s = 0; s < STEP_COUNT; s++) {
+            double value = STEPS[s] * pow(10, decade);
+            count += value >= axis->low && value <= axis->high;
+        }
+    return count;
+}
+
+/* Lines at 1, 2 and 5 of each decade; numbers at all of them where they do not crowd. A part of a
+ * decade that has fewer than two of these has round steps. */
 static void draw_logarithmic_ticks(FILE *file, const struct frame *frame, bool horizontal) {
     static const double ROOM_X = 110, ROOM_Y = 60; /* of a decade */
     const struct plot_axis *axis = horizontal ? &frame->x : &frame->y;
-    static const double STEPS[] = {1, 2, 5};
     bool crowded = length_of(frame, horizontal) <
                    (horizontal ? ROOM_X : ROOM_Y) * log10(axis->high / axis->low);
     if (frame->powers && crowded) {
         draw_decades(file, frame, horizontal);
         return;
     }
+    if (count_steps(axis) < 2) {
+        draw_round_ticks(file, frame, horizontal);
+        return;
+    }
     for (int decade = (int)floor(log10(axis->low)); pow(10, decade) <= axis->high; decade++)
-        for (int s = 0; s < 3; s++) {
+        for (int s = 0; s < STEP_COUNT; s++) {
             double value = STEPS[s] * pow(10, decade);
             if (value >= axis->low && value <= axis->high)
-                draw_tick(file, frame, horizontal, value,
-                          s == 0 || !crowded ? TICK_NUMBER : TICK_BARE);
+                draw_tick(file, frame, horizontal,
+                          &(struct tick){value, 0, s == 0 || !crowded ? TICK_NUMBER : TICK_BARE});
         }
 }
 
@@ -254,44 +309,43 @@ static void draw_logarithmic_ticks(FILE *file, const struct frame *frame, bool h
 static void draw_plus_ticks(FILE *file, const struct frame *frame, bool horizontal) {
     static const double ROOM = 30; /* of a number */
     const struct plot_axis *axis = horizontal ? &frame->x : &frame->y;
-    static const double STEPS[] = {1, 2, 5};
     double length = length_of(frame, horizontal), last = -1;
     if (axis->low <= 0) {
-        draw_tick(file, frame, horizontal, 0, TICK_NUMBER);
+        draw_tick(file, frame, horizontal, &(struct tick){0, 0, TICK_NUMBER});
         last = axis_place(axis, 0);
     }
     int highest = (int)floor(log10(axis->high));
     for (int decade = highest - 2; decade <= highest; decade++)
-        for (int s = 0; s < 3; s++) {
+        for (int s = 0; s < STEP_COUNT; s++) {
             double value = STEPS[s] * pow(10, decade), place = axis_place(axis, value);
             if (value < axis->low || value > axis->high || (place - last) * length < ROOM)
                 continue;
-            draw_tick(file, frame, horizontal, value, TICK_NUMBER);
+            draw_tick(file, frame, horizontal, &(struct tick){value, 0, TICK_NUMBER});
             last = place;
         }
 }
 
+/* Returns the least distance between ticks, which rise. */
+static double least_step(const struct plot_axis *axis) {
+    double step = axis->high - axis->low;
+    for (size_t n = 1; n < axis->tick_count; n++)
+        step = fmin(step, axis->ticks[n] - axis->ticks[n - 1]);
+    return step;
+}
+
 static void draw_ticks(FILE *file, const struct frame *frame, bool horizontal) {
-    enum { PARTS = 5, PART_ROOM = 55 };
     const struct plot_axis *axis = horizontal ? &frame->x : &frame->y;
     for (size_t n = 0; n < axis->tick_count; n++)
-        draw_tick(file, frame, horizontal, axis->ticks[n], TICK_NUMBER);
+        draw_tick(file, frame, horizontal,
+                  &(struct tick){axis->ticks[n], least_step(axis), TICK_NUMBER});
     if (axis->tick_count > 0)
         return;
-    if (axis->logarithmic) {
+    if (axis->logarithmic)
         draw_logarithmic_ticks(file, frame, horizontal);
-        return;
-    }
-    if (axis->plus > 0) {
+    else if (axis->plus > 0)
         draw_plus_ticks(file, frame, horizontal);
-        return;
-    }
-    double room = floor(length_of(frame, horizontal) / PART_ROOM);
-    double step = round_step(axis->high - axis->low, (int)fmin(PARTS, fmax(2, room)));
-    static const double ROUNDING = 1e-9; /* of a tick at an end */
-    long last = lrint(floor(axis->high / step + ROUNDING));
-    for (long n = lrint(ceil(axis->low / step - ROUNDING)); n <= last; n++)
-        draw_tick(file, frame, horizontal, tick_value((double)n * step, axis), TICK_NUMBER);
+    else
+        draw_round_ticks(file, frame, horizontal);
 }
 
 void frame_draw(FILE *file, const struct frame *frame, const char *x_label, const char *y_label) {

@@ -15,6 +15,7 @@ struct plot_axis {
     double plus; /* above 0: as log(plus + value), of values above -plus; not with logarithmic */
     size_t tick_count;   /* 0: ticks at round numbers */
     const double *ticks; /* borrowed: the only values with ticks */
+    bool single;         /* of one value, which stands in the middle */
 };
 struct frame {
     struct plot_axis x, y;
@@ -26,13 +27,17 @@ struct frame {
 };
 /* Positions along a range shorter than this cannot be distinguished as numbers. */
 #define RANGE_LEAST 1e-290
-/* Returns whether a range, of one value or next to one, had to be made longer. */
-bool range_widen(double low, double *high);
+/* Returns whether a range has one value, or values that differ by rounding alone. */
+bool range_is_single(double low, double high);
+/* Makes such a range longer to both sides: by half of its value, by 1 where that is 0. Returns
+ * whether it was one. */
+bool range_widen(double *low, double *high);
+/* Does so for an axis; a logarithmic one reaches to half and twice the value. */
+void axis_widen_single(struct plot_axis *axis);
 /* Start, include the n points that must be seen, finish: false when there is no point at all. */
 void frame_start(struct frame *frame, bool x_logarithmic, bool y_logarithmic);
 void frame_include(struct frame *frame, size_t n, const double *x, const double *y);
 bool frame_finish(struct frame *frame);
-/* Includes a point as it is, also one at zero. */
 void frame_include_point(struct frame *frame, double x, double y);
 /* In place of all of these: linear axes between exactly these ends. same_lengths: the frame is
  * narrower or lower than others, so that a length of y is as long as one of x; up to this ratio of
@@ -49,6 +54,8 @@ double frame_y(const struct frame *frame, double y);
 /* Returns whether a point can be drawn: two finite numbers, above 0 on logarithmic axes. */
 bool frame_has_place(const struct frame *frame, double x, double y);
 
+/* Returns how many digits a number needs to differ from one that is a step away; at least 4. */
+int number_digits(double value, double step);
 /* Returns the step of 1, 2 or 5 times a power of ten that divides a range into about `parts`. */
 double round_step(double range, int parts);
 /* Draws the frame with its ticks; labels (plot_words.h) are NULL for none. */

@@ -171,8 +171,9 @@ void heat_level(const struct heat_scale *scale, size_t level, char style[HEAT_ST
     colour_of(scale, level, colour);
     snprintf(style, HEAT_STYLE_SIZE, "stroke=\"%s\" stroke-width=\"12\"", colour);
     double low = scale->bounds[level], high = scale->bounds[level + 1];
-    snprintf(label, HEAT_LABEL_SIZE, "%s%.4g to %s%.4g", low < 0 ? "−" : "", fabs(low),
-             high < 0 ? "−" : "", fabs(high));
+    snprintf(label, HEAT_LABEL_SIZE, "%s%.*g to %s%.*g", low < 0 ? "−" : "",
+             number_digits(low, high - low), fabs(low), high < 0 ? "−" : "",
+             number_digits(high, high - low), fabs(high));
 }
 
 void heat_legend(struct plot_pen *pen, const struct heat_scale *scale, const char *heading) {

@@ -35,7 +35,7 @@ void heat_contours(const struct plot_pen *pen, const struct heat_cells *cells,
                    const struct heat_scale *scale, const char *style);
 /* Writes the attributes of a stroke in the colour of a level, and what the level holds: "0.1 to
  * 0.2". */
-enum { HEAT_STYLE_SIZE = 64, HEAT_LABEL_SIZE = 48 };
+enum { HEAT_STYLE_SIZE = 64, HEAT_LABEL_SIZE = 64 };
 void heat_level(const struct heat_scale *scale, size_t level, char style[HEAT_STYLE_SIZE],
                 char label[HEAT_LABEL_SIZE]);
 /* Adds a row a level to the legend, the highest first, below a heading. */

@@ -67,7 +67,7 @@ static void range_of(size_t count, const double *z, double range[2]) {
         range[0] = fmin(range[0], z[n]);
         range[1] = fmax(range[1], z[n]);
     }
-    (void)range_widen(range[0], &range[1]);
+    (void)range_widen(&range[0], &range[1]);
 }
 
 /* --- a profile --- */

@@ -2,6 +2,7 @@
 #include "core/file/memory_file.h"
 #include "schema/json/json.h"
 #include "schema/result/result_json.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -98,19 +99,91 @@ bool pen_reaches(const struct plot_pen *pen, double x, double y) {
            y <= frame->y.high && y >= frame->y.low;
 }
 
+struct point {
+    double x, y; /* on the picture */
+};
+
+/* Returns whether a point can be drawn, within the frame or not, and where. */
+static bool find_point(const struct frame *frame, double x, double y, struct point *out) {
+    if (!frame_has_place(frame, x, y))
+        return false;
+    *out = (struct point){frame_x(frame, x), frame_y(frame, y)};
+    return isfinite(out->x) && isfinite(out->y);
+}
+
+/* Cuts a segment to the frame (Liang & Barsky 1984), where axes are straight, logarithmic ones,
+ * too. Returns whether some of it is left; *cut: its end is not. */
+static bool cut_segment(const struct frame *frame, struct point *from, struct point *to,
+                        bool *cut) {
+    const double dx = to->x - from->x, dy = to->y - from->y;
+    const double sides[4][2] = {{-dx, from->x - frame->left},
+                                {dx, frame->right - from->x},
+                                {-dy, from->y - frame->top},
+                                {dy, frame->bottom - from->y}};
+    double first = 0, last = 1;
+    for (size_t s = 0; s < 4; s++) {
+        double outwards = sides[s][0], room = sides[s][1];
+        if (outwards > 0)
+            last = fmin(last, room / outwards);
+        else if (outwards < 0)
+            first = fmax(first, room / outwards);
+        else if (room < 0)
+            return false;
+    }
+    const struct point begin = *from;
+    *cut = last < 1;
+    if (first > 0)
+        *from = (struct point){begin.x + first * dx, begin.y + first * dy};
+    if (last < 1)
+        *to = (struct point){begin.x + last * dx, begin.y + last * dy};
+    return first <= last;
+}
+
+/* Draws what of a segment lies within the frame. Returns whether the pen is down at its end. */
+static bool draw_segment(const struct plot_pen *pen, struct point from, struct point to,
+                         bool pen_down) {
+    bool cut;
+    if (!cut_segment(&pen->frame, &from, &to, &cut))
+        return false;
+    if (!pen_down)
+        fprintf(pen->file, "M%.2f %.2f", from.x, from.y);
+    fprintf(pen->file, "L%.2f %.2f", to.x, to.y);
+    return !cut;
+}
+
 void pen_line(const struct plot_pen *pen, size_t n, const double *x, const double *y,
               const char *style) {
-    const struct frame *frame = &pen->frame;
-    bool pen_down = false;
+    struct point last = {0}, here;
+    bool follows = false, pen_down = false;
     fprintf(pen->file, "<path %s d=\"", style);
     for (size_t a = 0; a < n; a++) {
-        bool inside = pen_reaches(pen, x[a], y[a]);
-        if (inside)
-            fprintf(pen->file, "%c%.2f %.2f", pen_down ? 'L' : 'M', frame_x(frame, x[a]),
-                    frame_y(frame, y[a]));
-        pen_down = inside;
+        if (!find_point(&pen->frame, x[a], y[a], &here)) {
+            follows = pen_down = false;
+            continue;
+        }
+        if (follows) {
+            pen_down = draw_segment(pen, last, here, pen_down);
+        } else if (pen_reaches(pen, x[a], y[a])) {
+            fprintf(pen->file, "M%.2f %.2f", here.x, here.y);
+            pen_down = true;
+        }
+        follows = true;
+        last = here;
     }
     fputs("\"/>\n", pen->file);
+}
+
+bool pen_meets(const struct plot_pen *pen, size_t n, const double *x, const double *y) {
+    for (size_t a = 0; a < n; a++) {
+        struct point from, to;
+        bool cut;
+        if (pen_reaches(pen, x[a], y[a]) ||
+            (a > 0 && find_point(&pen->frame, x[a - 1], y[a - 1], &from) &&
+             find_point(&pen->frame, x[a], y[a], &to) &&
+             cut_segment(&pen->frame, &from, &to, &cut)))
+            return true;
+    }
+    return false;
 }
 
 int pen_row(int row) {

@@ -34,9 +34,12 @@ void pen_title(const struct plot_pen *pen, const char *name, const char *subject
 void pen_subject(const struct plot_pen *pen, const char *name, const char *subject);
 /* Returns whether a point lies within the frame. */
 bool pen_reaches(const struct plot_pen *pen, double x, double y);
-/* Draws a line through n points, where they lie within; style has the attributes of the path. */
+/* Draws a line through n points, as far as it lies within the frame; style has the attributes of
+ * the path. It is broken at points that no axis has. */
 void pen_line(const struct plot_pen *pen, size_t n, const double *x, const double *y,
               const char *style);
+/* Returns whether something of this line is drawn. */
+bool pen_meets(const struct plot_pen *pen, size_t n, const double *x, const double *y);
 /* Adds a row to the legend: a stroke of the style and its label; or a note. */
 void pen_legend(struct plot_pen *pen, const char *label, const char *style);
 /* Returns the height of the stroke of a row. */

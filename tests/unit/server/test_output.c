@@ -94,6 +94,24 @@ static void every_curve_has_its_lines(void **state) {
     study_result_clear(&study);
 }
 
+/* A quantity without a value has curves, and no picture; that is no failure. */
+static void quantities_without_values_have_no_picture(void **state) {
+    (void)state;
+    static const double NONE[] = {NAN, NAN};
+    struct study_result study = study_of_two();
+    struct case_result *one = &study.cases[1];
+    struct error err = {0};
+    one->curve_count = 1;
+    one->curves[0].theory_count = 0;
+    one->curves[0].y = built_numbers(one, 2, NONE);
+    if (output_write(&study, "out", &err) != 0)
+        fail_msg("%s", err.text);
+    assert_int_equal(remove("out/curves.csv"), 0);
+    assert_int_equal(remove("out/curves.json"), 0);
+    assert_int_equal(rmdir("out"), 0); /* nothing else was in it */
+    study_result_clear(&study);
+}
+
 static void a_folder_that_cannot_be_is_told(void **state) {
     (void)state;
     struct study_result study = study_of_two();
@@ -106,6 +124,7 @@ static void a_folder_that_cannot_be_is_told(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_curve_has_its_lines),
+        cmocka_unit_test(quantities_without_values_have_no_picture),
         cmocka_unit_test(a_folder_that_cannot_be_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

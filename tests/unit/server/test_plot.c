@@ -270,7 +270,7 @@ static void a_picture_names_what_it_draws(void **state) {
     study.cases[0].curves[0].theories[0].y = (const double[]){0.15, 0.25};
     char *text = picture_of(&study, &AREA);
     assert_int_equal(count_of(text, "class=\"theory\""), 3);
-    assert_int_equal(count_of(text, "theory: Persson, of each case"), 1);
+    assert_int_equal(count_of(text, "theory: Persson, of each line"), 1);
     free(text);
     study_result_clear(&study);
 }

@@ -27,6 +27,7 @@ static struct study_result study_of(size_t ratios) {
 /* What a picture is asked for. */
 struct request {
     const char *name, *x, *colour;
+    enum plot_axes axes;
 };
 
 /* Gives a table the scalars of a study, which the table then owns. */
@@ -45,7 +46,8 @@ static char *draw(struct study_result *study, const struct request *request, int
                   struct error *err) {
     const struct picture_source source = {.context = study, .results = results};
     const struct plot_request plot = {
-        .lines = {.quantity = request->name, .names = {[CHANNEL_COLOUR] = request->colour}}};
+        .lines = {.quantity = request->name, .names = {[CHANNEL_COLOUR] = request->colour}},
+        .axes = request->axes};
     struct case_table table = {0};
     char *text = NULL;
     size_t size = 0;
@@ -97,6 +99,18 @@ static void points_have_total_errors(void **state) {
     study_result_clear(&study);
 }
 
+/* A logarithmic axis holds a point whose standard error reaches below zero. */
+static void uncertain_points_are_on_a_logarithmic_axis(void **state) {
+    (void)state;
+    static const struct request LOGARITHMIC = {.name = "summit_density", .axes = AXES_Y};
+    struct study_result study = study_of(RATIOS);
+    study.cases[0].scalars[0].value = 1e-4; /* beside a standard error of 0.5 */
+    check_count(&study, &LOGARITHMIC, "class=\"mark\"", study.case_count + RATIOS);
+    check_count(&study, &LOGARITHMIC, "class=\"bar\"", study.case_count);
+    check_count(&study, &LOGARITHMIC, "not on this axis", 0);
+    study_result_clear(&study);
+}
+
 static void each_setting_is_a_line(void **state) {
     (void)state;
     struct study_result study = study_of(RATIOS);
@@ -112,7 +126,7 @@ static void each_setting_is_a_line(void **state) {
     check_count(&study, &DENSITY, ">0.6</text>", 1); /* what was swept has the ticks */
     study.cases[0].scalars[0].theory = 9;
     check_count(&study, &DENSITY, "class=\"theory\"", 3);
-    check_count(&study, &DENSITY, ">theory, of each case<", 1);
+    check_count(&study, &DENSITY, ">theory, of each line<", 1);
     study.cases[0].scalars[0].grid = 9;
     check_count(&study, &DENSITY, ">theory of the grid<", 1);
     study_result_clear(&study);
@@ -162,17 +176,25 @@ static void parameters_are_named(void **state) {
         int status;
         const char *word; /* of the picture or of the error */
     } ROWS[] = {
-        {{"summit_density", "wavelength_ratio", NULL}, 0, "H = 0.4"},
-        {{"summit_density", "surface/wavelength_ratio", "hurst"}, 0, "H = 0.4"},
-        {{"summit_density", "/surface/hurst", "wavelength_ratio"}, 0, "</tspan> 16</text>"},
-        {{"summit_density", "shape", NULL}, ERROR_INPUT, "\"shape\" is no number"},
-        {{"summit_density", "spectrum", NULL},
+        {{"summit_density", "wavelength_ratio", NULL, AXES_AUTOMATIC}, 0, "H = 0.4"},
+        {{"summit_density", "surface/wavelength_ratio", "hurst", AXES_AUTOMATIC}, 0, "H = 0.4"},
+        {{"summit_density", "/surface/hurst", "wavelength_ratio", AXES_AUTOMATIC},
+         0,
+         "</tspan> 16</text>"},
+        {{"summit_density", "shape", NULL, AXES_AUTOMATIC}, ERROR_INPUT, "\"shape\" is no number"},
+        {{"summit_density", "spectrum", NULL, AXES_AUTOMATIC},
          ERROR_INPUT,
          "\"spectrum\" is no number of the study's cases, but words; --colour"},
-        {{"summit_density", "H", NULL}, ERROR_INPUT, "did you mean hurst?"},
-        {{"summit_density", "hurst", "hurst"}, ERROR_INPUT, "\"hurst\" does not differ"},
-        {{"summit_density", "hurst", "spectrum"}, ERROR_INPUT, "\"spectrum\" does not differ"},
-        {{"kurtosis", NULL, NULL}, ERROR_INPUT, "no case has a scalar \"kurtosis\""},
+        {{"summit_density", "H", NULL, AXES_AUTOMATIC}, ERROR_INPUT, "did you mean hurst?"},
+        {{"summit_density", "hurst", "hurst", AXES_AUTOMATIC},
+         ERROR_INPUT,
+         "\"hurst\" does not differ"},
+        {{"summit_density", "hurst", "spectrum", AXES_AUTOMATIC},
+         ERROR_INPUT,
+         "\"spectrum\" does not differ"},
+        {{"kurtosis", NULL, NULL, AXES_AUTOMATIC},
+         ERROR_INPUT,
+         "no case has a scalar \"kurtosis\""},
     };
     struct study_result study = study_of(RATIOS);
     for (size_t r = 0; r < sizeof ROWS / sizeof *ROWS; r++) {
@@ -187,7 +209,7 @@ static void parameters_are_named(void **state) {
 /* A colour stands for the values of a parameter, dashes and marks for the rest. */
 static void colours_are_of_a_parameter(void **state) {
     (void)state;
-    const struct request by_spectrum = {"summit_density", "hurst", "spectrum"};
+    const struct request by_spectrum = {"summit_density", "hurst", "spectrum", AXES_AUTOMATIC};
     struct study_result study = study_of(4);
     for (size_t c = 0; c < study.case_count; c++)
         study.cases[c].parameters[2].text = c % 4 < 2 ? "self_affine" : "table";
@@ -201,7 +223,7 @@ static void colours_are_of_a_parameter(void **state) {
 static void theories_of_scalars_have_names(void **state) {
     (void)state;
     struct study_result study = built_study("contact", "light", 2);
-    const struct request kappa = {"kappa", "hurst", NULL};
+    const struct request kappa = {"kappa", "hurst", NULL, AXES_AUTOMATIC};
     for (size_t c = 0; c < 2; c++) {
         built_parameter(&study.cases[c], "/surface/hurst", NULL, 0.4 * (double)(c + 1));
         built_scalar(&study.cases[c], "kappa", 2, 0.1, 1.5958);
@@ -214,7 +236,7 @@ static void what_is_left_out_is_told(void **state) {
     (void)state;
     struct error err = {0};
     struct study_result study = study_of(20);
-    const struct request by_hurst = {"summit_density", "hurst", NULL};
+    const struct request by_hurst = {"summit_density", "hurst", NULL, AXES_AUTOMATIC};
     check_count(&study, &DENSITY, "over wavelength ratio<", 2); /* which has more values */
     check_count(&study, &by_hurst, "class=\"curve\"", 20 + 7);  /* not all are named */
     check_count(&study, &by_hurst, "in between: of 20 values of ", 1);
@@ -238,6 +260,7 @@ static void what_is_left_out_is_told(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(points_have_total_errors),
+        cmocka_unit_test(uncertain_points_are_on_a_logarithmic_axis),
         cmocka_unit_test(each_setting_is_a_line),
         cmocka_unit_test(theories_of_shorter_lines_are_shared),
         cmocka_unit_test(points_rise_along_a_line),

@@ -49,7 +49,7 @@ static int find_range(struct cells *cells, struct error *err) {
     cells->low = count > 0 ? sorted[tail] : 0;
     cells->high = count > 0 ? sorted[count - 1 - tail] : 0;
     cells->clipped = count > 0 && (sorted[0] < cells->low || sorted[count - 1] > cells->high);
-    if (!(cells->high - cells->low >= RANGE_LEAST)) {
+    if (range_is_single(cells->low, cells->high)) {
         double middle = cells->low, step = fabs(middle) >= RANGE_LEAST ? 1e-3 * fabs(middle) : 1;
         cells->low = middle - step;
         cells->high = middle + step;
