@@ -395,7 +395,7 @@ void frame_label(FILE *file, const struct frame *frame, bool horizontal, const c
                 opposite ? frame->top - 24 * frame->scale : frame->bottom + 44 * frame->scale);
     else
         fprintf(file, "<text transform=\"translate(%.0f %.0f) rotate(-90)\" class=\"middle\">",
-                opposite ? frame->right + 60 * frame->scale : frame->left - 60 * frame->scale, y);
+                opposite ? frame->right + 60 * frame->scale : frame->left - 66 * frame->scale, y);
     svg_label(file, label);
     fputs("</text>\n", file);
 }
