@@ -96,6 +96,8 @@ static int write_plot(const struct study_result *study, const struct plot_reques
     if (status != 0)
         return status;
     status = plot_quantity(study, request, file.stream, err);
+    if (status == ERROR_ABSENT)
+        (void)unlink(file.path); /* of an earlier run, which had points */
     status = written_file_close(&file, status, err);
     return status == ERROR_ABSENT ? 0 : status;
 }
