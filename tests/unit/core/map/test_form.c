@@ -81,8 +81,8 @@ static void bend(const struct grid *grid, double *z, double times) {
     }
 }
 
-/* Of surfaces that roll off within a third of a map nine in ten bows and more are found. Without a roll-off a
- * surface has a seventh of its mean square height in such forms itself. */
+/* Of surfaces that roll off within a third of a map nine in ten bows and more are found. Without a
+ * roll-off a surface has a seventh of its mean square height in such forms itself. */
 static void found(void **state) {
     const struct kind *kind = *state;
     const uint64_t maps = cases_of(30);
