@@ -438,7 +438,9 @@ page-figures: all
 	@tests/browser/run $(abspath $(BUILD))/rugo $(FIGURES)
 # The pages of results, filled from studies that run whole: hours. PAGES="steel ..." for some of them; the store is kept.
 BOOK = jobs/studies/results
-PAGES = $(basename $(notdir $(filter-out $(BOOK)/README.md,$(wildcard $(BOOK)/*.md))))
+# Those of all studies come last: they read what the others ran.
+OF_ALL = cost cases
+PAGES = $(filter-out README $(OF_ALL),$(basename $(notdir $(wildcard $(BOOK)/*.md)))) $(OF_ALL)
 PART = 10
 book: all
 	@$(BOOK)/book $(BUILD)/rugo $(BUILD)/book $(PAGES:%=$(BOOK)/%.md)

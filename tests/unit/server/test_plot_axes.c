@@ -336,7 +336,7 @@ static void differences_have_a_linear_y_axis(void **state) {
     (void)state;
     const struct picture_source source = {.difference = difference_of};
     const struct comparison comparison = {0};
-    for (enum plot_axes axes = AXES_AUTOMATIC; axes < AXES_COUNT; axes++) {
+    for (int axes = AXES_AUTOMATIC; axes < AXES_COUNT; axes++) {
         const struct picture_request request = {
             .quantity = "work", .axes = axes, .case_number = -1, .difference = &comparison};
         bool allowed = axes == AXES_AUTOMATIC || axes == AXES_LINEAR || axes == AXES_X;

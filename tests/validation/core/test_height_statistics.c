@@ -232,7 +232,7 @@ static void gaussian_patches(void **state) {
 }
 
 /* Weibull's distribution of shape 1 is the gamma distribution of shape 1. */
-static bool is_family(enum heights_type found, const struct heights *truth) {
+static bool is_family(size_t found, const struct heights *truth) {
     return found == truth->type ||
            (truth->type == HEIGHTS_WEIBULL_MIN && truth->shape == 1 && found == HEIGHTS_GAMMA);
 }
