@@ -174,6 +174,7 @@ def an_interrupt_ends_the_program_well():
     """It hands back what it leased, and says so; the next run does not wait for it."""
     long = dict(STUDY, name="long", realisations=1000000)
     folder = pathlib.Path(FOLDER, "interrupted")
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # jobs in the background of a shell ignore it
     threading.Timer(3, os.kill, (os.getpid(), signal.SIGINT)).start()
     raises(KeyboardInterrupt, lambda: rugo.run(long, folder, workers=1))
     printed = subprocess.run([os.environ["RUGO_PROGRAM"], "status", "long", "--db", str(folder / "rugo.db")], stdout=subprocess.PIPE, check=True).stdout.decode()
