@@ -7,8 +7,7 @@
 /* At most 2^31 points; at least 2 along x. */
 struct height_map {
     struct grid grid; /* spacing from the file (xyz) or from dx */
-    double
-        *z; /* owned, grid_points, in rows of rising y; NaN: a hole, where nothing was measured */
+    double *z;        /* owned, grid_points, in rows of rising y; NaN: a hole, not measured */
     /* Units of x and y, and of z: "m" where the file has a unit of length, and values are in metres
      * then; "" where it has none; otherwise the file's unit, for layers that hold no heights
      * ("V"). */

@@ -41,7 +41,7 @@ export function showCurves(root, signal, study, contents) {
   const first = contents.curves.find((curve) => !curve.matrix) ?? contents.curves[0];
   const state = { quantity: first?.quantity, series: first?.series[0], cases: new Set(contents.cases.slice(0, CASES_FIRST).map((one) => one.case)),
     models: new Set(first?.models ?? []), level: "finest", xLog: false, yLog: false, band: true, theory: true, difference: null };
-  let shown = null, turn = 0;
+  let shown = null, turn = 0, changed = true; // changed: something else was chosen than what is shown
   if (!first) {
     root.append(make("p", { role: "status" }, "There are no curves yet."));
     return null;
@@ -136,19 +136,24 @@ export function showCurves(root, signal, study, contents) {
     patch(listed, make("table", {}, make("thead", {}, heads), make("tbody", {}, rows)));
   }
 
+  function endChart() {
+    shown?.destroy();
+    shown = null;
+  }
+
   async function drawMatrix(mine) {
     const one = [...state.cases][0] ?? 0;
     const svg = await (await request(`${path}/${densityOf()}`, { signal })).text();
     if (mine !== turn || signal.aborted) return;
     const picture = make("div", { class: "scroll", tabindex: "0", role: "figure", "aria-label": words(state.quantity) },
       make("img", { class: "picture", alt: `${words(state.quantity)} of case ${one}`, src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}` }));
-    shown?.destroy();
-    shown = null;
+    endChart();
     if (figure.querySelector("img.picture")) patch(figure.firstChild, picture);
     else figure.replaceChildren(picture);
     legend.replaceChildren();
     values.hidden = true;
     message.textContent = state.cases.size > 1 ? `Of ${caseName(cases.get(one))}: a density is shown of one case.` : "";
+    changed = false;
   }
 
   /** Draws what is chosen; quietly, where it was drawn before. */
@@ -162,14 +167,15 @@ export function showCurves(root, signal, study, contents) {
       const lines = linesOf(results), banded = lines.filter((line) => line.low).length <= BANDS_MOST;
       if (!banded) for (const line of lines) Object.assign(line, { low: null, high: null, total: false });
       const curve = results.flatMap((one) => one.curves ?? []).find((one) => one.quantity === state.quantity);
-      const view = quietly ? shown?.view() : null; // zoom and place stay while results come in
-      shown?.destroy();
+      const view = changed ? null : shown?.view(); // zoom and place stay while results come in
+      endChart();
       shown = chart(lines, { xLabel: pretty(curve?.x_label || "x"), yLabel: pretty(curve?.y_label || words(state.quantity)), xLog: state.xLog, yLog: state.yLog, whole: Boolean(state.difference) && !state.yLog, view });
       const held = figure.contains(document.activeElement);
       figure.replaceChildren(shown.element);
       if (held) shown.element.focus({ preventScroll: true });
       drawLegend(lines);
       drawn = lines;
+      changed = false;
       values.hidden = false;
       drawValues(lines);
       const lacks = results.map(lackOf).filter(Boolean);
@@ -179,9 +185,8 @@ export function showCurves(root, signal, study, contents) {
     } catch (error) {
       if (signal.aborted || mine !== turn) return;
       message.textContent = error.message;
-      if (quietly) return;
-      shown?.destroy();
-      shown = null;
+      if (!changed) return;
+      endChart();
       figure.replaceChildren(); // what was shown before is not what is asked for
       legend.replaceChildren();
       values.hidden = true;
@@ -190,6 +195,7 @@ export function showCurves(root, signal, study, contents) {
 
   function set(change) {
     Object.assign(state, change);
+    changed = true;
     writeControls();
     draw();
   }
@@ -249,7 +255,7 @@ export function showCurves(root, signal, study, contents) {
     say(more, cases.length > shownCases.length ? `The first ${CASES_MOST} of ${cases.length} cases: choose fewer by their parameters.` : "");
   }
 
-  signal.addEventListener("abort", () => shown?.destroy());
+  signal.addEventListener("abort", endChart);
   writeControls();
   draw();
   return () => draw(true);

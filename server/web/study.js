@@ -1,6 +1,6 @@
 // One study: its state and what can be done with it, and its parts: curves, table, report, realisations, document.
 import { bar, duration, each, make, number, patch, say, time } from "/web/elements.js";
-import { events, getJson, reasonOf, request, sendJson } from "/web/session.js";
+import { events, getJson, latest, reasonOf, request, sendJson } from "/web/session.js";
 import { isLive, share, stateClass, stateText } from "/web/studies.js";
 import { showCurves } from "/web/curves.js";
 import { showPicture } from "/web/picture.js";
@@ -141,6 +141,8 @@ export async function showStudy(root, left, id, part) {
   const path = `/v1/studies/${encodeURIComponent(id)}`, stop = new AbortController(), { signal } = stop; // it ends where the view is left, or the study deleted
   left.addEventListener("abort", () => stop.abort());
   const head = headOf(id, () => getJson(path, { signal }).then(update)), tabs = make("nav", { class: "tabs", "aria-label": "Parts of the study" }), body = make("section");
+  const streamOf = latest(signal);
+  document.addEventListener("visibilitychange", streamOf, { signal }); // it ends the stream
   const lost = make("p", { role: "alert", hidden: true });
   root.append(make("p", { role: "status", class: "waiting" }, "Loading …"));
   let study, redraw = null, contents = null, following = false, drawing = false, again = false;
@@ -209,17 +211,13 @@ export async function showStudy(root, left, id, part) {
     if (following) return;
     following = true;
     while (!signal.aborted && isLive(study)) {
-      const stream = new AbortController(), close = () => stream.abort();
+      const stream = streamOf();
       let refused = false;
-      signal.addEventListener("abort", close);
-      document.addEventListener("visibilitychange", close);
       try {
-        if (!document.hidden) await events(`${path}/events`, (data, name) => (name === "deleted" ? sayDeleted() : update(data)), stream.signal);
+        if (!document.hidden) await events(`${path}/events`, (data, name) => (name === "deleted" ? sayDeleted() : update(data)), stream);
       } catch {
-        refused = !stream.signal.aborted; // its state is asked for, from time to time
+        refused = !stream.aborted; // its state is asked for, from time to time
       }
-      signal.removeEventListener("abort", close);
-      document.removeEventListener("visibilitychange", close);
       if (document.hidden) await new Promise((done) => document.addEventListener("visibilitychange", done, { once: true, signal }));
       if (!(await look()) || refused) await new Promise((done) => setTimeout(done, PERIOD));
     }

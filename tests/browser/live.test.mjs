@@ -56,11 +56,14 @@ test("zoom and readout stay while results come in", async (t) => {
     return read();
   };
   const whole = await rightmost(), { left, top, width, height } = await box();
-  await page.mouse.move(left + 0.3 * width, top + 0.02 * height);
-  await page.mouse.down();
-  await page.mouse.move(left + 0.6 * width, top + 0.98 * height, { steps: 5 });
-  await page.mouse.up();
-  const zoomed = await rightmost();
+  let zoomed = whole;
+  for (let tries = 0; tries < 5 && !(zoomed < whole); tries++) { // results that come in end a drag
+    await page.mouse.move(left + 0.3 * width, top + 0.02 * height);
+    await page.mouse.down();
+    await page.mouse.move(left + 0.6 * width, top + 0.98 * height, { steps: 5 });
+    await page.mouse.up();
+    zoomed = await rightmost();
+  }
   assert.ok(zoomed < whole, `${zoomed} is the right edge, which was at ${whole}`);
   await page.mouse.move(2, 2);
   await page.focus(".chart");
@@ -134,8 +137,8 @@ test("a state is asked for where events are refused, and the report comes with t
 test("the form submits nothing while the text beside it is no study", async (t) => {
   const page = await tab(t, [422]);
   await page.goto(`${url}/#/new`);
-  const ready = () => page.$eval("main", (one) => [...one.querySelectorAll("button")].some((button) => button.textContent === "Submit" && !button.disabled));
-  await page.waitForFunction(() => [...document.querySelectorAll("main button")].some((one) => one.textContent === "Submit" && !one.disabled));
+  const isReady = () => [...document.querySelectorAll("main button")].some((one) => one.textContent === "Submit" && !one.disabled);
+  await page.waitForFunction(isReady);
   await page.focus("textarea");
   await page.keyboard.down("Control");
   await page.keyboard.press("End");
@@ -144,10 +147,10 @@ test("the form submits nothing while the text beside it is no study", async (t) 
   await page.keyboard.type("x");
   await page.waitForNetworkIdle({ idleTime: 1000 });
   await says(page, "This is no JSON yet");
-  assert.ok(!(await ready()));
+  assert.ok(!(await page.evaluate(isReady)));
   assert.ok(await page.$eval(".fields", (one) => one.inert));
   await page.keyboard.press("Backspace");
-  await page.waitForFunction(() => [...document.querySelectorAll("main button")].some((one) => one.textContent === "Submit" && !one.disabled));
+  await page.waitForFunction(isReady);
 });
 
 test("whole numbers have all their digits", async (t) => {

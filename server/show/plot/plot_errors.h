@@ -21,10 +21,9 @@ void plot_errors_draw(const struct plot_pen *pen, const struct curve *curve,
                       const struct errors_drawn *drawn, const char *colour);
 /* Widens the y axis of a frame, whose points are all included, by what of the errors is drawn. It
  * takes one standard error whole, down to a decade below the points of a logarithmic axis, but
- * bands below zero only where points lie there. Total
- * intervals widen it as far as they reach (whole), or each end at most by half of what it reached
- * before (bars on a linear axis: by all of it), so that the lines stay large, and below zero only
- * where points lie there. */
+ * bands below zero only where points lie there. Total intervals widen it as far as they reach
+ * (whole), or each end at most by half of what it reached before (bars on a linear axis: by all of
+ * it), so that the lines stay large, and below zero only where points lie there. */
 void plot_errors_include(struct frame *frame, const struct plot_lines *lines, size_t panels,
                          const struct errors_drawn *drawn, bool whole);
 /* Adds what bars and bands are, and which sources they leave out. */

@@ -4,6 +4,7 @@
 #include "server/show/plot/plot_layout.h"
 #include "tests/support/check.h"
 #include "tests/support/count_of.h"
+#include "tests/support/picture_text.h"
 #include "tests/support/result_builder.h"
 #include <math.h>
 #include <stdio.h>
@@ -233,12 +234,8 @@ static void one_unit_a_picture(void **state) {
 
 static char *picture_of(const struct study_result *study, const struct plot_request *request) {
     struct error err = {0};
-    char *text = NULL;
-    size_t size = 0;
-    FILE *file = open_memstream(&text, &size);
-    assert_non_null(file);
-    assert_int_equal(plot_quantity(study, request, file, &err), 0);
-    fclose(file);
+    char *text;
+    assert_int_equal(picture_text(study, request, &text, &err), 0);
     return text;
 }
 

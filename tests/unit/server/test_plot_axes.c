@@ -3,6 +3,7 @@
 #include "server/show/plot/plot_heat.h"
 #include "tests/support/check.h"
 #include "tests/support/count_of.h"
+#include "tests/support/picture_text.h"
 #include "tests/support/result_builder.h"
 #include <math.h>
 #include <stdio.h>
@@ -22,24 +23,13 @@ static struct study_result study_of(const char *quantity, const double y[POINTS]
     return study;
 }
 
-static int draw(const struct study_result *study, const struct plot_request *request, char **text,
-                struct error *err) {
-    size_t size = 0;
-    *text = NULL;
-    FILE *file = open_memstream(text, &size);
-    assert_non_null(file);
-    int status = plot_quantity(study, request, file, err);
-    fclose(file);
-    return status;
-}
-
 static char *picture_of(const struct study_result *study, const char *quantity,
                         enum plot_axes axes) {
     const struct plot_request request = {
         .lines = {.quantity = quantity}, .axes = axes, .without_total = true};
     struct error err = {0};
     char *text;
-    if (draw(study, &request, &text, &err) != 0)
+    if (picture_text(study, &request, &text, &err) != 0)
         fail_msg("%s", err.text);
     assert_null(strstr(text, "nan"));
     assert_null(strstr(text, "inf"));
@@ -101,7 +91,7 @@ static void pictures_without_points_are_refused(void **state) {
                                              .axes = CASES[n].axes};
         struct error err = {0};
         char *text;
-        assert_int_equal(draw(&study, &request, &text, &err), ERROR_ABSENT);
+        assert_int_equal(picture_text(&study, &request, &text, &err), ERROR_ABSENT);
         assert_non_null(strstr(err.text, "open directions"));
         assert_non_null(strstr(err.text, CASES[n].words));
         assert_true(text == NULL || *text == '\0');
